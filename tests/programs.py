@@ -6,6 +6,7 @@ Not lowered from equations: a comparison earns trust when its two sides come by 
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from fractions import Fraction
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -185,4 +186,18 @@ BOUNDED = KernelContext(
         Bound("one", "condition", True, ("q", "p", "r")),
         Bound("two", "condition", False, ("p", "r")),
     ),
+)
+
+#: Statements of the rates of two places; some have names that the rates of the state have, too.
+BELOW = "_p1 = 2*r; _t1 = p*_p1; _t2 = x*x; _t3 = q*y"
+#: An oscillator on a circle, with two places that follow from it.
+FOLLOWED = replace(
+    BOUNDED,
+    name="followed",
+    programs=(
+        program("rhs", "q p", "r", "_p1 = 1/r; _t1 = q*_p1", "p; -_t1*r", (2,)),
+        *BOUNDED.programs[1:],
+        program("reconstruction", "q p x y", "r", BELOW, "_t1 - _t2; _t3 + r", (2,)),
+    ),
+    reconstructed=(Quantity("x", (), "1", ("x",)), Quantity("y", (), "1", ("y",))),
 )

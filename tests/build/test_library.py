@@ -67,10 +67,10 @@ def test_an_object_of_another_build_is_refused_and_replaced(cache):
     fast = load_library(BODY.folder, BODY.name, BODY.id, "fast", lambda _: None)
     assert fast.source == hashlib.sha256(SOURCES["kernel.c"]).hexdigest()
     compiler = find_compiler()
-    path = fetch(library._key(compiler, SOURCES, "fast"))
+    path = fetch(library.find_key(compiler, SOURCES, "fast"))
     with pytest.raises(CompilerError, match="carries the build 'fast'; expected 'exact'"):
         Library(path, BODY.name, BODY.id, "exact")
-    exact = library._key(compiler, SOURCES, "exact")
+    exact = library.find_key(compiler, SOURCES, "exact")
     store(exact, path.read_bytes())
     assert isinstance(load(), Library)
     assert fetch(exact) != path
@@ -105,26 +105,26 @@ def test_the_key_covers_all_that_an_object_depends_on(monkeypatch):
     """Source, header, build, version, engine and processor: each change is another key."""
     compiler = find_compiler()
     keys = [
-        library._key(compiler, SOURCES, "exact"),
-        library._key(compiler, SOURCES | {"kernel.c": b"/* changed */"}, "exact"),
-        library._key(compiler, SOURCES | {"kernel.h": b"/* changed */"}, "exact"),
-        library._key(compiler, SOURCES, "fast"),
-        library._key(replace(compiler, version="another"), SOURCES, "exact"),
-        library._key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
+        library.find_key(compiler, SOURCES, "exact"),
+        library.find_key(compiler, SOURCES | {"kernel.c": b"/* changed */"}, "exact"),
+        library.find_key(compiler, SOURCES | {"kernel.h": b"/* changed */"}, "exact"),
+        library.find_key(compiler, SOURCES, "fast"),
+        library.find_key(replace(compiler, version="another"), SOURCES, "exact"),
+        library.find_key(replace(compiler, command=("/bin/true",)), SOURCES, "exact"),
     ]
     for name in ("__version__", "tell_processor", "SUPPORT"):
         with monkeypatch.context() as patch:
             patch.setattr(
                 library, name, (lambda: "another") if name == "tell_processor" else "another"
             )
-            keys.append(library._key(compiler, SOURCES, "exact"))
+            keys.append(library.find_key(compiler, SOURCES, "exact"))
     assert len(set(keys)) == len(keys) == 9
-    assert library._key(compiler, SOURCES, "exact") == keys[0]
+    assert library.find_key(compiler, SOURCES, "exact") == keys[0]
 
 
 def test_a_whole_object_that_does_not_load_is_compiled_anew(cache):
     """As after an update of the system: the hash is right, the object of no use."""
-    key = library._key(find_compiler(), SOURCES, "exact")
+    key = library.find_key(find_compiler(), SOURCES, "exact")
     bad = store(key, b"\x7fELF and nothing that the loader would take")
     assert fetch(key) == bad
     assert isinstance(load(), Library)
@@ -155,4 +155,4 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
     answers = [process.communicate()[0].strip() for process in started]
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
     assert not list((cache / "work").iterdir())
-    assert fetch(library._key(find_compiler(), SOURCES, "exact", one_function("rhs")))
+    assert fetch(library.find_key(find_compiler(), SOURCES, "exact", one_function("rhs")))

@@ -22,8 +22,8 @@ from coadjoint.crosscheck.solver_steps import (
     check_steps,
     check_together,
 )
-from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
-from coadjoint.crosscheck.solvers import _numpy_function, check_solvers
+from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
+from coadjoint.crosscheck.solvers import _list_functions, check_solvers
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import (
@@ -38,6 +38,7 @@ from coadjoint.lower.program import (
 from coadjoint.render.kernels import render_system
 from coadjoint.render.solvers import Line, arrange, select_programs
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+from coadjoint.solver_kinds import SOLVER
 from tests.kernels import COMPILER, ProgramReference
 from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM, program
 
@@ -102,7 +103,7 @@ def texts_of(context, spoil=lambda texts: texts):
         programs=programs,
         recurrences=arrange(programs),
         strict=tuple(bound.strict for bound in context.domain),
-        files={file: rendered[file] for file in FILES},
+        files={file: rendered[file] for file in SOLVER.files},
         system=context.name,
     )
 
@@ -285,8 +286,7 @@ def test_a_function_without_its_suffix_is_caught():
 def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exact"):
     """Solvers of some methods, in NumPy and perhaps in C."""
     system, files = subject(context), texts_of(context, spoil).files
-    programs = select_programs(context.programs)
-    functions = {name: _numpy_function(system, each) for name, each in programs.items()}
+    functions = _list_functions(system, SOLVER)
     strict = tuple(bound.strict for bound in context.domain)
     numpy = NumpySolver(*load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}

@@ -22,9 +22,10 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError, LimitError
 from coadjoint.lower import check, lowering
 from coadjoint.lower.program import Program, run
 from coadjoint.prove.declaration import kernel_context
-from coadjoint.render.kernels import SOLVER_FILES, render_system
+from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
 from coadjoint.solve.system import load_folder
+from coadjoint.solver_kinds import FILES
 from coadjoint.spec import read_spec_text
 from tests.specs import shipped
 
@@ -192,8 +193,8 @@ def test_the_ladder_holds_loops(tmp_path):
     report = crosscheck(programs(5, 0), texts(5, 0), reference, system, bit_points=300)
     assert report.passed
     assert report.lines["jacobian_vector"]
-    assert report.solvers.lines == 0
-    assert not set(SOLVER_FILES) & set(texts(5, 0))
+    assert not report.solvers
+    assert not set(FILES) & set(texts(5, 0))
 
 
 # -- what is caught -------------------------------------------------------------------------------
@@ -314,14 +315,19 @@ def test_integrators_of_others_get_a_matrix(nine):
     assert run.drift["energy"] < 1e-7
 
 
-def test_simulations_take_methods_of_scipy(nine):
-    """No solver is generated for loops: `auto` is DOP853 of SciPy, and the others are refused."""
-    state, _, a = (part[:, 0].copy() for part in points(9, 1))
-    run = nine.simulate(state, (0, 1), a, samples=3)
-    assert run.method == "scipy:DOP853"
-    assert run.drift["energy"] < 1e-9
-    with pytest.raises(KernelArgumentError, match="its rates are loops over a table"):
-        nine.simulate(state, (0, 1), a, method="taylor")
+def test_simulations_are_made_step_by_step(nine):
+    """No solver is compiled for loops: `auto` is DOP853 in Python, also for many, and says so."""
+    state, _, a = points(9, 3)
+    run = nine.simulate(state, (0, 1), a[:, 0], samples=3)
+    assert run.method == "dop853"
+    assert "the rates are loops over a table" in run.settings["stepwise"]
+    assert run.drift["energy"].max() < 1e-9
+    one = nine.simulate(state[:, 1], (0, 1), a[:, 0], samples=3, target="numpy")
+    assert one.state.tobytes() == run.member(1).state.tobytes()
+    other = nine.simulate(state[:, 1], (0, 1), a[:, 0], samples=3, method="scipy:DOP853")
+    np.testing.assert_allclose(one.state, other.state, atol=1e-8)
+    with pytest.raises(KernelArgumentError, match="the rates are loops over a table"):
+        nine.simulate(state, (0, 1), a[:, 0], method="taylor")
 
 
 def test_rows_name_the_vector():

@@ -10,14 +10,25 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
 
 import numpy as np
 
+from coadjoint.render.kernels import render_system
 from coadjoint.solve import checkpoints, march
+from coadjoint.solve.events import Event
+from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top
+from tests.programs import FOLLOWED
 
 BATCH = np.random.default_rng(5).normal(size=(6, 43))
-#: Runs by name: adaptive and fixed steps, all samples and the end alone, both languages, a fall.
+#: On the circle of radius 1.
+PLACES = np.array([np.cos(np.linspace(1.5, 2.5, 9)), np.sin(np.linspace(1.5, 2.5, 9))])
+#: Runs by name: adaptive and fixed steps, all samples and the end alone, both languages, events
+#: with all steps, of members and of one, and a path that is reconstructed.
 RUNS = {
     "taylor": {"state": BATCH, "t": (0, 40), "samples": 21},
     "dop853 in threads": {
@@ -28,12 +39,48 @@ RUNS = {
     },
     "rk4": {"state": BATCH[:, 0], "t": (0, 50), "method": "rk4", "step": 1e-3, "samples": 1},
     "numpy": {"state": BATCH[:, :5], "t": (0, 5), "samples": 4, "target": "numpy"},
+    "events": {
+        "state": BATCH,
+        "t": (0, 20),
+        "samples": 5,
+        "events": ["Pi1 == 0.2", Event("Gamma3 == 0.1", terminal=7, name="end")],
+        "dense": True,
+    },
+    "one with events": {
+        "state": BATCH[:, 3],
+        "t": (0, 20),
+        "samples": 3,
+        "method": "dop853",
+        "events": ["Pi1 == 0.2", Event("Gamma3 == 0.1", terminal=11, name="end")],
+        "dense": True,
+    },
+    "path": {
+        "state": PLACES,
+        "t": (0, 9),
+        "samples": 4,
+        "method": "rk4",
+        "step": 0.01,
+        "reconstruct": {"x": [*range(9)]},
+        "events": ["y == 1", Event("q == p", direction=1)],
+        "dense": True,
+    },
 }
+
+
+@cache
+def followed():
+    """An oscillator whose path is reconstructed, without its domain, which it would leave soon."""
+    programs = tuple(each for each in FOLLOWED.programs if each.name != "domain")
+    folder = Path(mkdtemp(prefix="coadjoint-test-"))
+    for file, text in render_system(replace(FOLLOWED, programs=programs, domain=())).items():
+        (folder / file).write_text(text)
+    return load_folder(folder)
 
 
 def go(name, path=None, **options):
     """The Solution of one of the runs."""
-    return heavy_top.simulate(**RUNS[name], checkpoint=path, **options)
+    system = followed() if name == "path" else heavy_top
+    return system.simulate(**RUNS[name], checkpoint=path, **options)
 
 
 def die():

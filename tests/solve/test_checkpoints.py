@@ -45,9 +45,29 @@ def check_same(found, expected):
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
     for name in ("steps", "rejected", "time_reached", "status"):
         assert np.array_equal(getattr(found, name), getattr(expected, name)), name
+    assert found.message == expected.message
+    assert (found.reconstructed is None) == (expected.reconstructed is None)
+    for name in ["reconstructed"] * (expected.reconstructed is not None):
+        one, other = (np.asarray(getattr(each, name)) for each in (found, expected))
+        assert one.tobytes() == other.tobytes(), name
+    check_same_events(found, expected)
     assert found.drift.keys() == expected.drift.keys()
     for name, drift in expected.drift.items():
         assert np.array_equal(found.drift[name], drift)
+
+
+def check_same_events(found, expected):
+    """The same events at the same times, and the same steps for dense output."""
+    assert found.events.keys() == expected.events.keys()
+    for name, events in expected.events.items():
+        for array in ("time", "member", "direction", "state", "undefined"):
+            one, other = (getattr(each, array) for each in (found.events[name], events))
+            assert one.tobytes() == other.tobytes(), (name, array)
+    assert (found.dense is None) == (expected.dense is None)
+    if expected.dense is not None:
+        for array in ("member", "start", "size", "path"):
+            one, other = (getattr(each.dense.steps, array) for each in (found, expected))
+            assert one.tobytes() == other.tobytes(), array
 
 
 @pytest.mark.parametrize(
@@ -58,6 +78,9 @@ def check_same(found, expected):
         ("dop853 in threads", "writing", 2, 3),
         ("rk4", "computing", 4, 1),
         ("numpy", "writing", 5, 1),
+        ("events", "computing", 3, 2),
+        ("one with events", "writing", 4, 1),
+        ("path", "computing", 2, 2),
     ],
 )
 def test_a_killed_run_goes_on_with_the_same_bits(tmp_path, name, place, count, threads):
@@ -115,6 +138,8 @@ def test_a_finished_run_is_not_computed_again(tmp_path, monkeypatch):
         ({"t": (0, 2)}, "its samples has the hash"),
         ({"t": (-1, 1)}, "its start is 0.0, and that of this run is -1.0"),
         ({"samples": 1}, "its samples has the hash"),
+        ({"dense": True}, "its dense is False, and that of this run is True"),
+        ({"events": "Pi1 == 0"}, 'its events is [], and that of this run is ["Event(formula='),
     ],
     ids=str,
 )
@@ -227,6 +252,7 @@ def test_writing_takes_a_small_part_of_the_time(tmp_path, monkeypatch):
     ticks = iter([100.0, 101.0])
     checkpoint = Checkpoint.__new__(Checkpoint)
     checkpoint.path, checkpoint._asked, checkpoint._build = tmp_path / "a.npz", {}, ""
+    checkpoint._recording = None
     monkeypatch.setattr(checkpoints.time, "monotonic", lambda: next(ticks))
     monkeypatch.setattr(checkpoints, "_arrays", lambda _: {})
     checkpoint.write(None)

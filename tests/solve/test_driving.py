@@ -1,5 +1,7 @@
 """Driven systems: what kernels take, and runs against closed forms and 30 digits."""
 
+import threading
+
 import mpmath
 import numpy as np
 import pytest
@@ -223,7 +225,7 @@ def test_a_constraint_that_moves_is_followed(system):
 def test_an_input_with_its_rate_moves_a_constraint(system):
     """With b = sin t and db = cos t, the belt moves the bead as the function of time does."""
     run = ([0.0, 0.0, 1.0], np.linspace(0, 2, 5), None)
-    expected = system(ROD).simulate(*run, [0.5], method="scipy:DOP853")
+    expected = system(ROD).simulate(*run, [0.5], method="dop853")
     found = system(BELT).simulate(*run, lambda t: {"f": 0.5, "b": np.sin(t), "db": np.cos(t)})
     np.testing.assert_allclose(found.state, expected.state, rtol=0, atol=1e-12)
 
@@ -287,3 +289,93 @@ def test_jacobians_are_those_of_the_moment(system, method):
     )
     assert found.status == "OK"
     np.testing.assert_allclose(found.state, expected.state, rtol=0, atol=1e-6)
+
+
+# -- functions of Python, by the methods of Runge and Kutta ---------------------------------------
+
+
+def drive(t):
+    """A force of degree 3 in time; the places of its other part are still."""
+    return [t**3 - 2 * t, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "c-fast"])
+@pytest.mark.parametrize(("method", "step"), [("dop853", None), ("dop853", 0.5), ("rk4", 0.01)])
+def test_generated_methods_ask_a_function(system, target, method, step):
+    """X'' = (t^3 - 2 t)/2, so that x = t^5/40 - t^3/6; method of order 4 and 8, and says so."""
+    found = pushed(system, drive, method=method, step=step, target=target)
+    expected = found.time**5 / 40 - found.time**3 / 6
+    close = 1e-13 if method == "dop853" else 1e-9
+    np.testing.assert_allclose(found["x"], expected, rtol=0, atol=close)
+    np.testing.assert_allclose(found["f"], found.time**3 - 2 * found.time, rtol=1e-15)
+    assert found.method == method
+    assert "inputs are a function of Python" in found.settings["stepwise"]
+    assert "the steps were made in Python: inputs are a function" in repr(found)
+    lines = ([0.0, 4.0], np.zeros((3, 2)), "linear")
+    assert "stepwise" not in pushed(system, lines, method="dop853").settings
+
+
+def test_members_ask_a_function_as_one_does(system):
+    """Bits of each alone, in both languages, at times of its own; parameters of each."""
+    state = np.random.default_rng(2).normal(size=(2, 5))
+    run = {"t": (0.0, 3.0), "inputs": drive, "samples": 4}
+    masses = np.linspace(1, 3, 5)
+    found = system(POINT).simulate(state, parameters={"m": masses}, **run)
+    assert (found.status == "OK").all()
+    assert found.inputs.shape == (3, 4)
+    t = found.time
+    expected = state[0][:, None] + state[1][:, None] * t
+    expected = expected + (t**5 / 20 - t**3 / 3) / masses[:, None]
+    np.testing.assert_allclose(found["x"], expected, rtol=0, atol=1e-10)
+    other = system(POINT).simulate(state, parameters={"m": masses}, target="numpy", **run)
+    assert found.state.tobytes() == other.state.tobytes()
+    for n in range(5):
+        one = system(POINT).simulate(state[:, n], parameters={"m": masses[n]}, **run)
+        assert one.state.tobytes() == found.member(n).state.tobytes()
+        assert one.steps == found.steps[n]
+
+
+def test_a_function_is_asked_by_one_thread_and_never_beyond_the_run(system):
+    """It may look into a table that ends there."""
+    asked = []
+
+    def look(t):
+        asked.append((t, threading.get_ident()))
+        return [np.cos(t), 0.0, 0.0]
+
+    state = np.random.default_rng(2).normal(size=(2, 40))
+    found = system(POINT).simulate(
+        state, (0.1, 0.7), None, look, samples=3, threads=4, events="x == 0", dense=True
+    )
+    times, threads = zip(*asked, strict=True)
+    assert (min(times), max(times)) == (0.1, 0.7)
+    assert set(threads) == {threading.get_ident()}
+    assert sum(found.events["x == 0"].count) > 0
+    assert (found.at(0.7)["f"] == np.cos(0.7)).all()
+
+
+def test_a_function_leaves_and_keeps_what_others_do(system, tmp_path):
+    """Domain, constraints that move, checkpoint and file have the inputs of the moment."""
+    bounded = POINT + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    found = build(rendered(bounded).texts, tmp_path / "sample").simulate(
+        [0.0, 0.0], (0.0, 4.0), None, lambda t: {"f": 3.0}
+    )
+    assert found.method == "dop853"
+    assert found.status == "DOMAIN"
+    assert abs(found.time_reached - (1 + np.sqrt(10)) / 1.5) < 1e-9
+    run = {"samples": 5, "checkpoint": tmp_path / "run.npz", "method": "dop853"}
+    first = pushed(system, drive, **run)
+    assert pushed(system, drive, **run).state.tobytes() == first.state.tobytes()
+    with pytest.raises(KernelArgumentError, match="its inputs has the hash"):
+        pushed(system, lambda t: [t, 0.0, 0.0], **run)
+    first.to_csv(tmp_path / "run.csv")
+    read = type(first).from_csv(system(POINT), tmp_path / "run.csv")
+    assert read.settings == first.settings
+
+
+def test_taylor_asks_no_function(system):
+    """The message has the reason, and the methods that fit."""
+    with pytest.raises(KernelArgumentError, match=r"tells their values alone. Expected 'auto', 'd"):
+        pushed(system, drive, method="taylor")
+    with pytest.raises(KernelArgumentError, match=r"\(3, 2\), expected \(3,\): f, k1, k2, which"):
+        system(POINT).simulate(np.zeros((2, 2)), (0, 1), None, lambda t: np.ones((3, 2)))

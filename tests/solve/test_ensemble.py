@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import ROOM, Ensemble, Inputs, Record, Status
 from coadjoint.solve.march import march
-from coadjoint.solve.solvers import Choice, NumpyStepper, load
+from coadjoint.solve.solvers import load
+from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER
 
@@ -136,3 +138,29 @@ def begin_at_end(choice, end):
     """A run that ends earlier."""
     run = begin(choice, np.array([0.0, end]))
     return run, stepper(choice).advance(run, 0, MEMBERS, 10000)
+
+
+class Rounds:
+    """A checkpoint that wants to be written at once, and notes the steps of each member then."""
+
+    seconds = 0.0
+
+    def __init__(self):
+        self.steps = []
+
+    def write(self, run):
+        """Note them."""
+        self.steps.append(run.steps.copy())
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_every_round_takes_all_members_on_whatever_the_load(threads, monkeypatch):
+    """Each slice makes one call before a checkpoint, though its thread may begin late or early."""
+    monkeypatch.setattr("coadjoint.solve.march.FIRST_WORK", 7)
+    choice, checkpoint = Choice("rk4", 4), Rounds()
+    run = begin(choice)
+    march(stepper(choice, "numpy"), run, 0.0, threads, checkpoint=checkpoint)
+    for count, steps in enumerate(checkpoint.steps, 1):
+        assert (steps == min(7 * count, 60)).all()
+    assert len(checkpoint.steps) == 9
+    assert (run.status == Status.OK).all()

@@ -372,10 +372,3 @@ def test_events_are_the_changes_of_sign_of_samples():
             assert ((times[change] <= own.time) & (own.time <= times[change + 1])).all()
             assert np.array_equal(own.direction, np.sign(np.diff(value[member])[change]))
         assert len(found[name]) >= 5, name
-
-
-def test_a_checkpoint_with_events_is_refused(tmp_path):
-    """It would keep the steps of neither."""
-    for asked in ({"events": "Pi1"}, {"dense": True}):
-        with pytest.raises(KernelArgumentError, match="keeps neither events nor"):
-            rigid_body.simulate([1.0, 0.2, 0.3], (0, 1), checkpoint=tmp_path / "c", **asked)

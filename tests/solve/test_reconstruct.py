@@ -1,13 +1,21 @@
 """Attitude and place along a motion: known paths, where they begin, and what is refused."""
 
+from shutil import copytree
+
 import numpy as np
 import pytest
 
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.events import Event
 from coadjoint.solve.reconstruct import turn_upright
+from coadjoint.solve.system import load_folder
+from coadjoint.solver_kinds import RECONSTRUCTION
 from coadjoint.systems import rigid_body
+from tests.kernels import COMPILER
 from tests.rolling import BALL, DISK, FOLLOWED_SLEIGH, built
+
+needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 
 #: Local errors of 1e-10 per step add up to less than this over the times below.
 TOLERANCE = 1e-8
@@ -122,30 +130,120 @@ def test_a_leaning_disk_rolls_on_a_circle():
     assert radius > 0.5
 
 
-def test_the_blade_of_a_sleigh_follows_the_closed_form():
-    """I = 3 m a^2: theta = 2 gd(u), u = k t, and x, y by integration (Chaplygin 1911).
+def follow_sleigh(time, speed, m=2.0, a=0.5):
+    """Theta, x and y from (0, 0, 0) of a blade with I = 3 m a^2 that begins without moving forward.
 
-    v = V tanh(u), omega = W / cosh(u) with k = m a V/(I + m a^2), W = 2 k: so cos(theta) is
-    2/cosh(u)^2 - 1, sin(theta) is 2 sinh(u)/cosh(u)^2, and x' = v cos(theta), y' = v sin(theta)
-    give x = (V/k) (tanh(u)^2 - log(cosh(u))), y = (V/k) (gd(u) - sinh(u)/cosh(u)^2).
+    theta = 2 gd(u), u = k t, and x, y by integration (Chaplygin 1911): v = V tanh(u), omega =
+    W / cosh(u) with k = m a V/(I + m a^2), W = 2 k: so cos(theta) is 2/cosh(u)^2 - 1, sin(theta) is
+    2 sinh(u)/cosh(u)^2, and x' = v cos(theta), y' = v sin(theta) give x = (V/k) (tanh(u)^2 -
+    log(cosh(u))), y = (V/k) (gd(u) - sinh(u)/cosh(u)^2).
     """
-    V, m, a = 1.5, 2.0, 0.5
-    inertia = 3 * m * a**2
-    k = m * a * V / (inertia + m * a**2)
+    k = m * a * speed / (4 * m * a**2)
+    u = k * time
+    gd = 2 * np.arctan(np.tanh(u / 2))
+    across, along = gd - np.sinh(u) / np.cosh(u) ** 2, np.tanh(u) ** 2 - np.log(np.cosh(u))
+    return {"theta": 2 * gd, "x": speed / k * along, "y": speed / k * across}
+
+
+SLEIGH = {"m": 2.0, "I": 1.5, "a": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("target", "options"),
+    [
+        ("numpy", {"method": "scipy:DOP853"}),
+        ("numpy", {}),
+        ("numpy", {"method": "dop853"}),
+        pytest.param("c", {}, marks=needs_compiler),
+        pytest.param("c", {"method": "rk4", "step": 1e-3}, marks=needs_compiler),
+    ],
+)
+def test_the_blade_of_a_sleigh_follows_the_closed_form(target, options):
+    """V = 1.5, by all who integrate."""
     found = built(FOLLOWED_SLEIGH).simulate(
-        {"omega": 2 * k, "v": 0.0},
+        {"omega": 1.5, "v": 0.0},
         (0, 4),
-        {"m": m, "I": inertia, "a": a},
+        SLEIGH,
         samples=40,
+        target=target,
+        reconstruct={"y": 0.0},
+        **options,
+    )
+    assert found.method == options.get("method", "taylor")
+    assert np.abs(found["v"] - 1.5 * np.tanh(0.75 * found.time)).max() < TOLERANCE
+    for name, expected in follow_sleigh(found.time, 1.5).items():
+        assert np.abs(found[name] - expected).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("target", ["numpy", pytest.param("c", marks=needs_compiler)])
+def test_members_are_reconstructed_as_each_alone(target, tmp_path):
+    """Each from a place of its own, along its closed form; files keep what they hold."""
+    speeds, places = np.array([1.5, 0.5, 2.0]), np.array([0.0, 10.0, -3.0])
+    system, run = built(FOLLOWED_SLEIGH), {"parameters": SLEIGH, "target": target}
+    state = np.array([speeds, 0 * speeds])
+    found = system.simulate(
+        state, (0, 4), samples=9, reconstruct={"x": places, "y": 0.0}, dense=True, **run
+    )
+    assert found["x"].shape == (3, 9)
+    end = system.simulate(state, (0, 4), samples=1, reconstruct={"x": places, "y": 0.0}, **run)
+    assert end.first("x").tolist() == places[:, None].tolist()
+    for n, speed in enumerate(speeds):
+        for name, expected in follow_sleigh(found.time, speed).items():
+            begun = places[n] if name == "x" else 0.0
+            assert np.abs(found[name][n] - begun - expected).max() < TOLERANCE
+        one = system.simulate(
+            state[:, n], (0, 4), samples=9, reconstruct={"x": places[n], "y": 0.0}, **run
+        )
+        for other in (found.member(n), found.at(found.time).member(n)):
+            assert other.reconstructed.tobytes() == one.reconstructed.tobytes()
+        assert end.member(n)["x"].tolist() == one["x"][-1:].tolist()
+    end.to_csv(tmp_path / "end.csv")
+    read = type(end).from_csv(system, tmp_path / "end.csv")
+    assert read["x"].tobytes() == end["x"].tobytes()
+    assert read.first("x").tolist() == places[:, None].tolist()
+
+
+@needs_compiler
+def test_c_and_numpy_reconstruct_the_same_bits():
+    """A rolling ball by each method: what ends members early ends all of it."""
+    system, source = built(BALL), np.random.default_rng(3)
+    state = np.concatenate([source.normal(size=(3, 11)), source.normal(size=(3, 11))])
+    state[3:] /= np.linalg.norm(state[3:], axis=0)
+    for options in ({}, {"method": "dop853"}, {"method": "rk4", "step": 0.01, "max_steps": 60}):
+        run = {"t": (0, 0.5), "samples": 3, "reconstruct": True, **options}
+        one, other = (system.simulate(state, target=each, **run) for each in ("numpy", "c"))
+        assert one.reconstructed.tobytes() == other.reconstructed.tobytes()
+        assert one.state.tobytes() == other.state.tobytes()
+        assert other.attitude_drift["q"] < 1e-9
+        alone = system.simulate(state[:, 7], **run)
+        assert alone.reconstructed.tobytes() == other.member(7).reconstructed.tobytes()
+    short = system.simulate(
+        state, (0, 0.5), samples=3, reconstruct=True, method="rk4", step=0.1, max_steps=5
+    )
+    assert (short.status == "OK").all()
+
+
+def test_a_place_beyond_a_terminal_event_is_not_there():
+    """What is reconstructed ends where the state does, and events may name it."""
+    speeds = np.array([1.5, 0.4])
+    found = built(FOLLOWED_SLEIGH).simulate(
+        np.array([speeds, 0 * speeds]),
+        (0, 4),
+        SLEIGH,
+        samples=9,
         target="numpy",
         reconstruct={"y": 0.0},
+        events=Event("theta == 1.5", terminal=True, name="turned"),
     )
-    u = k * found.time
-    gd = 2 * np.arctan(np.tanh(u / 2))
-    assert np.abs(found["v"] - V * np.tanh(u)).max() < TOLERANCE
-    assert np.abs(found["theta"] - 2 * gd).max() < TOLERANCE
-    assert np.abs(found["x"] - V / k * (np.tanh(u) ** 2 - np.log(np.cosh(u)))).max() < TOLERANCE
-    assert np.abs(found["y"] - V / k * (gd - np.sinh(u) / np.cosh(u) ** 2)).max() < TOLERANCE
+    when = 2 * np.arctanh(np.tan(0.375)) / 0.75  # gd(u) = 3/4
+    assert found.status.tolist() == ["EVENT", "OK"]
+    assert abs(found.time_reached[0] - when) < 1e-9
+    assert np.isnan(found["x"][0]).tolist() == (found.time > when).tolist()
+    last = follow_sleigh(when, 1.5)
+    one = found.member(0)
+    for name, value in last.items():
+        assert abs(one[name][-1] - value) < TOLERANCE
+        assert abs(found.events["turned"][name][0] - value) < TOLERANCE
 
 
 def test_defaults_and_given_beginnings():
@@ -248,3 +346,34 @@ def test_the_end_alone_still_has_its_start():
         assert end.first(name).tolist() == whole[name][:1].tolist()
         assert np.array_equal(end[name], whole[name][-1:])
     assert end.first("y") == 3
+
+
+def test_starts_of_members_are_checked_before_anything_is_computed():
+    """Other shapes, a length that is not 1 and a normal that is 0 are named with their member."""
+    system, start = built(BALL), np.tile([[1.0], [0], [0], [0], [0], [1.0]], 3)
+    turned = np.tile([[1.0], [0], [0], [0]], 3)
+    turned[1, 2] = 1.0
+    for asked, message in (
+        ({"x": [1.0, 2.0]}, r"x has the shape \(2,\); expected one .*, or one for each of the mem"),
+        ({"q": turned}, r"attitude q of member 2 begins at \[1.0, 1.0, 0.0, 0.0\], of length 1.41"),
+        ({"y": [0, np.inf, 1]}, "expected one finite value"),
+    ):
+        with pytest.raises(KernelArgumentError, match=message):
+            system.simulate(start, (0, 1), target="numpy", reconstruct=asked)
+    start[5, 1] = 0
+    with pytest.raises(KernelArgumentError, match=r"normal of member 1 is \(0, 0, 0\)"):
+        system.simulate(start, (0, 1), target="numpy", reconstruct=True)
+
+
+def test_a_folder_from_before_goes_the_old_way(tmp_path):
+    """Without the files of these solvers, SciPy follows one, and the reason is said for a batch."""
+    folder = tmp_path / "sample"
+    copytree(built(FOLLOWED_SLEIGH).folder, folder)
+    for file in RECONSTRUCTION.files:
+        (folder / file).unlink()
+    system = load_folder(folder)
+    run = {"t": (0, 1), "samples": 3, "target": "numpy"}
+    assert system.simulate([1, 1], reconstruct=True, **run).method == "scipy:DOP853"
+    assert system.simulate([1, 1], **run).method == "taylor"
+    with pytest.raises(KernelArgumentError, match="generated without them: run `coadjoint regen"):
+        system.simulate(np.ones((2, 3)), reconstruct=True, **run)

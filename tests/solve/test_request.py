@@ -113,6 +113,7 @@ WRONG = [
     ({"threads": -1}, "threads is -1; expected a whole number"),
     ({"threads": 1.5}, "threads is 1.5; expected a whole number"),
     ({"threads": True}, "threads is True; expected a whole number"),
+    ({"dense": "no"}, "dense is 'no'; expected True or False"),
     ({"progress": "yes"}, "progress is 'yes'; expected True, False, or a function"),
     ({"reconstruct": True}, "heavy_top reconstructs nothing"),
 ]
@@ -149,7 +150,7 @@ def test_what_can_be_simulated_passes_the_checks_above(monkeypatch):
         (([0.0, 0.5], [[1.0, 2.0]], "linear"), "the run is from 0 to 1; expected samples over all"),
         (([1.0, 0.0], [[1.0, 2.0]], "linear"), "expected two or more increasing finite times"),
         (([0.0, 1.0], [[1.0, np.inf]], "previous"), "are not all finite"),
-        (lambda t: [1.0], "inputs are a function of Python; samples over time can be followed"),
+        (lambda t: [1.0, 2.0], "values of the function inputs at t = 0: "),
     ],
     ids=lambda each: str(each).split(" at 0x")[0],
 )

@@ -11,8 +11,8 @@ from scipy.special import ellipj
 from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.solve import march, solvers
+from coadjoint.solve.choices import Choice, choose_order
 from coadjoint.solve.ensemble import Status
-from coadjoint.solve.solvers import Choice, choose_order
 from coadjoint.systems import heavy_top, kepler, rigid_body
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven

@@ -170,7 +170,7 @@ def load_library(
     if kept is not None:
         return kept
     compiler, sources = find_compiler(), _sources(folder, kind)
-    key, source = _key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
+    key, source = find_key(compiler, sources, build, kind), _hash(sources[kind.files[0]])
     with ExitStack() as stack:
         try:
             work = stack.enter_context(working_folder())
@@ -199,7 +199,7 @@ def find_library(
         OutputError: The folder has no such source.
     """
     sources = _sources(folder, kind)
-    key = _key(find_compiler(), sources, build, kind)
+    key = find_key(find_compiler(), sources, build, kind)
     cached = fetch(key)
     if cached is not None:
         with suppress(CompilerError):  # whole, and yet of no use here: compile it anew
@@ -224,7 +224,9 @@ def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
         ) from error
 
 
-def _key(compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source = KERNEL) -> str:
+def find_key(
+    compiler: Compiler, sources: dict[str, bytes], build: str, kind: Source = KERNEL
+) -> str:
     """Hash of all that an object depends on, the processor of ``-march=native`` included."""
     content = {
         "sources": {file: _hash(text) for file, text in sources.items()},

@@ -55,17 +55,17 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive import derive
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
-    from coadjoint.render.kernels import SOLVER_FILES
     from coadjoint.render.targets import TARGETS
     from coadjoint.sandbox import report_progress
     from coadjoint.solve.system import load_folder
+    from coadjoint.solver_kinds import FILES, list_kinds
     from coadjoint.spec import read_spec
 
     folder = Path(argument["folder"])
     report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
     programs = lower(equations)
-    missing = SOLVER_FILES if programs["rhs"].table else ()
+    missing = set(FILES).difference(*(kind.files for kind in list_kinds(programs)))
     files = [file for target in TARGETS.values() for file in target.files if file not in missing]
     texts = {file: _text(folder / file) for file in files}
     report_progress("compile and cross-check", 1, 2)
@@ -109,20 +109,20 @@ def _print(report: Mapping[str, Any]) -> None:
     ]
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
-    _print_solvers(report["solvers"])
+    if not report["solvers"]:
+        say("solvers: none, since the rates are loops over a table")
+    for kind, figures in report["solvers"].items():
+        _print_solvers(kind, figures)
     for rung, status in report["rungs"].items():
         say(f"rung {rung}: {status}")
     say(f"k: error in units of 2^-53 of the envelope; allowed {report['threshold']:g}")
 
 
-def _print_solvers(figures: Mapping[str, Any]) -> None:
-    """What was compared of the solvers."""
-    if not figures["lines"]:
-        say("solvers: none, since the rates are loops over a table")
-        return
+def _print_solvers(kind: str, figures: Mapping[str, Any]) -> None:
+    """What was compared of the solvers of a kind, by the name of their files."""
     say(
-        f"solvers: {figures['coefficients']} coefficients and {figures['lines']} lines compared, "
-        f"{figures['choices']} lengths of steps"
+        f"{kind}.c, {kind}.py: {figures['coefficients']} coefficients and {figures['lines']} lines "
+        f"compared, {figures['choices']} lengths of steps"
     )
     for method, targets in figures["steps"].items():
         worst = ", ".join(f"{target} k {each['k']:.2f}" for target, each in targets.items())

@@ -28,11 +28,12 @@ from coadjoint.crosscheck.bits import compare_chunks, equal_bits
 from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
-from coadjoint.crosscheck.solvers import NONE, SolverFigures, check_solvers, start_compiling
+from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Program
 from coadjoint.render.targets import BUILDS, TARGETS
+from coadjoint.solver_kinds import list_kinds
 
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
@@ -59,7 +60,7 @@ class Report:
         equal: Points at which a target has the same bits as NumPy, by function and target; none of
             what calls functions beyond sqrt, where libraries may differ in the last bits.
         together: Points at which these were compared within k instead, by function and target.
-        solvers: What was compared of its solvers.
+        solvers: What was compared of its solvers of each kind, by the stem of their files.
     """
 
     system: str
@@ -69,7 +70,7 @@ class Report:
     figures: Mapping[str, Mapping[str, Figures]]
     equal: Mapping[str, Mapping[str, int]]
     together: Mapping[str, Mapping[str, int]]
-    solvers: SolverFigures
+    solvers: Mapping[str, SolverFigures]
 
     @property
     def points(self) -> int:
@@ -126,8 +127,10 @@ def crosscheck(
     subject = Subject(programs, reference, system, chosen)
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
-        looped = programs["rhs"].table is not None  # then there are no solvers
-        compiling = {} if looped else start_compiling(pool, texts, folder, chosen)
+        compiling = {
+            kind: start_compiling(pool, texts, folder, chosen, kind)
+            for kind in list_kinds(programs)
+        }
         loading = pool.submit(system.load_kernels, chosen)
         lines = {
             name: sum(
@@ -138,7 +141,9 @@ def crosscheck(
         }
         exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
         _check_texts(loading.result(), chosen, texts, system.name)
-        solvers = NONE if looped else check_solvers(subject, texts, compiling)
+        solvers = {
+            kind.stem: check_solvers(subject, texts, made, kind) for kind, made in compiling.items()
+        }
     agreements = {points.function: against_oracle(subject, points) for points in exact}
     figures = {name: agreement.figures for name, agreement in agreements.items()}
     together = {name: agreement.together for name, agreement in agreements.items()}

@@ -1,6 +1,6 @@
 """Cross-check, objects of solvers: the texts brought to life, in NumPy and compiled.
 
-Comes in: the texts of ``solver.py``, ``solver.c`` and ``solver.h``. Goes out: functions that
+Comes in: the texts of the solvers of a kind. Goes out: functions that
 advance an `Ensemble`. Each is made from the very text that is checked: an object in the cache is
 named after the hash of its text.
 Read next: `coadjoint.crosscheck.solver_steps`.
@@ -11,7 +11,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -20,12 +20,14 @@ import numpy as np
 
 from coadjoint.build.cache import fetch, store
 from coadjoint.build.compiler import compile_kernel, find_compiler
-from coadjoint.build.library import _key
+from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
+from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
-from coadjoint.solve.solvers import Choice, call, make_source
+from coadjoint.solve.solvers import call
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
+from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
 ORDER: Final = 7
@@ -45,27 +47,27 @@ class Advance(Protocol):
         ...
 
 
-def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: str) -> Path:
+def compile_solver(
+    texts: Mapping[str, str], folder: Path, method: str, build: str, what: SolverKind = SOLVER
+) -> Path:
     """The object of a method.
 
     Args:
-        texts: ``solver.c`` and ``solver.h``.
+        texts: The files of the solver in C.
         folder: A private folder, where others may be compiled at the same time.
         method: One of `CHOICES`.
         build: ``exact`` or ``fast``.
+        what: What it integrates.
 
     Raises:
         CompilerError: The compiler failed.
     """
-    compiler, kind, work = (
-        find_compiler(),
-        make_source(CHOICES[method]),
-        folder / f"{method}-{build}",
-    )
+    compiler, kind = find_compiler(), replace(CHOICES[method], kind=what).source
+    work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
     sources = {file: texts[file].encode() for file in kind.files}
     # of its own name: an object that is not verified yet is never one that users load
-    key = _key(compiler, {**sources, "made for": b"the cross-check"}, build, kind)
+    key = find_key(compiler, {**sources, "made for": b"the cross-check"}, build, kind)
     cached = fetch(key)
     if cached is not None:
         return cached
@@ -77,9 +79,9 @@ def compile_solver(texts: Mapping[str, str], folder: Path, method: str, build: s
     return made
 
 
-def load_solver(path: Path, system: str) -> Advance:
+def load_solver(path: Path, system: str, kind: SolverKind = SOLVER) -> Advance:
     """The function of an object."""
-    function = ctypes.CDLL(str(path))[f"{system}_advance"]
+    function = ctypes.CDLL(str(path))[f"{system}_{kind.advance}"]
     function.restype, function.argtypes = ctypes.c_size_t, [ctypes.c_void_p]
 
     def advance(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
@@ -150,7 +152,7 @@ class NumpySolver:
 
 
 def load_numpy(text: str) -> tuple[Callable[..., Array], bool]:
-    """The function ``expand`` of the text of ``solver.py``, and its constant ``BRANCHES``."""
+    """The function ``expand`` of the text of a solver in NumPy, and its constant ``BRANCHES``."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
     expand: Callable[..., Array] = module["expand"]

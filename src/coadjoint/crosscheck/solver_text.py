@@ -1,7 +1,8 @@
 """Cross-check, text of solvers: what is printed, read back, is what was to be printed.
 
-Comes in: recurrences and the texts of ``solver.c``, ``solver.h`` and ``solver.py``. Goes out: how
-many lines and table entries were compared, or a `CrossCheckError` that names the line. The lines of
+Comes in: recurrences and the texts of ``solver.c``, ``solver.h`` and ``solver.py``, or of those of
+another kind. Goes out: how many lines and table entries were compared, or a `CrossCheckError` that
+names the line. The lines of
 the system and the tables are read by the readers of the targets; the rest of each text, in which
 the system has its name and sizes alone, is compared letter by letter with what the template gives
 for a system without recurrences.
@@ -11,7 +12,7 @@ Read next: `coadjoint.crosscheck.recurrences`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import zip_longest
 
@@ -19,15 +20,13 @@ from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.lower.program import Node, Program
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.kernels import Row
+from coadjoint.render.kernels import TEMPLATES, Row, name_solver
 from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
-from coadjoint.render.targets import TARGETS
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c import solver_reader as c_reader
 from coadjoint.render.targets.numpy import solver_reader as numpy_reader
+from coadjoint.solver_kinds import SOLVER, SolverKind
 
-#: The files of solvers.
-FILES = ("solver.c", "solver.h", "solver.py")
 Pair = tuple[str, Node]
 
 
@@ -41,6 +40,7 @@ class SolverTexts:
         strict: Whether each row of the domain has to be more than 0, or may be 0.
         files: The printed files by name.
         system: Name of the system.
+        kind: What they integrate.
     """
 
     programs: Mapping[str, Program]
@@ -48,6 +48,7 @@ class SolverTexts:
     strict: tuple[bool, ...]
     files: Mapping[str, str]
     system: str
+    kind: SolverKind = SOLVER
 
 
 def check_solver_texts(texts: SolverTexts) -> int:
@@ -59,14 +60,14 @@ def check_solver_texts(texts: SolverTexts) -> int:
     Raises:
         CrossCheckError: They do not; the message names the first difference.
     """
-    c, numpy = texts.files["solver.c"], texts.files["solver.py"]
+    c, _, numpy = texts.kind.files
     check_rest(texts)
-    compared = _check_tables(c_reader.read_tables(c), dop853())
+    compared = _check_tables(c_reader.read_tables(texts.files[c], c), dop853(), c)
     for function in ("find_fixed", "expand", *(f"find_{name}" for name in texts.programs)):
-        body = c_reader.read_function(c, function)
-        compared += _check_body(body, _expected(texts, function), "solver.c", function)
-    body = numpy_reader.read_expand(numpy)
-    return compared + _check_body(body, _expected(texts, "solver.py"), "solver.py", "expand")
+        body = c_reader.read_function(texts.files[c], function, c)
+        compared += _check_body(body, _expected(texts, function), c, function)
+    body = numpy_reader.read_expand(texts.files[numpy], numpy)
+    return compared + _check_body(body, _expected(texts, numpy), numpy, "expand")
 
 
 # -- the lines of the system ----------------------------------------------------------------------
@@ -145,7 +146,7 @@ def _check_body(found: SolverBody, expected: SolverBody, file: str, function: st
     return sum(1 + (len(one.lines) if isinstance(one, Loop) else 0) for one, _ in lines)
 
 
-def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau) -> int:
+def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau, file: str) -> int:
     """The tables are the tableau, number by number."""
     compared = 0
     for field in fields(table):
@@ -153,9 +154,9 @@ def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau) -> int
         for place, (one, other) in enumerate(zip_longest(found.get(field.name, ()), entries)):
             if one != other:
                 raise failure(
-                    f"solver.c: entry {place} of {field.name} is {one!r}; expected {other!r}",
+                    f"{file}: entry {place} of {field.name} is {one!r}; expected {other!r}",
                     field.name,
-                    file="solver.c",
+                    file=file,
                     found=repr(one),
                     expected=repr(other),
                 )
@@ -173,8 +174,9 @@ def check_rest(texts: SolverTexts) -> None:
         CrossCheckError: A line differs.
     """
     expected = _render_without_lines(texts)
-    for file, text in texts.files.items():
-        cut = {"solver.c": c_reader.rest, "solver.py": numpy_reader.rest}.get(file, str)
+    cuts: tuple[Callable[[str], str], ...] = (c_reader.rest, str, numpy_reader.rest)
+    for file, cut in zip(texts.kind.files, cuts, strict=True):
+        text = texts.files[file]
         pairs = zip_longest(cut(text).splitlines(), cut(expected[file]).splitlines())
         for number, (one, other) in enumerate(pairs, 1):
             if one != other:
@@ -205,17 +207,13 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         branches=solver.branches,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
-    templates = {
-        file: template
-        for target in TARGETS.values()
-        for file, template in target.files.items()
-        if file in FILES
-    }
+    templates = {file: TEMPLATES[file] for file in texts.kind.files}
     rendered = render_templates(
         tuple(templates.values()),
         {
             "name": texts.system,
-            **_head(texts.files["solver.py"]),
+            **name_solver(texts.system, texts.kind),
+            **_head(texts.kind.files[2], texts.files[texts.kind.files[2]]),
             "state": _rows(program.state),
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
@@ -232,7 +230,7 @@ def _rows(names: Iterable[str]) -> list[Row]:
     return [Row(index, name, "") for index, name in enumerate(names)]
 
 
-def _head(text: str) -> dict[str, str]:
+def _head(file: str, text: str) -> dict[str, str]:
     """The spec, licence and id that the head of a file tells."""
     found = re.match(
         r"# Generated by `coadjoint regenerate` from (.*); edits are lost\.\n"
@@ -240,5 +238,5 @@ def _head(text: str) -> dict[str, str]:
         text,
     )
     if not found:
-        raise failure("solver.py has another head than its template", "expand")
+        raise failure(f"{file} has another head than its template", "expand")
     return dict(zip(("spec", "licence", "id"), found.groups(), strict=True))

@@ -13,7 +13,7 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,10 +42,12 @@ from coadjoint.crosscheck.solver_steps import (
     check_together,
     choose_size,
 )
-from coadjoint.crosscheck.solver_text import FILES, SolverTexts, check_solver_texts
+from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
+from coadjoint.crosscheck.whole import make_whole
 from coadjoint.lower.program import Program
 from coadjoint.render.solvers import arrange, select_programs
+from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The objects that are compiled, each once: method, target and build. The builds differ in their
 #: flags alone, which one method shows.
@@ -75,23 +77,23 @@ class SolverFigures:
     together: Mapping[str, int]
 
 
-#: Of a system without solvers.
-NONE: Final = SolverFigures(coefficients=0, lines=0, steps={}, choices=0, equal={}, together={})
-
-
 def start_compiling(
-    pool: Executor, texts: Mapping[str, str], folder: Path, targets: Iterable[str]
+    pool: Executor,
+    texts: Mapping[str, str],
+    folder: Path,
+    targets: Iterable[str],
+    kind: SolverKind = SOLVER,
 ) -> Compiling:
     """Have the objects of some targets compiled in a private folder."""
     return {
-        (method, target): pool.submit(compile_solver, texts, folder, method, build)
+        (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
         for method, target, build in OBJECTS
         if target in targets
     }
 
 
 def check_solvers(
-    subject: Subject, texts: Mapping[str, str], compiling: Compiling
+    subject: Subject, texts: Mapping[str, str], compiling: Compiling, kind: SolverKind = SOLVER
 ) -> SolverFigures:
     """All rungs of the solvers of a system.
 
@@ -99,23 +101,27 @@ def check_solvers(
         subject: The system.
         texts: Its files by name.
         compiling: What `start_compiling` began.
+        kind: What the solvers integrate.
 
     Raises:
         CompilerError: An object cannot be compiled.
         CrossCheckError: A rung failed.
     """
-    programs = select_programs(subject.programs.values())
-    text = arrange(programs)
+    functions = _list_functions(subject, kind)
+    programs = select_programs(subject.programs.values(), kind)
+    subject, text = make_whole(subject, programs, kind), arrange(programs)
     printed = SolverTexts(
         programs=programs,
         recurrences=text,
         strict=_list_strict(subject),
-        files={file: texts[file] for file in FILES},
+        files={file: texts[file] for file in kind.files},
         system=subject.system.name,
+        kind=kind,
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
-    solvers = Solvers(subject, text, _load(subject, texts["solver.py"], compiling))
+    numpy = NumpySolver(*load_numpy(texts[kind.files[2]]), functions, _list_strict(subject))
+    solvers = Solvers(subject, text, _load(subject.system.name, numpy, compiling, kind))
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
     size = choose_size(solvers, batch)
@@ -141,27 +147,51 @@ def _list_strict(subject: Subject) -> tuple[bool, ...]:
     return tuple(bound.strict for bound in getattr(subject.system, "DOMAIN", ()))
 
 
-def _load(subject: Subject, text: str, compiling: Compiling) -> dict[str, dict[str, Advance]]:
+def _load(
+    system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
+) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    programs = select_programs(subject.programs.values())
-    functions = {name: _numpy_function(subject, each) for name, each in programs.items()}
-    numpy = NumpySolver(*load_numpy(text), functions, _list_strict(subject))
     advance = {method: {"numpy": numpy.advance(method)} for method in CHOICES}
     for (method, target), made in compiling.items():
-        advance[method][target] = load_solver(made.result(), subject.system.name)
+        advance[method][target] = load_solver(made.result(), system, kind)
     return advance
 
 
-def _numpy_function(subject: Subject, program: Program) -> Function:
-    """A function of the NumPy kernel."""
-    inputs, call = len(program.inputs), getattr(subject.system, program.name)
+def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
+    """The functions of the NumPy kernel by their names in the texts of solvers."""
+    bounds = [name for name in ("domain", "projection") if name in subject.programs]
+    found = {name: _numpy_function(subject, (name,)) for name in bounds}
+    found["rates"] = _numpy_function(subject, kind.rates)
+    if "projection" in found and kind != SOLVER:
+        found["projection"] = _leave_below(found["projection"], subject.programs["rhs"])
+    return found
+
+
+def _numpy_function(subject: Subject, names: Sequence[str]) -> Function:
+    """The rows of some functions of the NumPy kernel, one below the other."""
+    program = subject.programs[names[0]]
+    inputs = len(program.inputs)
 
     def function(state: Array, parameters: Array, driving: Array) -> Array:
-        given = [state, np.ascontiguousarray(parameters)]
-        given += [np.ascontiguousarray(driving[:inputs])] if inputs else []
+        shared = [np.ascontiguousarray(parameters)]
+        shared += [np.ascontiguousarray(driving[:inputs])] if inputs else []
         named = {"time": np.ascontiguousarray(driving[inputs])} if program.time else {}
-        out = np.empty((len(program.outputs), state.shape[1]))
-        call(*given, **named, target="numpy", out=out)
-        return out
+        rows = []
+        for name in names:
+            each = subject.programs[name]
+            own = np.ascontiguousarray(state[: len(each.state)])
+            rows.append(np.empty((len(each.outputs), state.shape[1])))
+            getattr(subject.system, name)(own, *shared, **named, target="numpy", out=rows[-1])
+        return np.concatenate(rows)
+
+    return function
+
+
+def _leave_below(project: Function, rates: Program) -> Function:
+    """A projection that leaves what is reconstructed as it is."""
+
+    def function(state: Array, parameters: Array, driving: Array) -> Array:
+        n = len(rates.state)
+        return np.concatenate([project(state[:n], parameters, driving), state[n:]])
 
     return function

@@ -33,14 +33,12 @@ from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer, number_text
 from coadjoint.render.solvers import arrange, arrange_function, select_programs
 from coadjoint.render.targets import TARGETS
+from coadjoint.solver_kinds import FILES, SOLVER, SolverKind, list_kinds
 
 #: Template of each rendered file.
 TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
     file: template for target in TARGETS.values() for file, template in target.files.items()
 }
-
-#: The files of solvers, which systems whose rates are loops do not have.
-SOLVER_FILES: Final = ("solver.c", "solver.h", "solver.py")
 
 #: Where the id is to stand; no name, unit or number has these marks.
 PLACE: Final = "<the 16 letters>"
@@ -178,27 +176,29 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
-    rhs = next(program for program in context.programs if program.name == "rhs")
-    templates = {f: t for f, t in TEMPLATES.items() if not (rhs.table and f in SOLVER_FILES)}
-    rendered = render_templates(
-        tuple(templates.values()),
+    state = _rows(context.state)
+    reconstructed = _rows(context.reconstructed, len(state))
+    shared: dict[str, Any] = {
+        "name": context.name,
+        "spec": context.spec,
+        "licence": _licence(context.license),
+        "id": identity,
+        "parameters": _rows(context.parameters),
+        "driving": {
+            array: _rows(quantities)
+            for array, quantities in _optional(context).items()
+            if array != "reconstructed"
+        },
+    }
+    texts = _render_files(
+        (file for file in TEMPLATES if file not in FILES),
         {
-            **({} if rhs.table else _solver(context)),
-            "name": context.name,
-            "spec": context.spec,
-            "licence": _licence(context.license),
-            "id": identity,
+            **shared,
+            "state": state,
+            "reconstructed": reconstructed,
             "chunk": CHUNK,
             "routes": _wrap([*context.routes, *_note_unproved(context.supported)]),
             "equations": _wrap(context.equations),
-            "state": _rows(context.state),
-            "reconstructed": _rows(context.reconstructed, len(_rows(context.state))),
-            "parameters": _rows(context.parameters),
-            "driving": {
-                array: _rows(quantities)
-                for array, quantities in _optional(context).items()
-                if array != "reconstructed"
-            },
             "functions": [
                 _function(program, _summary(context, program)) for program in context.programs
             ],
@@ -214,19 +214,38 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "domain": list(map(declaration, context.domain)),
         },
     )
+    for kind in list_kinds([program.name for program in context.programs]):
+        rows = state if kind == SOLVER else [*state, *reconstructed]
+        texts |= _render_files(kind.files, shared | {"state": rows} | _solver(context, kind))
+    return {file: texts[file] for file in TEMPLATES if file in texts}
+
+
+def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, str]:
+    """The text of each file, given the same values."""
+    templates = {file: TEMPLATES[file] for file in files}
+    rendered = render_templates(tuple(templates.values()), values)
     return {file: rendered[template] for file, template in templates.items()}
 
 
-def _solver(context: KernelContext) -> dict[str, Any]:
+def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
-    solved, table = select_programs(context.programs), dop853()
-    return {
+    solved, table = select_programs(context.programs, kind), dop853()
+    return name_solver(context.name, kind) | {
         "solver": arrange(solved),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {
             each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
         },
+    }
+
+
+def name_solver(system: str, kind: SolverKind) -> dict[str, str]:
+    """The names that a kind of solvers has in its files, and what it says of itself."""
+    return {
+        "stem": kind.stem,
+        "prefix": kind.prefix(system),
+        "about": "" if kind == SOLVER else " What is reconstructed stands below the state.",
     }
 
 

@@ -2,7 +2,7 @@
 
 Comes in: the Program of the rates. Goes out: a `SolverText`, plain records that templates loop
 over. Names of coefficients are written with their order, ``Pi1[_k]``; C and NumPy read them alike.
-Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.taylor`, its twin.
+Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.steps`, the methods in NumPy.
 """
 
 from __future__ import annotations
@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from itertools import islice
 
 from coadjoint.lower.jets import Cell, Jets, make_jets
+from coadjoint.lower.joined import join, widen
 from coadjoint.lower.motion import ONE
 from coadjoint.lower.polynomials import product_of
 from coadjoint.lower.program import (
@@ -28,6 +30,7 @@ from coadjoint.lower.program import (
     Symbol,
     walk,
 )
+from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
 SUMS = 16
@@ -148,11 +151,20 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def select_programs(programs: Iterable[Program]) -> dict[str, Program]:
-    """The rates and what bounds the motion, by their names in the texts of solvers."""
+def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> dict[str, Program]:
+    """The rates and what bounds the motion, by their names in the texts of solvers.
+
+    Args:
+        programs: The functions of the kernel.
+        kind: What is integrated. What is reconstructed has no bounds, and a projection leaves it.
+    """
     known = {program.name: program for program in programs}
-    names = {"rates": "rhs", "domain": "domain", "projection": "projection"}
-    return {name: known[source] for name, source in names.items() if source in known}
+    rates = reduce(join, (known[name] for name in kind.rates))
+    bounds = {name: known[name] for name in ("domain", "projection") if name in known}
+    return {"rates": rates} | {
+        name: widen(program, rates.state, moves=name == "projection")
+        for name, program in bounds.items()
+    }
 
 
 def arrange_function(name: str, program: Program) -> FunctionText:

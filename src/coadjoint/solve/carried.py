@@ -140,6 +140,7 @@ def rebuild(
         rtol=said.get("rtol"),
         atol=said.get("atol"),
         step=said.get("step"),
+        stepwise=said.get("stepwise", ""),
         codes=None if codes is None else codes.reshape(status.shape),
         **_read_course(said["course"], path),
     )

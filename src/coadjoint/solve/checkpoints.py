@@ -2,8 +2,8 @@
 
 Comes in: an `Ensemble` on its way and what it was asked for. Goes out: a file, replaced as a whole
 now and then; or the same ensemble as far as the file has it. All that is known of a member stands
-in the arrays of an ensemble, so that a run that goes on has the bits of one that was never broken
-off.
+in the arrays of an ensemble, and of its events and steps in those of a `Recording`, so that a run
+that goes on has the bits of one that was never broken off.
 Read next: `coadjoint.solve.march`, which writes it.
 """
 
@@ -22,12 +22,16 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
+from coadjoint.solve.driving import Function
 from coadjoint.solve.ensemble import Ensemble
 from coadjoint.solve.kernels import say_once
+from coadjoint.solve.lookout import take_below
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.driving import Signal
+    from coadjoint.solve.recording import Recording
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
 
@@ -38,7 +42,9 @@ SECONDS: Final = 10.0
 SHARE: Final = 0.05
 #: Names in a file, next to those of an ensemble.
 _HEAD: Final = "head"
-_FORM: Final = 1
+_FORM: Final = 2
+#: What stands before the names of what is known of events and steps.
+_RECORDING: Final = "recording"
 
 
 def check_checkpoint(path: Any) -> Path | None:
@@ -74,17 +80,26 @@ class Checkpoint:
         request: What was asked for.
         run: Its members, begun.
         build: What the bits depend on beyond the files of the system; "" if nothing.
+        recording: Who looks at the steps; None for nobody.
+        signal: Inputs over time, or constants of each member; None without inputs.
 
     Attributes:
         seconds: How long to compute before the next one is written.
     """
 
     def __init__(
-        self, path: Path, system: System, request: Request, run: Ensemble, build: str
+        self,
+        path: Path,
+        system: System,
+        request: Request,
+        run: Ensemble,
+        build: str,
+        recording: Recording | None,
+        signal: Signal | Array | None,
     ) -> None:
         self.path, self.seconds = path, SECONDS
-        self._asked = _describe(system, request, run)
-        self._build = build
+        self._asked = _describe(system, request, run, signal)
+        self._build, self._recording = build, recording
 
     def resume(self, run: Ensemble) -> None:
         """Take a run to where the file has it; nothing where there is no file.
@@ -101,6 +116,11 @@ class Checkpoint:
             if (found.shape, found.dtype) != (array.shape, array.dtype):
                 raise self._explain_unread(f"its {name} has the shape {found.shape}")
             array[...] = found
+        if self._recording is not None:
+            try:
+                self._recording.restore(take_below(arrays, _RECORDING))
+            except (KeyError, ValueError, TypeError, IndexError) as error:
+                raise self._explain_unread(f"its record is damaged: {error}") from error
         if head["build"] != self._build:
             say_once(
                 f"{self.path} was written by another build of the solver (compiler, processor or "
@@ -119,6 +139,8 @@ class Checkpoint:
         head = json.dumps({"form": _FORM, "build": self._build, "asked": self._asked})
         with write_whole(self.path) as place, place.open("wb") as file:
             arrays: dict[str, Any] = {_HEAD: np.array(head), **_arrays(run)}
+            known = {} if self._recording is None else self._recording.save()
+            arrays |= {f"{_RECORDING}.{name}": array for name, array in known.items()}
             np.savez(file, **arrays)
             file.flush()
             os.fsync(file.fileno())
@@ -183,8 +205,15 @@ def _arrays(run: Ensemble) -> dict[str, Array]:
     return {name: array for name in changing if (array := getattr(run, name)) is not None}
 
 
-def _describe(system: System, request: Request, run: Ensemble) -> dict[str, Any]:
-    """What was asked for, as JSON values; arrays by their hash."""
+def _describe(
+    system: System, request: Request, run: Ensemble, signal: Signal | Array | None
+) -> dict[str, Any]:
+    """What was asked for, as JSON values; arrays by their hash.
+
+    A function of Python is known by its values at the start and at the samples.
+    """
+    times = np.append(request.start, run.samples)
+    asked = [signal.over(times)] if isinstance(signal, Function) else []
     inputs, choice = run.inputs, request.choice
     return {
         "system": system.name,
@@ -199,8 +228,13 @@ def _describe(system: System, request: Request, run: Ensemble) -> dict[str, Any]
         "initial state": _hash(request.state),
         "parameters": _hash(run.parameters),
         "start": request.start,
-        "inputs": _hash(inputs.knots, inputs.values, inputs.slopes),
+        "inputs": _hash(inputs.knots, inputs.values, inputs.slopes, *asked),
         "samples": _hash(run.samples, np.array(run.out is None)),
+        "reconstruct": _hash(run.state[system.STATE.size :])
+        if len(run.state) > system.STATE.size
+        else "no",
+        "events": [str(each.event) for each in request.events],
+        "dense": request.dense,
     }
 
 

@@ -29,7 +29,7 @@ class Start:
         state: Where, ``(n, *batch)``.
         inputs: Inputs then, as a Solution of one sample has them.
         varies: Whether inputs change later.
-        reconstructed: What is reconstructed, ``(k,)`` of one trajectory; None if nothing is.
+        reconstructed: What is reconstructed, ``(k, *batch)``; None if nothing is.
     """
 
     time: float
@@ -54,7 +54,9 @@ class Course:
         rejected: Steps that were tried in vain; likewise.
         reached: The time that each trajectory reached; likewise.
         last: The state there, ``(n, *batch)``; likewise.
+        below: What is reconstructed there, ``(k, *batch)``; None if nothing is.
         driven: Inputs there, ``(m, *batch)``; None if they are constant.
+        stepwise: Why the steps were made in Python; empty where a solver made them.
         start: Where the trajectories began, if no sample has it.
     """
 
@@ -68,8 +70,14 @@ class Course:
     rejected: NDArray[np.uint64] | None = None
     reached: Array | None = None
     last: Array | None = None
+    below: Array | None = None
     driven: Array | None = None
+    stepwise: str = ""
     start: Start | None = None
+
+    def tell_stepwise(self) -> str:
+        """That the steps were made in Python, and why; "" where a solver made them."""
+        return f"the steps were made in Python: {self.stepwise}" if self.stepwise else ""
 
     @property
     def status(self) -> str:
@@ -85,7 +93,8 @@ class Course:
             inputs = start.inputs
             if inputs is not None and inputs.ndim > 2:
                 inputs = inputs[at][:, 0]
-            start = replace(start, state=start.state[at], inputs=inputs)
+            below = None if start.reconstructed is None else start.reconstructed[at]
+            start = replace(start, state=start.state[at], inputs=inputs, reconstructed=below)
         of_each: dict[str, Any] = {
             name: np.asarray(values[place])
             for name in ("codes", "steps", "rejected", "reached")
@@ -93,7 +102,7 @@ class Course:
         }
         of_each |= {
             name: values[at]
-            for name in ("last", "driven")
+            for name in ("last", "below", "driven")
             if (values := getattr(self, name)) is not None
         }
         return replace(self, **of_each, start=start)
@@ -118,6 +127,7 @@ _ARRAYS = {
     "rejected": np.uint64,
     "reached": np.float64,
     "last": np.float64,
+    "below": np.float64,
     "driven": np.float64,
 }
 

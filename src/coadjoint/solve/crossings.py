@@ -14,12 +14,13 @@ Read next: `coadjoint.solve.roots`, which finds the knots.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.solve.held import Held, Point, restore_held, save_held
 from coadjoint.solve.roots import Knots, find_knots, find_roots
 
 if TYPE_CHECKING:
@@ -93,35 +94,7 @@ def join(lots: list[Crossings], size: int) -> Crossings:
     return whole.take(np.lexsort((whole.time, whole.member)))
 
 
-class _Point(NamedTuple):
-    """A place that may turn out to be a crossing or a touch."""
-
-    time: float
-    state: Array
-
-
-@dataclass
-class _Held:
-    """What is known of a member whose function is within the band.
-
-    Attributes:
-        root: Where it changed its sign first; None if it did not.
-        touch: Where it came closest, or farthest beyond.
-        least: The value there, positive on the side from which it came.
-        turned: Whether it has gone away from there.
-        ends: Whether it would reach zero next, within the tolerance of the time.
-        clear: Whether the last value is more than rounding.
-    """
-
-    root: _Point | None
-    touch: _Point
-    least: float
-    turned: bool
-    ends: bool
-    clear: bool
-
-
-def _make_crossing(member: int, point: _Point, direction: int, decided: int) -> Crossings:
+def _make_crossing(member: int, point: Point, direction: int, decided: int) -> Crossings:
     """A crossing at a point."""
     return Crossings(
         member=np.array([member]),
@@ -148,7 +121,7 @@ class Watch:
         self._band_of, self._slack = band_of, max(slack, 16 * EPS)
         self._sign = np.zeros(members, np.int8)
         self._value = np.full(members, np.nan)
-        self._held: dict[int, _Held] = {}
+        self._held: dict[int, Held] = {}
         self.undefined = np.full(members, np.inf)
 
     def scan(self, function: Function, steps: Steps, bounds: Bounds | None = None) -> Crossings:
@@ -196,6 +169,19 @@ class Watch:
         if held.root is not None:
             point, direction = held.root, -sign
         return _make_crossing(member, point, direction, -1)
+
+    def save(self) -> dict[str, Any]:
+        """What is known of the members, as arrays."""
+        held = {f"held_{name}": array for name, array in save_held(self._held).items()}
+        return {"sign": self._sign, "value": self._value, "undefined": self.undefined, **held}
+
+    def restore(self, arrays: Mapping[str, Any]) -> None:
+        """Know what was saved."""
+        self._sign[:], self._value[:] = arrays["sign"], arrays["value"]
+        self.undefined[:] = arrays["undefined"]
+        self._held = restore_held(
+            {name[5:]: array for name, array in arrays.items() if name.startswith("held_")}
+        )
 
 
 class _Scan:
@@ -382,12 +368,12 @@ class _Scan:
         value = np.abs(values[:, 1])
         ends = value <= self.watch._slack * time * slope
         clear = value > 64 * EPS * sizes[:, 1]
-        roots: dict[int, _Point | None] = {}
+        roots: dict[int, Point | None] = {}
         some = np.flatnonzero(changes[begun] >= 0)
         root_row, part, real = self._polish(changes[begun[some]])
         times, states = self._times(root_row, part), self._states(root_row, part)
         for n, place in enumerate(some.tolist()):
-            roots[place] = _Point(float(times[n]), states[:, n].copy()) if real[n] else None
+            roots[place] = Point(float(times[n]), states[:, n].copy()) if real[n] else None
         knots = nearest[begun]
         times, states = (
             self._times(self.row[knots], self.part[knots]),
@@ -395,7 +381,7 @@ class _Scan:
         )
         for n, knot in enumerate(knots.tolist()):
             least = float(self.side[knot] * self.value[knot])
-            touch = _Point(float(times[n]), states[:, n].copy())
+            touch = Point(float(times[n]), states[:, n].copy())
             before = self.watch._held.get(int(self.member[knot]))
             before = before if self.is_known[begun[n]] else None
             root, turned = roots.get(n), knot != last[n]
@@ -403,7 +389,7 @@ class _Scan:
                 root = before.root or root
                 if before.least <= least:
                     touch, least, turned = before.touch, before.least, True
-            self.watch._held[int(self.member[knot])] = _Held(
+            self.watch._held[int(self.member[knot])] = Held(
                 root=root,
                 touch=touch,
                 least=least,

@@ -43,7 +43,9 @@ def find_attitude_drift(solution: Solution) -> dict[str, float]:
     if solution.reconstructed is None:
         return {}
     turning = (q for q in solution.system.RECONSTRUCTED.values() if q.shape == (4,))
-    return {q.name: float(np.abs((solution[q.name] ** 2).sum(axis=0) - 1).max()) for q in turning}
+    return {
+        q.name: float(np.nanmax(np.abs((solution[q.name] ** 2).sum(axis=0) - 1))) for q in turning
+    }
 
 
 def describe_drift(solution: Solution) -> list[str]:

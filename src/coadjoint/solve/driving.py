@@ -319,10 +319,13 @@ def _check_one(system: System, values: Array, where: str) -> Array:
     """
     size = system.INPUTS.size
     if values.shape != (size,):
+        wanted = f"the shape {values.shape}, expected ({size},): "
+        wanted += ", ".join(system.INPUTS.components)
         raise KernelArgumentError(
-            f"simulate follows one trajectory; values {where or 'of inputs'} have the shape "
-            f"{values.shape}, expected ({size},): {', '.join(system.INPUTS.components)}. For "
-            f"values over time, pass {_FORM}.",
+            f"values {where} have {wanted}, which all members share."
+            if where
+            else f"simulate follows one trajectory; values of inputs have {wanted}. For values "
+            f"over time, pass {_FORM}.",
             found=list(values.shape),
             expected=[size],
         )

@@ -15,17 +15,20 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
+from coadjoint.solve.comparison import count_rows
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import make_driving
 from coadjoint.solve.domain import Domain, Exit
-from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
+from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
-from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
+from coadjoint.solve.twins import StepwiseStepper
+from coadjoint.solver_kinds import list_kinds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,26 +40,38 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: Inputs that change on the way.
+_VARYING = Previous | Linear | Function
 
-def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) -> str:
-    """Why generated solvers do not apply to a run, as a clause; "" where they do.
+
+def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
+    """Why generated methods do not apply to a run, as a clause; "" where they do.
+
+    Args:
+        system: The System.
+        target: As `System.simulate` takes it.
+        reconstruct: Likewise.
+    """
+    kinds = list_kinds(system.functions)
+    wanted = kinds if is_asked(reconstruct) else kinds[:1]
+    if not all((system.folder / file).is_file() for kind in wanted for file in kind.files):
+        return "its folder was generated without them: run `coadjoint regenerate`"
+    if target == "python":
+        return "they are written for the targets c, c-fast and numpy"
+    return ""
+
+
+def find_stepwise(system: System, inputs: Any) -> str:
+    """Why a generated method makes its steps in Python, as a clause; "" where it does not.
 
     Args:
         system: The System.
         inputs: As `System.simulate` takes them.
-        target: Likewise.
-        reconstruct: Likewise.
     """
-    if "jacobian_vector" in system.functions:
-        return "its rates are loops over a table, for which no solvers are generated"
-    if not all((system.folder / file).is_file() for file in FILES):
-        return "its folder was generated without them: run `coadjoint regenerate`"
-    if reconstruct is not False and reconstruct is not None:
-        return "reconstruct integrates more than the state"
-    if callable(inputs):
-        return "inputs are a function of Python; samples over time can be followed"
-    if target == "python":
-        return "they are written for the targets c, c-fast and numpy"
+    if callable(inputs) and system.INPUTS:
+        return "inputs are a function of Python, which tells their values alone"
+    if not list_kinds(system.functions):
+        return "the rates are loops over a table, for which no recurrences are generated"
     return ""
 
 
@@ -67,25 +82,37 @@ def simulate(system: System, request: Request) -> Solution:
         system: The System.
         request: What is to be done, its times, method and tolerances checked.
     """
-    batch = request.state.shape[1:]
+    batch, n = request.state.shape[1:], system.STATE.size
     run, driven = _gather(system, request)
-    now = _drive(system, run, request.start)
+    now = _drive(system, run, request.start, driven)
     check_starts(system, request, run, now)
+    below = find_start(system, run.state[:n].reshape(n, *batch), request.reconstruct)
+    run.state[n:] = below.reshape(len(below), run.state.shape[1])
     recording = _make_recording(system, request, run, driven)
-    stepper = system._solvers.get(request.choice, request.target)
+    stepper = _find_stepper(system, request, driven)
     run.begin(request.start)
-    _end_undefined(system, run, now)
-    checkpoint = _resume(system, request, run, stepper)
+    _end_undefined(system, request, run, now)
+    checkpoint = _make_checkpoint(system, request, run, stepper, recording, driven)
     with ExitStack() as stack:
         told = request.progress if callable(request.progress) else None
         if request.progress is True:
             told = stack.enter_context(progress_bar())
-        threads = request.threads or count_threads()
+        # a function of Python may not be ready to be called by several threads
+        threads = 1 if request.stepwise else request.threads or count_threads()
         watch = None if recording is None else recording.look
         march(stepper, run, request.start, threads, told, checkpoint, watch)
     if recording is not None:
         recording.finish()
-    course = Course(
+    course = _make_course(request, run, driven, below)
+    return _make_solution(system, request, run, course, driven, recording)
+
+
+def _make_course(
+    request: Request, run: Ensemble, signal: Signal | Array | None, below: Array
+) -> Course:
+    """How a run went; ``below`` is where what is reconstructed began, ``(k, *batch)``."""
+    batch, n = request.state.shape[1:], len(request.state)
+    return Course(
         method=request.choice.name,
         order=request.choice.order,
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
@@ -95,32 +122,31 @@ def simulate(system: System, request: Request) -> Solution:
         steps=run.steps.reshape(batch),
         rejected=run.rejected.reshape(batch),
         reached=run.time.reshape(batch),
-        last=run.state.reshape(-1, *batch),
-        driven=_find_driven(driven, run, batch),
-        start=_find_start(request, driven) if request.samples == 1 else None,
+        last=run.state[:n].reshape(-1, *batch),
+        below=run.state[n:].reshape(below.shape) if len(below) else None,
+        driven=_find_driven(signal, run, batch),
+        stepwise=request.stepwise,
+        start=_find_start(request, signal, below) if request.samples == 1 else None,
     )
-    return _make_solution(system, request, run, course, driven, recording)
 
 
 def _make_recording(
     system: System, request: Request, run: Ensemble, signal: Signal | Array | None
 ) -> Recording | None:
-    """Who looks at the steps; None where nobody has to.
-
-    Raises:
-        KernelArgumentError: There is to be a checkpoint, which holds no steps and no events.
-    """
+    """Who looks at the steps; None where nobody has to."""
     if not (request.events or request.dense):
         return None
-    if request.checkpoint is not None:
-        asked = "events" if request.events else "dense"
-        raise KernelArgumentError(
-            f"checkpoint is given, and {asked} as well; a checkpoint keeps neither events nor "
-            "steps. Expected one or the other.",
-            found=str(request.checkpoint),
-        )
-    surroundings = Surroundings(system, run.parameters, make_driving(signal))
+    followed = len(run.state) - system.STATE.size
+    surroundings = Surroundings(system, run.parameters, make_driving(signal), followed)
     return Recording(run, request.events, surroundings, keeps=request.dense)
+
+
+def _find_stepper(system: System, request: Request, signal: Signal | Array | None) -> Stepper:
+    """Who makes the steps."""
+    if not request.stepwise:
+        return system._solvers.get(request.choice, request.target)
+    function = signal if isinstance(signal, Function) else None
+    return StepwiseStepper(system, request.choice, request.target, function)
 
 
 # -- before the first step ----------------------------------------------------------------------
@@ -129,20 +155,22 @@ def _make_recording(
 def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array | None]:
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
-    members = math.prod(batch)
+    rows, members = count_rows(system, request.choice), math.prod(batch)
     parameters = pack_parameters(system, request.parameters)
     check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)
     signal = _find_signal(system, request, batch)
     times = request.times
+    state = np.full((rows, members), np.nan)  # what is reconstructed begins later
+    state[:n] = request.state.reshape(n, members)
     run = Ensemble(
-        state=request.state.reshape(n, members).copy(),
+        state=state,
         parameters=parameters,
         inputs=_lay_out(signal, system.INPUTS.size, members, request.start),
         has_time=bool(system.TIME),
         samples=times,
-        out=None if request.samples == 1 else np.full((n, members, times.size), np.nan),
+        out=None if request.samples == 1 else np.full((rows, members, times.size), np.nan),
         rtol=request.rtol,
         atol=request.atol,
         size=request.step or 0.0,
@@ -178,7 +206,7 @@ def _find_signal(system: System, request: Request, batch: tuple[int, ...]) -> Si
     """Inputs over time, or constants of each member; None where a system has none."""
     given = request.inputs
     sampled = isinstance(given, tuple) and any(np.ndim(part) for part in given)
-    if batch and system.INPUTS and not sampled:
+    if batch and system.INPUTS and not sampled and not callable(given):
         packed = pack_inputs(system, given)
         check_batch(packed, batch, system.INPUTS, "inputs")
         if packed.ndim > 1:
@@ -200,14 +228,20 @@ def _lay_out(signal: Signal | Array | None, rows: int, members: int, start: floa
     if isinstance(signal, Linear):
         slopes = np.diff(signal.values) / np.diff(signal.times)
         return Inputs(signal.times[:-1].copy(), signal.values[:, :-1].copy(), slopes)
-    values = np.zeros((rows, 1)) if signal is None else signal.values[:, np.newaxis].copy()
+    values = np.zeros((rows, 1))  # of a function, which is asked on the way
+    if signal is not None and not isinstance(signal, Function):
+        values = signal.values[:, np.newaxis].copy()
     return Inputs(knots, values, np.zeros(values.shape))
 
 
-def _drive(system: System, run: Ensemble, start: float) -> dict[str, Any]:
+def _drive(
+    system: System, run: Ensemble, start: float, signal: Signal | Array | None
+) -> dict[str, Any]:
     """Inputs and time at the start, as functions of the System take them."""
     inputs, driving = run.inputs, dict[str, Any]()
-    if system.INPUTS:
+    if isinstance(signal, Function):
+        driving["inputs"] = signal.at(start)
+    elif system.INPUTS:
         piece = int(np.searchsorted(inputs.knots[1:], start, side="right"))
         here = slice(None) if inputs.own else piece
         after = start - inputs.knots[piece]
@@ -217,19 +251,35 @@ def _drive(system: System, run: Ensemble, start: float) -> dict[str, Any]:
     return driving
 
 
-def _end_undefined(system: System, run: Ensemble, now: dict[str, Any]) -> None:
+def _end_undefined(system: System, request: Request, run: Ensemble, now: dict[str, Any]) -> None:
     """Members whose rates are not finite at the start end there."""
-    rates = system.rhs(run.state, run.parameters, target="numpy", **now)
-    run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
+    for name in request.choice.kind.rates:
+        state = run.state[: system.rows(name).size]
+        rates = system.evaluate(name, state, run.parameters, target="numpy", **now)
+        run.status[~np.isfinite(rates).all(axis=0)] = Status.NONFINITE
 
 
-def _resume(system: System, request: Request, run: Ensemble, stepper: Stepper) -> Checkpoint | None:
+def _make_checkpoint(
+    system: System,
+    request: Request,
+    run: Ensemble,
+    stepper: Stepper,
+    recording: Recording | None,
+    signal: Signal | Array | None,
+) -> Checkpoint | None:
     """The checkpoint of a run, which stands where it was broken off; None if none was asked for."""
     if request.checkpoint is None:
         return None
     has_same_bits = request.target != "c-fast" and not system.elementary
-    build = "" if has_same_bits else stepper.key
-    checkpoint = Checkpoint(request.checkpoint, system, request, run, build)
+    checkpoint = Checkpoint(
+        path=request.checkpoint,
+        system=system,
+        request=request,
+        run=run,
+        build="" if has_same_bits else stepper.key,
+        recording=recording,
+        signal=signal,
+    )
     checkpoint.resume(run)
     return checkpoint
 
@@ -246,7 +296,7 @@ def _make_solution(
     recording: Recording | None,
 ) -> Solution:
     """The Solution of a run."""
-    batch, times = request.state.shape[1:], request.times
+    batch, times, n = request.state.shape[1:], request.times, system.STATE.size
     states = run.state[..., np.newaxis] if run.out is None else run.out
     states = states.reshape(-1, *batch, times.size)
     if not batch:
@@ -266,11 +316,11 @@ def _make_solution(
     return Solution(
         system,
         times,
-        states,
+        states[:n],
         parameters.copy(),
         status,
         message,
-        None,
+        states[n:] if len(states) > n else None,
         inputs,
         course=course,
         events=None if recording is None else recording.list_events(batch),
@@ -282,19 +332,25 @@ def _find_driven(
     signal: Signal | Array | None, run: Ensemble, batch: tuple[int, ...]
 ) -> Array | None:
     """The inputs where each member came, if they change."""
-    if not isinstance(signal, Previous | Linear):
+    if not isinstance(signal, _VARYING):
         return None
     return signal.over(run.time).reshape(-1, *batch)
 
 
-def _find_start(request: Request, signal: Signal | Array | None) -> Start:
+def _find_start(request: Request, signal: Signal | Array | None, below: Array) -> Start:
     """Where a run began."""
-    varies = isinstance(signal, Previous | Linear)
+    varies = isinstance(signal, _VARYING)
     if isinstance(signal, np.ndarray):
         inputs: Array | None = signal[..., np.newaxis]
     else:
         inputs = None if signal is None else signal.over(np.array([request.start]))
-    return Start(time=request.start, state=request.state.copy(), inputs=inputs, varies=varies)
+    return Start(
+        time=request.start,
+        state=request.state.copy(),
+        inputs=inputs,
+        varies=varies,
+        reconstructed=below if len(below) else None,
+    )
 
 
 def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
@@ -311,6 +367,7 @@ def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
 def _explain(system: System, request: Request, run: Ensemble) -> str:
     """Where one trajectory stopped and why; "" at its end."""
     status, time, state = Status(int(run.status[0])), float(run.time[0]), run.state[:, 0].copy()
+    state = state[: system.STATE.size]
     if status == Status.OK:
         return ""
     parameters = run.parameters if run.parameters.ndim == 1 else run.parameters[:, 0].copy()

@@ -7,8 +7,9 @@ Read next: `coadjoint.solve.crossings`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -45,6 +46,16 @@ class Ending(NamedTuple):
 def explain_ending(ending: Ending) -> str:
     """What a Solution says of it."""
     return f"the event {ending.name!r} ended it at t = {ending.time:.12g}"
+
+
+def take_below(arrays: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The arrays whose names begin with ``name.``, by what follows.
+
+    >>> take_below({"a.b": 1, "a.c.d": 2, "ab.c": 3}, "a")
+    {'b': 1, 'c.d': 2}
+    """
+    begin = f"{name}."
+    return {each[len(begin) :]: array for each, array in arrays.items() if each.startswith(begin)}
 
 
 class Lookout:
@@ -139,10 +150,36 @@ class Lookout:
                     self._add(place, crossing)
         return kept
 
+    def save(self) -> dict[str, Any]:
+        """What is known of all events, as arrays."""
+        arrays: dict[str, Any] = {"ends": self.ends}
+        for place, watch in enumerate(self._watches):
+            lots = self._join(place)
+            self._lots[place] = [lots]
+            known = {**watch.save(), "count": self._counts[place]}
+            known |= {f"crossing_{name}": array for name, array in vars(lots).items()}
+            arrays |= {f"{place}.{name}": array for name, array in known.items()}
+        return arrays
+
+    def restore(self, arrays: Mapping[str, Any]) -> None:
+        """Know what was saved."""
+        self.ends[:] = arrays["ends"]
+        for place, watch in enumerate(self._watches):
+            own = take_below(arrays, str(place))
+            watch.restore(own)
+            self._counts[place][:] = own["count"]
+            names = (each.name for each in fields(Crossings))
+            self._lots[place] = [Crossings(**{name: own[f"crossing_{name}"] for name in names})]
+
+    def _join(self, place: int) -> Crossings:
+        """All crossings of an event."""
+        return join(
+            self._lots[place], self.surroundings.system.STATE.size + self.surroundings.followed
+        )
+
     def collect(self, place: int) -> tuple[Crossings, Array]:
         """The crossings of an event up to the ends of trajectories, and where it is undefined."""
-        size = self.surroundings.system.STATE.size + self.surroundings.followed
-        whole = join(self._lots[place], size)
+        whole = self._join(place)
         kept = whole.take(whole.time <= self.ends[whole.member])
         return kept, self._watches[place].undefined
 

@@ -29,29 +29,36 @@ def take_member(solution: Solution, place: tuple[int, ...]) -> Solution:
     _check_place(solution.batch, place)
     course = solution.course.take(place)
     at: Any = (slice(None), *place)
-    time, states = solution.time, solution.state[at]
+    time, states = solution.time, _stack(solution.state, solution.reconstructed)[at]
+    n = len(solution.state)
     end = float(time[-1] if course.reached is None else course.reached)
     reached = ~np.isnan(states[0]) & (time <= end)
     times, states = time[reached], states[:, reached]
     inputs = _take_inputs(solution.inputs, at, reached)
     if course.last is not None and (not times.size or times[-1] < end):
-        times, states = np.append(times, end), np.column_stack([states, course.last])
+        last = _stack(course.last, course.below)
+        times, states = np.append(times, end), np.column_stack([states, last])
         if inputs is not None and course.driven is not None:
             inputs = np.column_stack([inputs, course.driven])
     shared = solution.parameters.ndim == 1
     return type(solution)(
         solution.system,
         times,
-        states,
+        states[:n],
         solution.parameters if shared else solution.parameters[at],
         course.status,
         "" if course.status == "OK" else f"it stopped at t = {end:.6g}",
-        None,
+        states[n:] if len(states) > n else None,
         inputs,
         course=course,
         events=solution.events.of(*place),
         dense=None if solution.dense is None else solution.dense.take(place, solution.batch),
     )
+
+
+def _stack(states: Array, below: Array | None) -> Array:
+    """States with what is reconstructed below them."""
+    return states if below is None else np.concatenate([states, below])
 
 
 def _check_place(batch: tuple[int, ...], place: tuple[int, ...]) -> None:

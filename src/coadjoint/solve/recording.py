@@ -8,15 +8,21 @@ Read next: `coadjoint.solve.lookout`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.solve.dense_output import Dense, move_onto_constraints
 from coadjoint.solve.ensemble import Status
-from coadjoint.solve.lookout import Ending, Lookout, explain_ending, list_occurrences
+from coadjoint.solve.lookout import (
+    Ending,
+    Lookout,
+    explain_ending,
+    list_occurrences,
+    take_below,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -159,7 +165,7 @@ class Recording:
             after = ending.time - float(record.begun[row])
             self._run.stop(record, row, after, ending.state)
             self._stop(ending)
-        if self._keeps:
+        if self._keeps and len(steps.member):
             self._kept.append(replace(steps, path=record.path.copy()))
 
     def finish(self) -> None:
@@ -178,6 +184,47 @@ class Recording:
         run.status[member] = Status.EVENT
         self._endings.append(ending)
 
+    # -- checkpoints ------------------------------------------------------------------------------
+
+    def save(self) -> dict[str, Any]:
+        """All that is known of the run beyond its ensemble, as arrays."""
+        arrays = {f"events.{name}": array for name, array in self._lookout.save().items()}
+        names = [each.event.name for each in self._lookout.sought]
+        arrays |= {
+            "endings.member": np.array([each.member for each in self._endings], np.intp),
+            "endings.time": np.array([each.time for each in self._endings]),
+            "endings.state": np.array([each.state for each in self._endings]),
+            "endings.event": np.array([names.index(each.name) for each in self._endings], np.intp),
+        }
+        if self._keeps:
+            lots, self._kept = self._kept, []
+            if lots:
+                lot = _concatenate(lots, self._run)
+                self._kept = [lot]
+                arrays |= {f"steps.{name}": getattr(lot, name) for name in _STORED}
+        return arrays
+
+    def restore(self, arrays: Mapping[str, Any]) -> None:
+        """Know what was saved."""
+        self._lookout.restore(take_below(arrays, "events"))
+        ended = take_below(arrays, "endings")
+        self._endings = [
+            Ending(
+                member=int(member),
+                time=float(time),
+                state=state.copy(),
+                name=self._lookout.sought[event].event.name,
+                decided=-1,
+            )
+            for member, time, state, event in zip(
+                *(ended[name] for name in ("member", "time", "state", "event")), strict=True
+            )
+        ]
+        steps = take_below(arrays, "steps")
+        if steps:
+            stored = {name: steps[name] for name in _STORED}
+            self._kept = [Polynomials(**stored, place=np.arange(len(steps["member"])))]
+
     # -- after the run ----------------------------------------------------------------------------
 
     def list_events(self, batch: tuple[int, ...]) -> Events:
@@ -193,20 +240,31 @@ class Recording:
         if not self._keeps:
             return None
         lots, self._kept = self._kept, []
-        none = np.empty(0)
-        member = np.concatenate([none.astype(np.intp), *(lot.member for lot in lots)])
-        begun = np.concatenate([none, *(lot.start for lot in lots)])
-        size = np.concatenate([none, *(lot.size for lot in lots)])
-        order = np.lexsort((begun, member))
-        order = order[begun[order] < self._run.time[member[order]]]
-        whole = Polynomials(
-            member=member[order],
-            start=begun[order],
-            size=size[order],
-            path=_gather(lots, order, len(self._run.state)),
-            place=np.arange(len(order)),
-        )
-        return Dense(whole, signal, start)
+        return Dense(_concatenate(lots, self._run), signal, start)
+
+
+#: What a checkpoint has of steps, which stand in order there.
+_STORED = ("member", "start", "size", "path")
+
+
+def _concatenate(lots: list[Polynomials], run: Ensemble) -> Polynomials:
+    """The steps of several lots by member and time, up to where each member came.
+
+    The list is empty afterwards, so that no memory is held twice.
+    """
+    none = np.empty(0)
+    member = np.concatenate([none.astype(np.intp), *(lot.member for lot in lots)])
+    begun = np.concatenate([none, *(lot.start for lot in lots)])
+    size = np.concatenate([none, *(lot.size for lot in lots)])
+    order = np.lexsort((begun, member))
+    order = order[begun[order] < run.time[member[order]]]
+    return Polynomials(
+        member=member[order],
+        start=begun[order],
+        size=size[order],
+        path=_gather(lots, order, len(run.state)),
+        place=np.arange(len(order)),
+    )
 
 
 def _gather(lots: list[Polynomials], order: Places, n: int) -> Array:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from numbers import Integral, Real
@@ -19,7 +19,9 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
-from coadjoint.solve.solvers import GENERATED, Choice, choose_order
+from coadjoint.solve.choices import GENERATED, Choice, choose_order
+from coadjoint.solve.reconstruct import is_asked
+from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,6 +63,7 @@ class Request:
         checkpoint: Where a run on its way is kept; None for nowhere.
         events: What to look for.
         dense: Whether the steps are kept.
+        stepwise: Why a generated method makes its steps in Python; empty where it does not.
     """
 
     state: Array
@@ -81,11 +84,13 @@ class Request:
     checkpoint: Path | None
     events: tuple[Sought, ...]
     dense: bool
+    stepwise: str
 
     @property
     def choice(self) -> Choice:
         """The generated method."""
-        return Choice(self.method, _ORDER.get(self.method) or choose_order(self.rtol))
+        order = _ORDER.get(self.method) or choose_order(self.rtol)
+        return Choice(self.method, order, RECONSTRUCTION if is_asked(self.reconstruct) else SOLVER)
 
 
 def check_state(system: System, state: Any) -> Array:
@@ -246,8 +251,26 @@ def check_progress(progress: Any) -> None:
         )
 
 
+def check_dense(dense: Any) -> bool:
+    """Whether steps are to be kept.
+
+    Raises:
+        KernelArgumentError: It is neither True nor False.
+    """
+    if not isinstance(dense, bool | np.bool_):
+        raise KernelArgumentError(
+            f"dense is {str(dense)[:80]!r}; expected True or False.", found=str(dense)[:80]
+        )
+    return bool(dense)
+
+
 def choose_method(
-    system: System, method: Any, step: float | None, obstacle: str, *, tolerances: bool
+    system: System,
+    method: Any,
+    step: float | None,
+    obstacles: Mapping[str, str],
+    *,
+    tolerances: bool,
 ) -> str:
     """The method that does it: ``scipy:NAME``, or one of `GENERATED`.
 
@@ -255,7 +278,7 @@ def choose_method(
         system: The System.
         method: As given.
         step: As given.
-        obstacle: Why generated solvers do not apply, or "".
+        obstacles: Why generated methods do not apply, by name, as far as they do not.
         tolerances: Whether some were given.
 
     Raises:
@@ -263,19 +286,20 @@ def choose_method(
     """
     name = _normal(method)
     if name == "auto":
-        adaptive = SCIPY + "DOP853" if obstacle else "taylor"
-        name = adaptive if step is None else "dop853"
-    if name in GENERATED and obstacle:
+        fit = [each for each in ("taylor", "dop853") if each not in obstacles]
+        name = (fit or [SCIPY + "DOP853"])[0] if step is None else "dop853"
+    if name in obstacles:
         asked = f"method {method!r}" if step is None else f"method {method!r} with a fixed step"
+        without = " without step" if len(obstacles) == len(GENERATED) else ""
         raise KernelArgumentError(
             f"{asked} is a generated solver, which does not apply to {system.name} here: "
-            f"{obstacle}. Expected {_list(obstacle)} without step.",
+            f"{obstacles[name]}. Expected {_list(obstacles)}{without}.",
             found=str(method),
-            reason=obstacle,
+            reason=obstacles[name],
         )
     if name not in GENERATED and name not in _scipy():
         raise KernelArgumentError(
-            f"method is {method!r}; expected one of {_list(obstacle)} for {system.name}."
+            f"method is {method!r}; expected one of {_list(obstacles)} for {system.name}."
             + _suggest(name),
             found=str(method)[:80],
             expected=["auto", *GENERATED, *_scipy()],
@@ -297,9 +321,9 @@ def _scipy() -> tuple[str, ...]:
     return tuple(SCIPY + each for each in EXPLICIT + IMPLICIT)
 
 
-def _list(obstacle: str) -> str:
+def _list(obstacles: Mapping[str, str]) -> str:
     """The methods that fit."""
-    fit = ("auto", *(() if obstacle else GENERATED), *_scipy())
+    fit = ("auto", *(name for name in GENERATED if name not in obstacles), *_scipy())
     return ", ".join(repr(each) for each in fit)
 
 

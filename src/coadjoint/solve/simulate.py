@@ -15,6 +15,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import generated
 from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
+from coadjoint.solve.choices import GENERATED
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import Trail, make_driving
@@ -24,7 +25,7 @@ from coadjoint.solve.events import Surroundings, read_events
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.occurrences import Events
-from coadjoint.solve.reconstruct import find_start
+from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.request import (
     ATOL,
     IMPLICIT,
@@ -32,6 +33,7 @@ from coadjoint.solve.request import (
     SCIPY,
     Request,
     check_count,
+    check_dense,
     check_positive,
     check_progress,
     check_state,
@@ -76,14 +78,19 @@ def simulate(
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
     initial = check_state(system, state)
-    start, times = list_times(t, samples, initial.size)
+    below = system.RECONSTRUCTED.size if is_asked(reconstruct) else 0
+    start, times = list_times(t, samples, initial.size + initial[0].size * below)
     tolerances = rtol is not None or atol is not None
     rtol, atol = RTOL if rtol is None else rtol, ATOL if atol is None else atol
     check_positive(rtol=rtol, atol=atol, **({} if step is None else {"step": step}))
     check_count(max_steps=max_steps, **({} if threads is None else {"threads": threads}))
     check_target(target)
     check_progress(progress)
-    obstacle = generated.find_obstacle(system, inputs, target, reconstruct)
+    obstacle = generated.find_obstacle(system, target, reconstruct)
+    stepwise = generated.find_stepwise(system, inputs)
+    obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
+    if stepwise and not obstacle:
+        obstacles["taylor"] = f"it needs rates of all orders, and {stepwise}"
     request = Request(
         state=initial,
         start=start,
@@ -91,7 +98,7 @@ def simulate(
         samples=int(samples) if times.size == 1 else times.size,
         parameters=parameters,
         inputs=inputs,
-        method=choose_method(system, method, step, obstacle, tolerances=tolerances),
+        method=choose_method(system, method, step, obstacles, tolerances=tolerances),
         rtol=float(rtol),
         atol=float(atol),
         step=None if step is None else float(step),
@@ -101,8 +108,9 @@ def simulate(
         threads=threads,
         progress=progress,
         checkpoint=check_checkpoint(checkpoint),
-        events=read_events(system, events, followed=bool(reconstruct)),
-        dense=bool(dense),
+        events=read_events(system, events, followed=is_asked(reconstruct)),
+        dense=check_dense(dense),
+        stepwise=stepwise,
     )
     check_steps(request)
     if not request.method.startswith(SCIPY):

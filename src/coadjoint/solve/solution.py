@@ -44,7 +44,8 @@ class Solution:
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
             ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS`` or ``EVENT`` (terminal).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
-        reconstructed: What follows from the motion, ``(k, T)``; None if it was not asked for.
+        reconstructed: What follows from the motion, ``(k, T)`` or ``(k, *batch, T)``; None if it
+            was not asked for.
         inputs: Inputs, ``(m,)`` if they are constant, else ``(m, T)``, or ``(m, *batch, 1)`` if
             each trajectory has constants of its own; None if there are none.
         events: The events that were looked for, by name: times, states and members of each.
@@ -109,9 +110,12 @@ class Solution:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """How it was made: method, order, tolerances and step, as far as they apply."""
+        """How it was made: method, order, tolerances and step, as far as they apply.
+
+        ``stepwise`` says why the steps of a generated method were made in Python.
+        """
         course = self.course
-        names = ("method", "order", "rtol", "atol", "step")
+        names = ("method", "order", "rtol", "atol", "step", "stepwise")
         told = {name: getattr(course, name) for name in names}
         return {name: value for name, value in told.items() if value not in (None, "")}
 
@@ -422,9 +426,10 @@ class Solution:
             whole = "x".join(map(str, self.batch))
             lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
             lines += [f"  {self.message}"] if self.message else []
-            return "\n".join([*lines, *describe_drift(self)])
-        head = f"<Solution of {self.system.name}: {self.status}, {span}"
-        return "\n".join([head, *describe_drift(self)])
+        else:
+            lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
+        lines += [f"  {told}" for told in [self.course.tell_stepwise()] if told]
+        return "\n".join([*lines, *describe_drift(self)])
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

@@ -39,15 +39,16 @@ def check_starts(system: System, request: Request, run: Ensemble, now: dict[str,
     Raises:
         KernelArgumentError: A member is outside of the domain, or off the constraints.
     """
+    state = run.state[: system.STATE.size]
     if system.DOMAIN:
-        rows = system.domain(run.state, run.parameters, target="numpy", **now)
+        rows = system.domain(state, run.parameters, target="numpy", **now)
         least = np.array([np.nextafter(0.0, 1.0) * bound.strict for bound in system.DOMAIN])
         _refuse_first(system, request, run, ~((rows >= least[:, None]) & (rows < np.inf)))
     if "projection" in system.functions:
         at = partial(system.constraint_residual, parameters=run.parameters, target="numpy", **now)
-        _refuse_first(system, request, run, find_excess(system, run.state, at, request.atol) > 0)
-        nearest = system.projection(run.state, run.parameters, target="numpy", **now)
-        run.state[:] = np.where(np.isfinite(nearest).all(axis=0), nearest, run.state)
+        _refuse_first(system, request, run, find_excess(system, state, at, request.atol) > 0)
+        nearest = system.projection(state, run.parameters, target="numpy", **now)
+        state[:] = np.where(np.isfinite(nearest).all(axis=0), nearest, state)
 
 
 def _refuse_first(system: System, request: Request, run: Ensemble, bad: NDArray[np.bool_]) -> None:
@@ -60,7 +61,7 @@ def _refuse_first(system: System, request: Request, run: Ensemble, bad: NDArray[
     own = run.inputs.own
     inputs = run.inputs.values[:, member].copy() if own else request.inputs
     driving = Driving(system, inputs, start, float(request.times[-1]))
-    state = run.state[:, member].copy()
+    state = run.state[: system.STATE.size, member].copy()
     try:
         Domain(system, parameters, request.target, driving).check_start(start, state)
         Constraints(system, parameters, request.target, driving).find_start(

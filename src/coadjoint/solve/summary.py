@@ -27,6 +27,8 @@ def summarize(solution: Solution) -> dict[str, Any]:
     }
     if solution.inputs is not None:
         record["inputs"] = {name: float(solution[name][-1]) for name in inputs}
+    if solution.course.stepwise:
+        record["stepwise"] = solution.course.stepwise
     if solution.attitude_drift:
         record["attitude_drift"] = solution.attitude_drift
     return record

@@ -217,9 +217,9 @@ class System(Functions):
             method: ``"taylor"``, of an order that follows from ``rtol``, ``"dop853"`` or ``"rk4"``,
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
                 `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
-                ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: where
-                rates are loops over a table, with ``reconstruct``, inputs that are a function, or
-                the target ``"python"``. `Solution.method` says which it was.
+                ``"dop853"``; where inputs are a function, or rates loops over a table, it is
+                ``"dop853"`` with steps in Python, as `Solution.settings` says, and with the target
+                ``"python"`` it is ``"scipy:DOP853"``. `Solution.method` says which it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of
@@ -234,13 +234,13 @@ class System(Functions):
                 than a second; or a function that is told the part that is done, from 0 to 1.
             reconstruct: Whether to integrate ``RECONSTRUCTED`` with the state, to the same
                 tolerances: attitude and place of a body, for instance. A mapping says where some
-                of it begins, as ``{"x": 1.0}``. Otherwise the rest begins at its default, else at
-                zero; an attitude at the identity, that of a rolling body turned upright the
-                shortest way. Methods with a Jacobian find it by differences then.
+                of it begins, as ``{"x": 1.0}``, for all members or each. Otherwise the rest begins
+                at its default, else at zero; an attitude at the identity, that of a rolling body
+                turned upright the shortest way. Methods with a Jacobian find it by differences.
             checkpoint: A file that a generated solver replaces as a whole every ten seconds, less
                 often where writing it takes longer than half a second, and at the end. Called again
-                with the same arguments, it goes on from there, with the bits of a run that was not
-                broken off. A finished run stands there, too: remove the file to begin anew.
+                with the same arguments, it goes on from there, with the bits and events of a run
+                that was not broken off. A finished run stands there, too: remove it to begin anew.
             events: What to look for: names of components or scalar quantities, where these are 0;
                 formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
                 end the trajectory. `Solution.events` has them by name.

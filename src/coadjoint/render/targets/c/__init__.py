@@ -15,6 +15,8 @@ TARGET = Target(
         "kernel.h": "c/kernel.h.j2",
         "solver.c": "c/solver.c.j2",
         "solver.h": "c/solver.h.j2",
+        "reconstruction.c": "c/solver.c.j2",
+        "reconstruction.h": "c/solver.h.j2",
     },
     needs_compiler=True,
 )

@@ -1,4 +1,4 @@
-"""The target C, reading solvers: what ``solver.c`` says of its system, and what it says of all.
+"""The target C, reading solvers: what their file says of its system, and what it says of all.
 
 Comes in: the text. Goes out: a `SolverBody` for each function that the system has a part in, the
 tables, and the rest of the text, which is that of the template. It shares no code with the printer.
@@ -14,7 +14,6 @@ from coadjoint.lower.program import Node
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c.reader import Reader
 
-FILE = "solver.c"
 #: The functions that the system has a part in, by name, with the text before their bodies.
 _FUNCTIONS = {
     "find_fixed": "INLINE void find_fixed(Block *restrict _block)",
@@ -68,37 +67,45 @@ _CONSTANTS = re.compile(r"static const double (_parts|_orders)\[\] = \{([^{}]*)\
 class VectorReader(Reader):
     """Reads an expression over vectors, some of which are entries of arrays."""
 
-    file = FILE
     token = re.compile(
         r"\s+|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)"
         r"|(?P<name>[A-Za-z_]\w*(?:\[(?:\d+|_k(?: [-+] 1)?|_m|_k - _m)\])?)|(?P<mark>[-+*/()])"
     )
     suffix = "_of"
 
+    def __init__(self, text: str, name: str, file: str) -> None:
+        self.file = file
+        super().__init__(text, name)
 
-def read_function(text: str, function: str) -> SolverBody:
+
+def read_function(text: str, function: str, file: str) -> SolverBody:
     """One of the functions that the system has a part in.
+
+    Args:
+        text: Of the file.
+        function: Its name.
+        file: Name of the file, for messages.
 
     Raises:
         CrossCheckError: It has a line that no template prints.
     """
     found = re.search(_pattern(function), text, re.DOTALL | re.MULTILINE)
     if not found:
-        raise failure(f"{FILE} has no function {function!r}", function)
+        raise failure(f"{file} has no function {function!r}", function)
     inside = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
-    return _Reading(function).read(_UNROLLED.sub("", inside, count=1))
+    return _Reading(function, file).read(_UNROLLED.sub("", inside, count=1))
 
 
-def read_tables(text: str) -> dict[str, tuple[float, ...]]:
+def read_tables(text: str, file: str) -> dict[str, tuple[float, ...]]:
     """The tables of the method of order 8, by name."""
     tables = dict[str, tuple[float, ...]]()
     for name, inside in _TABLE.findall(text):
         if name in tables:
-            raise failure(f"{FILE} has the table {name} twice", name)
+            raise failure(f"{file} has the table {name} twice", name)
         try:
             tables[name] = tuple(float(entry) for entry in inside.split(",") if entry.strip())
         except ValueError as error:
-            raise failure(f"{FILE}: the table {name}: {error}", name) from error
+            raise failure(f"{file}: the table {name}: {error}", name) from error
     return tables
 
 
@@ -117,8 +124,8 @@ def _pattern(function: str) -> str:
 class _Reading:
     """A function being read."""
 
-    def __init__(self, function: str) -> None:
-        self.function, self.body = function, SolverBody()
+    def __init__(self, function: str, file: str) -> None:
+        self.function, self.file, self.body = function, file, SolverBody()
         self._stored: list[str] = []
 
     def read(self, text: str) -> SolverBody:
@@ -231,8 +238,11 @@ class _Reading:
         if not found:
             raise self._refusal(line)
         constant = re.fullmatch(r"all\((.*)\)", found[3])
-        value = VectorReader(constant[1] if constant else found[3], self.function).whole()
+        text = constant[1] if constant else found[3]
+        value = VectorReader(text, self.function, self.file).whole()
         return found[1] or "", found[2], value
 
     def _refusal(self, line: str) -> Exception:
-        return failure(f"{FILE}, {self.function}: {line[:80]!r} is no line of it", self.function)
+        return failure(
+            f"{self.file}, {self.function}: {line[:80]!r} is no line of it", self.function
+        )

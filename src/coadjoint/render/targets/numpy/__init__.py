@@ -10,5 +10,9 @@ TARGET = Target(
     builds={"numpy": ""},
     exact=("numpy",),
     kernel="kernel.py",
-    files={"kernel.py": "numpy/kernel.py.j2", "solver.py": "numpy/solver.py.j2"},
+    files={
+        "kernel.py": "numpy/kernel.py.j2",
+        "solver.py": "numpy/solver.py.j2",
+        "reconstruction.py": "numpy/solver.py.j2",
+    },
 )

@@ -1,4 +1,4 @@
-"""The target NumPy, reading solvers: the function ``expand`` of ``solver.py``, line by line.
+"""The target NumPy, reading solvers: the function ``expand``, line by line.
 
 Comes in: the text. Goes out: a `SolverBody`, and the rest of the text, which is that of the
 template.
@@ -15,7 +15,6 @@ from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.targets.body import Loop, SolverBody
 from coadjoint.render.targets.python_text import Reader
 
-FILE = "solver.py"
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
 _BODY = re.compile(r"^    _parts = .*?^    return path$", re.DOTALL | re.MULTILINE)
 _INDEX = re.compile(r"\d+|_k|_m|_k \+ 1|_k - _m")
@@ -36,13 +35,17 @@ _ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
 _TERMS = "range(1, _k)"
 
 
-def read_expand(text: str) -> SolverBody:
+def read_expand(text: str, file: str) -> SolverBody:
     """What ``expand`` does.
+
+    Args:
+        text: Of the file.
+        file: Its name, for messages.
 
     Raises:
         CrossCheckError: It has a line that no template prints.
     """
-    reading = _Reading()
+    reading = _Reading(file)
     functions = reading.functions(text, _is_allowed)
     function = functions.get("expand")
     if function is None or [each.arg for each in function.args.args] != _ARGUMENTS:
@@ -77,8 +80,8 @@ def _called(function: ast.expr) -> str | None:
 class _Reading(Reader):
     """The function being read."""
 
-    def __init__(self) -> None:
-        super().__init__(FILE, "expand", _called)
+    def __init__(self, file: str) -> None:
+        super().__init__(file, "expand", _called)
         self.body = SolverBody()
         self._told: list[str] = []
 

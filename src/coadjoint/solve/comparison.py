@@ -1,0 +1,134 @@
+"""Comparison: a solver that was compiled against its NumPy twin, over a few steps.
+
+Comes in: both. Goes out: whether they went the same way. It is asked once for each object, before
+that enters the cache.
+Read next: `coadjoint.solve.solvers`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import CrossCheckError
+from coadjoint.render.targets.c.loader import ROUNDINGS
+from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Record
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.choices import Choice
+    from coadjoint.solve.solvers import Stepper
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: Members by which a fresh object is compared with its twin: they fill no whole number of vectors.
+PROBES: Final = 11
+#: The most steps of each.
+MOST_STEPS: Final = 4
+
+
+def compare_steps(
+    system: System, choice: Choice, target: str, fresh: Stepper, twin: Stepper
+) -> None:
+    """Compare a fresh object with its NumPy twin by a few steps of a few members.
+
+    Steps that follow tolerances are compared where bits are promised; elsewhere a rounding may
+    decide whether a step is accepted, so that steps are fixed.
+
+    Raises:
+        CrossCheckError: They differ.
+        OutputError: The NumPy twin does not run.
+    """
+    exact = target == "c" and not system.elementary
+    n = count_rows(system, choice)
+    for size in (0.0, 2.0**-7) if exact and choice.name != "rk4" else (2.0**-7,):
+        found, expected = (_probe(system, n, size) for _ in range(2))
+        room = MOST_STEPS * PROBES + ROOM
+        one, other = (Record.make(n, choice.degree, room) for _ in range(2))
+        while fresh.advance(found, 0, PROBES, 2, one):
+            pass  # calls that break off now and then, so that this is compared as well
+        twin.advance(expected, 0, PROBES, 1000, other)
+        if not (_agree(found, expected, exact=exact) and _agree_steps(one, other, exact=exact)):
+            raise CrossCheckError(
+                f"a wrong solver was compiled: {choice} of {system.name}, {choice.source.stem}.c, "
+                f"for the target {target} differs from its NumPy twin. Set CC to another compiler, "
+                "or run `coadjoint crosscheck` to see whether the files are at fault.",
+                rung=5,
+                system=system.name,
+                function=choice.name,
+                target=target,
+            )
+
+
+def count_rows(system: System, choice: Choice) -> int:
+    """How many components a method integrates."""
+    return system.rows(choice.kind.rates[-1]).size
+
+
+def _probe(system: System, rows: int, size: float) -> Ensemble:
+    """A few members at the start of a few steps, driven by two lines, with four samples."""
+    source = np.random.default_rng(0)
+    samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
+
+    def draw(*shape: int) -> Array:
+        return source.uniform(0.5, 2.0, shape)
+
+    run = Ensemble(
+        state=draw(rows, PROBES),
+        parameters=draw(system.PARAMETERS.size, PROBES),
+        inputs=Inputs(
+            knots=np.array([0.0, 3 * 2.0**-8]),
+            values=draw(system.INPUTS.size, 2),
+            slopes=draw(system.INPUTS.size, 2),
+        ),
+        has_time=bool(system.TIME),
+        samples=samples,
+        out=np.full((rows, PROBES, samples.size), np.nan),
+        rtol=1e-9,
+        atol=1e-9,
+        size=size,
+        max_steps=MOST_STEPS,
+    )
+    run.begin(0.0)
+    return run
+
+
+def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
+    """Whether two ensembles went the same way: to the bit, or but for roundings."""
+    counts = ("status", "steps", "rejected", "next")
+    if not all(np.array_equal(getattr(found, n), getattr(expected, n)) for n in counts):
+        return False
+    pairs: Any = [(getattr(found, n), getattr(expected, n)) for n in ("state", "time", "step")]
+    pairs.append((found.out, expected.out))
+    if exact:
+        return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+    return all(_are_close(a, b) for a, b in pairs)
+
+
+def _agree_steps(found: Record, expected: Record, *, exact: bool) -> bool:
+    """Whether two records have the same steps, whatever the order of the members."""
+    if found.count != expected.count:
+        return False
+    pair = [
+        Record(each.rows[np.argsort(each.member, kind="stable")], each.degree, each.count)
+        for each in (found, expected)
+    ]
+    if exact:
+        return np.array_equal(pair[0].rows, pair[1].rows, equal_nan=True)
+    heads = np.array_equal(pair[0].rows[:, :HEAD], pair[1].rows[:, :HEAD])
+    # what each order comes to at the end of its step, against the largest of the component
+    ends = [each.path * each.length[:, None, None] ** np.arange(each.degree + 1) for each in pair]
+    rows = zip(*(end.transpose(1, 0, 2) for end in ends), strict=True)
+    return heads and all(_are_close(a, b) for a, b in rows)
+
+
+def _are_close(found: Array, expected: Array) -> bool:
+    """Whether arrays are equal but for roundings; NaN equals NaN."""
+    with np.errstate(all="ignore"):
+        size = np.abs(expected[np.isfinite(expected)]).max(initial=0.0)
+        close = np.abs(found - expected) <= ROUNDINGS * size
+    same = (found == expected) | (np.isnan(found) & np.isnan(expected))
+    return bool((close | same).all())

@@ -1,0 +1,170 @@
+"""Twins: the methods in NumPy over the functions of a kernel, for members of an ensemble.
+
+Comes in: a System and a choice. Goes out: who advances an `Ensemble` by it: `NumpyStepper`, the
+twin of a solver in C, or `StepwiseStepper`, which asks for inputs and rates at each stage.
+Read next: `coadjoint.solve.steps`, the methods.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coadjoint.build.compiler import compiler_version
+from coadjoint.build.library import tell_processor
+from coadjoint.render.targets.modules import KernelModule
+from coadjoint.render.targets.numpy.loader import NumpyKernel
+from coadjoint.render.targets.protocol import Call
+from coadjoint.solve.ensemble import Limits
+from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.choices import Choice
+    from coadjoint.solve.driving import Function
+    from coadjoint.solve.ensemble import Ensemble, Record
+    from coadjoint.solve.steps import Lanes, Method
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+
+class NumpyStepper:
+    """The twin of a solver.
+
+    Args:
+        system: Whose solver it is.
+        choice: The method.
+
+    Raises:
+        OutputError: A file of it cannot be loaded.
+    """
+
+    def __init__(self, system: System, choice: Choice) -> None:
+        self._system, self._choice, self.degree = system, choice, choice.degree
+        self._kernel = NumpyKernel(system, "kernel.py")
+        functions = (*choice.kind.rates, "domain", "projection")
+        self._sizes = {name: system.rows(name).size for name in functions}
+        if choice.name == "taylor":
+            module = KernelModule(system, choice.kind.files[2])
+            self._expansion = module.function("expand")
+            self._branches = bool(module.value("BRANCHES"))
+        self._limits = Limits(
+            domain=partial(self._evaluate, ("domain",)) if system.DOMAIN else None,
+            strict=tuple(bound.strict for bound in system.DOMAIN),
+            projection=self._project if "projection" in system.functions else None,
+        )
+
+    @property
+    def key(self) -> str:
+        """NumPy's own functions differ from one processor to another."""
+        return f"numpy {np.__version__} {tell_processor()}"
+
+    def advance(
+        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
+    ) -> int:
+        """As `Stepper.advance`; a block is all of the members."""
+        method, members = self._method(ensemble), slice(first, last)
+        return ensemble.advance(method, work, members, self._limits, record)
+
+    def _method(self, run: Ensemble) -> Method:
+        """The method for the tolerances and the step of an ensemble."""
+        if self._choice.name == "taylor":
+            return Taylor(
+                expand=self._expand,
+                rates=self._rates,
+                order=self._choice.order,
+                rtol=run.rtol,
+                atol=run.atol,
+                size=run.size,
+                branches=self._branches,
+            )
+        if self._choice.name == "dop853":
+            return DormandPrince8(self._rates, run.rtol, run.atol, run.size)
+        return RungeKutta4(self._rates, run.size)
+
+    def _expand(self, lanes: Lanes, order: int) -> Array:
+        """Coefficients of the motion."""
+        path: Array = self._expansion(
+            lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order
+        )
+        return path
+
+    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The rates of all that is integrated."""
+        return self._evaluate(self._choice.kind.rates, lanes, after, state)
+
+    def _project(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The nearest states on the constraints; what is reconstructed stays."""
+        nearest = self._evaluate(("projection",), lanes, after, state)
+        return np.concatenate([nearest, state[len(nearest) :]])
+
+    def _evaluate(
+        self, functions: tuple[str, ...], lanes: Lanes, after: Array, state: Array
+    ) -> Array:
+        """Rows of functions of the kernel, one below the other, some time after the lanes."""
+        driving, inputs = np.ascontiguousarray(self._drive(lanes, after)), self._system.INPUTS.size
+        parameters = np.ascontiguousarray(lanes.parameters)  # as kernels in C read them
+        named = {"inputs": driving[:inputs]} if inputs else {}
+        if self._system.TIME:
+            named["time"] = driving[inputs:]
+        rows = []
+        for name in functions:
+            own = np.ascontiguousarray(state[: self._sizes[name]])
+            block = np.empty((*self._system.functions[name], state.shape[1]))
+            rows.append(self._find_values(name, Call(own, parameters, block, named)))
+        return rows[0] if len(rows) == 1 else np.concatenate(rows)
+
+    def _drive(self, lanes: Lanes, after: Array) -> Array:
+        """Inputs, and the time below them."""
+        return lanes.driving + after * lanes.slopes
+
+    def _find_values(self, function: str, call: Call) -> Array:
+        """What the kernel computes."""
+        return self._kernel.values(function, call)
+
+
+class StepwiseStepper(NumpyStepper):
+    """Steps that are made in Python, each stage by a call of the kernel and of the inputs.
+
+    For inputs that are a function of Python, which no compiled solver can call, and for rates that
+    are loops over a table. It has the methods of Runge and Kutta: a Taylor series has all orders of
+    the inputs, and a function tells their values alone.
+
+    Args:
+        system: The System.
+        choice: A method other than that of Taylor.
+        target: Who computes the rates.
+        inputs: Inputs as a function of time; None where they are lines, as in every ensemble.
+    """
+
+    def __init__(
+        self, system: System, choice: Choice, target: str, inputs: Function | None
+    ) -> None:
+        super().__init__(system, choice)
+        self._target, self._inputs = target, inputs
+
+    @property
+    def key(self) -> str:
+        """The functions of NumPy and of the target."""
+        return f"{super().key} {self._target} {compiler_version()}"
+
+    def _drive(self, lanes: Lanes, after: Array) -> Array:
+        """As the function tells; it is asked once for each time, and for none beyond the end."""
+        driving = super()._drive(lanes, after)
+        if self._inputs is not None:
+            time = np.minimum(lanes.time + after, lanes.end)
+            time = np.where(np.isfinite(time), time, lanes.time)
+            times, places = time, np.zeros(1, np.intp)
+            if time.size > 1:
+                times, places = np.unique(time, return_inverse=True)
+            driving[: self._system.INPUTS.size] = self._inputs.over(times)[:, places]
+        return driving
+
+    def _find_values(self, function: str, call: Call) -> Array:
+        """What the kernel of the target computes."""
+        self._system._kernels.run(function, call, self._target)
+        return call.block
