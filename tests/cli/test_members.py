@@ -9,11 +9,12 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from coadjoint.cli.members import MOST, find_members
+from coadjoint.cli.members import MOST, Members, find_members
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.systems import heavy_top, rigid_body
 from tests.driven_specs import POINT
 from tests.kernels import COMPILER
+from tests.rolling import FOLLOWED_SLEIGH, built
 from tests.solve.domains import SUSLOV
 
 simulate = import_module("coadjoint.cli.simulate")
@@ -184,8 +185,29 @@ def test_random_members_are_on_the_constraints(folder):
     (folder / "suslov_0.toml").write_text(SUSLOV)
     system = load(folder / "suslov_0.toml")
     start = simulate.find_start(system, ())
-    many = find_members(system, "40", 0, list(start), {}, None)
+    many = find_members(system, "40", 0, Members(list(start), {}, None))
     off = many.state[0] + 2 * many.state[1] + 2 * many.state[2]
     assert np.abs(off).max() < 1e-15
     assert np.ptp(many.state, axis=1).min() > 0.01
     assert many.origin.endswith("seed 0, moved onto the constraints")
+
+
+@pytest.mark.parametrize("members", [[], ["--members", "3"]], ids=["one", "members"])
+def test_places_and_events_are_kept_in_a_checkpoint(run, folder, monkeypatch, members):
+    """One trajectory and many are reconstructed, by a generated solver; the same is shown again."""
+    monkeypatch.setattr(simulate, "load_system", lambda *_: built(FOLLOWED_SLEIGH))
+    words = ("simulate", "sleigh.toml", "--time", "2", "--samples", "5", "--json", *members)
+    words += ("--events", "x = 0.5", "--checkpoint", "run.npz", "--csv", "run.csv")
+    first = run(*words)
+    assert first.exit_code == 0, first.stderr
+    record = record_of(first)
+    assert {"theta", "x", "y"} <= record["final"].keys() & record["initial"].keys()
+    with (folder / "run.csv").open() as file:
+        *_, last = csv.DictReader(line for line in file if not line.startswith("#"))
+    final = np.ravel(record["final"]["x"])[-1]
+    assert float(last["x"]) == final != np.ravel(record["initial"]["x"])[-1]
+    monkeypatch.setattr(Checkpoint, "write", None)
+    assert run(*words).stdout == first.stdout
+    other = run(*words, "--events", "y = 3.1")
+    assert other.exit_code == 2
+    assert "its events is" in other.stderr

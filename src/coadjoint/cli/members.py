@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -41,38 +41,29 @@ seed_option = click.option(
 
 @dataclass(frozen=True)
 class Members:
-    """What the members of a run begin with.
+    """What the members of a run, or its only trajectory, begin with.
 
     Attributes:
-        state: ``(n, N)``.
+        state: ``(n, N)``, of one ``(n,)``.
         parameters: By name, ``(N,)`` where they differ.
         inputs: Likewise; None for the defaults.
-        origin: Where they come from, for a reader.
+        origin: Where members come from, for a reader; "" of one trajectory.
     """
 
     state: Any
     parameters: Mapping[str, Any]
     inputs: Mapping[str, Any] | None
-    origin: str
+    origin: str = ""
 
 
-def find_members(
-    system: System,
-    given: str,
-    seed: int,
-    start: list[float],
-    parameters: Mapping[str, Any],
-    inputs: Mapping[str, Any] | None,
-) -> Members:
+def find_members(system: System, given: str, seed: int, one: Members) -> Members:
     """The members that a word of the command line means.
 
     Args:
         system: The System.
         given: A number, or the path of a file.
         seed: Of random members.
-        start: Where one trajectory would begin.
-        parameters: Those that were given for all.
-        inputs: Likewise.
+        one: What one trajectory would begin with.
 
     Raises:
         BadParameter: It is neither, or the file does not have the form.
@@ -81,49 +72,36 @@ def find_members(
         count = int(given[:20])
         if not 1 <= count <= MOST:
             raise _refuse(f"{given[:20]} members; expected 1 to {MOST}.")
-        return _draw(system, count, seed, start, parameters, inputs)
-    return _read(system, Path(given), start, parameters, inputs)
+        return _draw(system, count, seed, one)
+    return _read(system, Path(given), one)
 
 
 def _refuse(message: str) -> click.BadParameter:
     return click.BadParameter(message, param_hint="--members")
 
 
-def _draw(
-    system: System,
-    count: int,
-    seed: int,
-    start: list[float],
-    parameters: Mapping[str, Any],
-    inputs: Mapping[str, Any] | None,
-) -> Members:
+def _draw(system: System, count: int, seed: int, one: Members) -> Members:
     """Random states around a start, on the constraints where the system keeps some."""
     import numpy as np
 
-    middle = np.asarray(start)[:, np.newaxis]
+    middle = np.asarray(one.state)[:, np.newaxis]
     sizes = np.ones(middle.shape)
     for quantity in system.STATE.values():
         rows = [system.STATE.components.index(name) for name in quantity.components]
         sizes[rows] = np.abs(middle[rows]).max() or 1.0
     source = np.random.default_rng(seed)
-    state = middle + SPREAD * sizes * source.uniform(-1.0, 1.0, (len(start), count))
+    state = middle + SPREAD * sizes * source.uniform(-1.0, 1.0, (len(middle), count))
     origin = f"random states within {100 * SPREAD:g} % around the start, seed {seed}"
     if "projection" in system.functions:
         time = np.zeros(count) if system.TIME else None
         state, origin = (
-            system.projection(state, parameters, inputs, time=time),
+            system.projection(state, one.parameters, one.inputs, time=time),
             f"{origin}, moved onto the constraints",
         )
-    return Members(state, parameters, inputs, origin)
+    return replace(one, state=state, origin=origin)
 
 
-def _read(
-    system: System,
-    path: Path,
-    start: list[float],
-    parameters: Mapping[str, Any],
-    inputs: Mapping[str, Any] | None,
-) -> Members:
+def _read(system: System, path: Path, one: Members) -> Members:
     """The rows of a file; what has no column is as for one trajectory."""
     import numpy as np
 
@@ -134,15 +112,15 @@ def _read(
             listed = ", ".join(each for names in known for each in names)
             raise _refuse(f"{path}: the column {name!r} is none of {listed}.")
     count = len(next(iter(columns.values())))
-    state = np.tile(np.asarray(start)[:, np.newaxis], count)
+    state = np.tile(np.asarray(one.state)[:, np.newaxis], count)
     own: list[dict[str, Any]] = [{}, {}]  # parameters and inputs
     for name, values in columns.items():
         if name in known[0]:
             state[known[0].index(name)] = values
         else:
             own[name not in known[1]][name] = np.array(values)
-    all_parameters = _spread(system.PARAMETERS, parameters) | own[0]
-    all_inputs = _spread(system.INPUTS, inputs or {}) | own[1]
+    all_parameters = _spread(system.PARAMETERS, one.parameters) | own[0]
+    all_inputs = _spread(system.INPUTS, one.inputs or {}) | own[1]
     return Members(state, all_parameters, all_inputs or None, f"rows of {path}")
 
 
@@ -223,14 +201,20 @@ def print_members(solution: Solution, origin: str) -> None:
     rows = [[name, f"{drift.max():.1e}"] for name, drift in drifts.items()]
     if rows:
         print_table(["conserved", ">largest drift"], rows)
+    for name, drift in solution.attitude_drift.items():
+        say(f"|{name}|^2 - 1 up to {drift:.1e}")
     arrived = f"OK: {plural(count, 'member')} reached the end"
     say(f"status: {solution.message or arrived}")
+    if solution.course.stepwise:
+        say(solution.course.tell_stepwise())
 
 
 def describe_members(solution: Solution, origin: str) -> dict[str, Any]:
     """The run as JSON values, with a list over the members for what differs."""
     system = solution.system
-    components = (*system.STATE.components, *system.OBSERVABLES.components)
+    below, course = system.RECONSTRUCTED.components, solution.course
+    followed = {} if course.below is None else dict(zip(below, course.below, strict=True))
+    components = (*system.STATE.components, *followed, *system.OBSERVABLES.components)
     listed = zip(system.PARAMETERS.components, solution.parameters.tolist(), strict=True)
     return {
         "system": system.name,
@@ -238,13 +222,14 @@ def describe_members(solution: Solution, origin: str) -> dict[str, Any]:
         "origin": origin,
         "status": solution.status.tolist(),
         "message": solution.message,
+        **({"stepwise": course.stepwise} if course.stepwise else {}),
         "time": solution.time_reached.tolist(),
         "steps": solution.steps.tolist(),
         "rejected": solution.rejected.tolist(),
         "samples": len(solution),
         "parameters": dict(listed),
         "initial": {name: solution.first(name)[:, 0].tolist() for name in components},
-        "final": {name: values.tolist() for name, values in solution.final.items()},
+        "final": {name: values.tolist() for name, values in (solution.final | followed).items()},
         "drift": {name: values.tolist() for name, values in solution.drift.items()},
         "units": {name: solution.unit(name) for name in components},
     }

@@ -18,6 +18,7 @@ import click
 from coadjoint.cli.arguments import load_system, seconds_option, system_argument
 from coadjoint.cli.events import describe_events, events_options, print_events, take_events
 from coadjoint.cli.members import (
+    Members,
     describe_members,
     find_members,
     members_option,
@@ -154,16 +155,13 @@ def command(
         check_traced(loaded)
     given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
     driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
-    start = find_start(loaded, state, given, driven)
-    origin, span = "", (0.0, time)
+    run = Members(find_start(loaded, state, given, driven), given, driven)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
-    if members is None:
-        options["reconstruct"] = bool(loaded.RECONSTRUCTED)
-    else:
-        many = find_members(loaded, members, seed, start, given, driven)
-        start, given, driven, origin = many.state, many.parameters, many.inputs, many.origin
-    solution = loaded.simulate(start, span, given, driven, events=asked.events, **options)
-    _show(loaded, solution, origin, as_json=as_json)
+    if members is not None:
+        run = find_members(loaded, members, seed, run)
+    options |= {"events": asked.events, "reconstruct": bool(loaded.RECONSTRUCTED)}
+    solution = loaded.simulate(run.state, (0.0, time), run.parameters, run.inputs, **options)
+    _show(loaded, solution, run.origin, as_json=as_json)
     if table is not None:
         solution.to_csv(table)
     if plot is not None:
@@ -274,6 +272,8 @@ def _print(system: System, solution: Solution) -> None:
     for name, drift in solution.attitude_drift.items():
         say(f"|{name}|^2 - 1 up to {drift:.1e}")
     say(": ".join(filter(None, ("status", solution.status, solution.message))))
+    if solution.course.stepwise:
+        say(solution.course.tell_stepwise())
 
 
 def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:
