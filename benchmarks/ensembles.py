@@ -28,8 +28,8 @@ from results import Point, write
 
 from coadjoint.cli.arguments import load_system
 from coadjoint.errors import CoadjointError
-from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.choices import Choice, choose_order
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.solvers import Stepper, load
 
 #: Final times, and parameters.

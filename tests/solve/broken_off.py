@@ -19,8 +19,10 @@ import numpy as np
 
 from coadjoint.render.kernels import render_system
 from coadjoint.solve import checkpoints, march
+from coadjoint.solve.calls import CStepper
 from coadjoint.solve.events import Event
 from coadjoint.solve.system import load_folder
+from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import heavy_top
 from tests.programs import FOLLOWED
 
@@ -100,7 +102,8 @@ def main(name, path, place, count, threads):
         threads: How many share the run.
     """
     go(name)  # compiled and loaded, which writes files of its own
-    march.FIRST_WORK, march.GROWTH = 5, 1.0  # short calls,
+    CStepper.first_work = NumpyStepper.first_work = 5
+    march.GROWTH = 1.0  # short calls,
     checkpoints.SECONDS, checkpoints.SHARE = 0.0, np.inf  # and a checkpoint after each
     march.REPORT_SECONDS = 0.0
     sync, seen = os.fsync, []

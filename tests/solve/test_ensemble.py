@@ -156,7 +156,7 @@ class Rounds:
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_every_round_takes_all_members_on_whatever_the_load(threads, monkeypatch):
     """Each slice makes one call before a checkpoint, though its thread may begin late or early."""
-    monkeypatch.setattr("coadjoint.solve.march.FIRST_WORK", 7)
+    monkeypatch.setattr(NumpyStepper, "first_work", 7)
     choice, checkpoint = Choice("rk4", 4), Rounds()
     run = begin(choice)
     march(stepper(choice, "numpy"), run, 0.0, threads, checkpoint=checkpoint)

@@ -38,18 +38,21 @@ class Choice:
     Attributes:
         name: One of `GENERATED`.
         order: Of the method.
+        few: Whether it is for members that fill no more than half of the longest vectors.
         kind: What it integrates.
     """
 
     name: str
     order: int
+    few: bool = False
     kind: SolverKind = SOLVER
 
     @property
     def source(self) -> Source:
         """What its object is compiled from, with what chooses it there."""
         chosen = f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}"
-        return Source(self.kind.stem, (chosen,), is_loops=False)
+        defines = (chosen, "-DFEW") if self.few else (chosen,)
+        return Source(self.kind.stem, defines, is_loops=False)
 
     @property
     def degree(self) -> int:

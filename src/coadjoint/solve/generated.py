@@ -54,7 +54,7 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     """
     kinds = list_kinds(system.functions)
     wanted = kinds if is_asked(reconstruct) else kinds[:1]
-    if not all((system.folder / file).is_file() for kind in wanted for file in kind.files):
+    if not all(map(system._solvers.has_files, wanted)):
         return "its folder was generated without them: run `coadjoint regenerate`"
     if target == "python":
         return "they are written for the targets c, c-fast and numpy"
@@ -144,7 +144,8 @@ def _make_recording(
 def _find_stepper(system: System, request: Request, signal: Signal | Array | None) -> Stepper:
     """Who makes the steps."""
     if not request.stepwise:
-        return system._solvers.get(request.choice, request.target)
+        members = math.prod(request.state.shape[1:])
+        return system._solvers.get(request.choice, request.target, members)
     function = signal if isinstance(signal, Function) else None
     return StepwiseStepper(system, request.choice, request.target, function)
 
@@ -156,7 +157,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
     rows, members = count_rows(system, request.choice), math.prod(batch)
-    parameters = pack_parameters(system, request.parameters)
+    quick = system._solvers.pack(request.parameters)
+    parameters = pack_parameters(system, request.parameters) if quick is None else np.array(quick)
     check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)

@@ -43,6 +43,8 @@ class NumpyStepper:
         OutputError: A file of it cannot be loaded.
     """
 
+    first_work = 16
+
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
