@@ -81,6 +81,11 @@ class LegendreMap:
             for block in coupled_blocks(mass)
         ]
 
+    @property
+    def is_local(self) -> bool:
+        """Whether determinants tell of small changes alone: l is not quadratic in velocities."""
+        return bool(mechanics(self.setting).bending)
+
     @cached_property
     def invertible(self) -> Invertible:
         """Where the map is invertible.

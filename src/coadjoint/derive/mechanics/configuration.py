@@ -87,22 +87,32 @@ class Mechanics:
         """
         return inverse_in_blocks(self.setting.field, self.mass, self.refusal)
 
-    def check_quadratic(self, hint: str = "") -> None:
+    @cached_property
+    def bending(self) -> dict[str, list[str]]:
+        """The velocities on which rows of the mass matrix depend, by the velocity of the row.
+
+        Empty exactly where l is quadratic in the velocities.
+        """
+        names, reach = self.frame.velocities, self.setting.field.reach
+        rows = zip(names, self.mass, strict=True)
+        named = {
+            name: {*names}.intersection({x for e in row for x in reach(e)}) for name, row in rows
+        }
+        return {name: sorted(found) for name, found in named.items() if found}
+
+    def check_quadratic(self, hint: str) -> None:
         """The mass matrix may depend on anything but velocities.
 
         Raises:
             DerivationError: It depends on some, with the hint.
         """
-        names = self.frame.velocities
-        for row, name in zip(self.mass, names, strict=True):
-            named = sorted(set().union(*map(self.setting.field.reach, row)) & set(names))
-            if named:
-                message = (
-                    f"the Lagrangian is not quadratic in the velocities: its second derivative by "
-                    f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
-                    f"the velocities. {hint}"
-                )
-                raise fault(self.setting, self._formula, message.rstrip(), named[0])
+        for name, named in self.bending.items():
+            message = (
+                f"the Lagrangian is not quadratic in the velocities: its second derivative by "
+                f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
+                f"the velocities. {hint}"
+            )
+            raise fault(self.setting, self._formula, message, named[0])
 
     @property
     def _formula(self) -> Formula:
