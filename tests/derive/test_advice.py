@@ -97,10 +97,20 @@ ADVICE = [
     (
         RIGID_BODY,
         change(KINETIC, "dot(Omega, Omega)^2"),
-        "Give a [hamiltonian] and the route lie-poisson instead.",
+        "Give a [hamiltonian] and the route lie-poisson instead, or ",
         [
             (BOTH, 'routes = ["lie-poisson"]'),
             ('[lagrangian]\nl = "dot(Omega, Omega)^2"', '[hamiltonian]\nh = "dot(Pi, Pi)/2"'),
+        ],
+    ),
+    (
+        RIGID_BODY,
+        change(KINETIC, "dot(Omega, Omega)^2"),
+        "or remove Pi and take the route nonholonomic, where velocities are the state.",
+        [
+            (BOTH, 'routes = ["nonholonomic"]'),
+            ('Pi = { role = "momentum" }\n', ""),
+            ('\n[claims]\ncasimirs = ["dot(Pi, Pi)"]', ""),
         ],
     ),
     (

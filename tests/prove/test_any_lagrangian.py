@@ -1,4 +1,4 @@
-"""Lagrangians that are not quadratic in the velocities, with velocities as the state."""
+"""Lagrangians that are not quadratic in velocities: these as the state, or momenta."""
 
 from fractions import Fraction
 
@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.derive.mechanics import radial
+from coadjoint.errors import DerivationError
+from coadjoint.lower.lowering import lower
 from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.measures import about_measure
@@ -83,7 +86,7 @@ def test_the_constraint_is_imposed_after_the_variation():
 
 
 def test_the_divergence_knows_that_the_mass_matrix_turns(monkeypatch):
-    """The measure det M dOmega is invariant, since dp is; div X is compared with differences of the rates."""
+    """The density is det M, since dp is invariant; div X is compared with differences of rates."""
     of, omega, step = motion_of(derive(spec(BODY))), np.array([0.5, -0.25, 0.75]), 2.0**-17
     by_hand = 0.0
     for n, along in enumerate(np.eye(3)):
@@ -128,3 +131,87 @@ def test_energy_is_the_one_of_the_momenta():
     assert of.field.is_zero(of.equations.exact.energy - right)
     assert decide_zero([of.rate(right)], of.field).verdict is Verdict.PROVED
     assert decide_zero([of.rate(wrong)], of.field).verdict is Verdict.REFUTED
+
+
+# -- momenta as the state --------------------------------------------------------------------------
+
+#: A charge in a magnetic field, twice as heavy along its second axis: T = (v1^2 + 2 v2^2)/2.
+CHARGE = """
+title = "A charge"
+routes = ["euler-lagrange", "canonical"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+p = { role = "momentum", of = "q" }
+v = { role = "velocity", of = "q" }
+[parameters]
+m = { positive = true, default = 1 }
+c = { positive = true, default = 1 }
+B = { default = 1 }
+[lagrangian]
+l = "-m*c^2*sqrt(1 - (v1^2 + 2*v2^2)/c^2) + B*q1*v2 - q1^2/2"
+[claims]
+conserved = ["energy"]
+"""
+OWN_MOMENTA = ('p = { role = "momentum", of = "q" }\n', "")
+
+
+def test_a_function_of_one_quadratic_form_is_transformed_in_closed_form():
+    """There v = K^-1 y/(m S), h = m c^2 S with S^2 = 1 + y . K^-1 y/(m c)^2, y = p - B q1 e2."""
+    sample = spec(CHARGE)
+    of = motion_of(derive(sample, "canonical"))
+    field = of.field
+    m, c, b, q1, p1, p2 = (field[name] for name in ("m", "c", "B", "q1", "p1", "p2"))
+    y = p2 - b * q1
+    s = field.call("sqrt", 1 + (p1**2 + y**2 / 2) / (m * c) ** 2)
+    by_hand = {"q1": p1 / (m * s), "q2": y / (2 * m * s), "p2": field.zero}
+    by_hand["p1"] = b * y / (2 * m * s) - q1
+    for name, value in by_hand.items():
+        assert field.is_zero(of.decidable_rates[name] - value), name
+    assert field.is_zero(of.equations.close(of.equations.exact.energy) - m * c**2 * s - q1**2 / 2)
+    certificate = prove_claims(sample)
+    assert certificate.holds, str(certificate)
+    said = [claim.statement for claim in certificate.claims]
+    assert any("the Legendre transform is locally invertible" in each for each in said)
+    assert "dh/dmu = xi on the route canonical" in said
+
+
+def test_momenta_of_the_route_are_transformed_too():
+    """With velocities as the state, canonical has momenta of its own."""
+    certificate = prove_claims(spec(CHARGE, OWN_MOMENTA))
+    assert certificate.holds, str(certificate)
+    assert any("through p = dl/dv" in claim.statement for claim in certificate.claims)
+
+
+def test_the_kernel_computes_what_a_hand_would():
+    """One y = p2 - B q1, S by 4 products and 2 sums, each v by one product and quotient."""
+    counted = lower(derive(spec(CHARGE)))["rhs"].operation_counts()
+    assert (counted["sqrt"], counted["divide"]) == (1, 2)
+    assert counted["multiply"] <= 1 + 4 + 2 + 1
+    assert counted["add"] <= 1 + 2 + 1
+
+
+@pytest.mark.parametrize(
+    "lagrangian",
+    [
+        "v1^2/2 + v2^2/2 + (v1^2 + v2^2)^2",  # a cubic equation for T
+        "-c^2*sqrt(1 - v1^2 - v2^2) + v1^4",  # no function of one form
+        "-c^2*sqrt(1 - (v1 - 1)^2 - v2^2)",  # of a form about another point
+        "exp(v1^2 + v2^2)",
+    ],
+)
+@pytest.mark.parametrize("changes", [(), (OWN_MOMENTA,)], ids=["declared", "own"])
+def test_what_has_no_closed_form_is_refused(lagrangian, changes):
+    """The message names the way out, and that way is open."""
+    changed = (CHARGE.split('l = "')[1].split('"')[0], lagrangian)
+    with pytest.raises(DerivationError, match="closed form") as caught:
+        derive(spec(CHARGE, changed, *changes), "canonical")
+    assert "euler-lagrange" in str(caught.value)
+    assert "velocities" in str(caught.value)
+    derive(spec(CHARGE, changed, OWN_MOMENTA, (', "canonical"', "")))
+
+
+def test_a_wrong_solution_is_none(monkeypatch):
+    """What comes out is put into p = dl/dv: another number for T is no solution."""
+    monkeypatch.setattr(radial, "_slope_at", lambda field, *_: field.one)
+    with pytest.raises(DerivationError, match="closed form"):
+        derive(spec(CHARGE))

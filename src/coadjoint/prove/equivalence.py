@@ -65,7 +65,7 @@ class LegendreMap:
         if equations.route not in self._images:
             # what the kernel solves for is what mu = dl/dxi was solved for: its own symbol
             velocities = {
-                name: self.setting.field.substitute(value, self.momenta)
+                name: self.setting.field.substitute(equations.close(value), self.momenta)
                 for name, value in equations.exact.definitions
                 if name not in equations.kept
             }
