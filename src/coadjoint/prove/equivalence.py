@@ -58,7 +58,9 @@ class LegendreMap:
     @staticmethod
     def applies(equations: Equations) -> bool:
         """Whether velocities are other coordinates of the state, not part of it."""
-        return equations.spec.lagrangian is not None and bool(equations.setting.momenta)
+        spec = equations.spec
+        transformed = spec.lagrangian is not None and not spec.variational
+        return transformed and bool(equations.setting.momenta)
 
     def pull_back(self, equations: Equations, element: Element) -> Element:
         """An element of one route's Equations in velocities and advected quantities alone."""

@@ -31,6 +31,7 @@ from coadjoint.derive.mechanics.solver import (
     solve_in_kernel,
     solver_names,
 )
+from coadjoint.derive.mechanics.variational import normal_extremals
 from coadjoint.derive.setting import Setting, calls_of, fault, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
@@ -82,6 +83,8 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
     """
     if setting.spec.hamiltonian is not None:
         return setting.hamiltonian, ()
+    if setting.spec.variational:
+        return normal_extremals(setting).energy, ()
     if not setting.momenta:  # velocities are themselves state
         return mechanics(setting).energy, ()
     transform = legendre(setting)

@@ -359,7 +359,7 @@ def _representation(
         if name in declared:
             problem = f"{key[-1]!r} has a block, and {name!r} is declared for the whole algebra"
             expected = f"a representation that every algebra has: {list_names(KNOWN)}"
-            raise source.fault((*key, "block"), problem, name, expected, "Remove block.")
+            raise source.fault((*key, "block"), problem, part.block, expected, "Remove block.")
         places = block_places(source, (*key, "block"), part.block, algebra)
         inner = (*key, "block")
     return representation_of(source, inner, algebra, name, declared, invariance, places)
