@@ -21,7 +21,7 @@ BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
 KINETIC = "dot(Omega, diag(I)*Omega)/2"
 CANONICAL = 'routes = ["euler-lagrange", "canonical"]'
 SHIFTED = (CANONICAL, 'routes = ["canonical"]')
-SUM = "v1 + v2 + v3 + v4 + v5 + v6 + v7 + v8 + v9 + v10 + v11 + v12 + v13"
+SUM = " + ".join(f"v{n}" for n in range(1, 18))
 CHAIN = "v1*v2 + v2*v3 + v3*v4"
 PLANES = [('"so(3)"', '"so(4)"'), ('"lie-poisson"]', '"lie-poisson", "manakov"]')]
 ADVECTED = ("[hamiltonian]", 'S = { role = "advected", representation = "ROLE" }\n[hamiltonian]')
@@ -121,7 +121,7 @@ ADVICE = [
     ),
     (
         FREE,
-        [SHIFTED, ("[4]", "[13]"), ("dot(v, v)/2", f"dot(v, v)/2 + ({SUM})^2/2")],
+        [SHIFTED, ("[4]", "[17]"), ("dot(v, v)/2", f"dot(v, v)/2 + ({SUM})^2/2")],
         "Choose axes that decouple them, or give a [hamiltonian] and the route canonical.",
         change(f" + ({SUM})^2/2", ""),
     ),
