@@ -22,7 +22,7 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError, LimitError
 from coadjoint.lower import check, lowering
 from coadjoint.lower.program import Program, run
 from coadjoint.prove.declaration import kernel_context
-from coadjoint.render.kernels import SOLVER_FILES, render_system
+from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import read_spec_text
@@ -187,13 +187,13 @@ def test_kernels_compute_the_bracket(nine, target):
 
 
 def test_the_ladder_holds_loops(tmp_path):
-    """Rungs 3 to 5 run and pass for so(5) by loops, and there are no solvers to check."""
+    """Rungs 2 to 5 run and pass for so(5) by loops, its solvers among them."""
     system, reference = load(5, 0, tmp_path), Reference(equations(5))
     report = crosscheck(programs(5, 0), texts(5, 0), reference, system, bit_points=300)
     assert report.passed
     assert report.lines["jacobian_vector"]
-    assert report.solvers.lines == 0
-    assert not set(SOLVER_FILES) & set(texts(5, 0))
+    assert report.solvers.coefficients
+    assert set(report.solvers.equal) == {"taylor", "dop853", "rk4"}
 
 
 # -- what is caught -------------------------------------------------------------------------------
@@ -314,14 +314,27 @@ def test_integrators_of_others_get_a_matrix(nine):
     assert run.drift["energy"] < 1e-7
 
 
-def test_simulations_take_methods_of_scipy(nine):
-    """No solver is generated for loops: `auto` is DOP853 of SciPy, and the others are refused."""
-    state, _, a = (part[:, 0].copy() for part in points(9, 1))
-    run = nine.simulate(state, (0, 1), a, samples=3)
-    assert run.method == "scipy:DOP853"
-    assert run.drift["energy"] < 1e-9
-    with pytest.raises(KernelArgumentError, match="its rates are loops over a table"):
-        nine.simulate(state, (0, 1), a, method="taylor")
+def test_generated_solvers_follow_the_motion(nine):
+    """`auto` is the generated Taylor method, for one and for many; SciPy and matrices agree."""
+    state, _, a = points(9, 19)
+    alone = nine.simulate(state[:, 0], (0, 1), a[:, 0], samples=3, rtol=1e-12)
+    assert alone.method == "taylor"
+    assert alone.drift["energy"] < 1e-12
+    many = nine.simulate(state, (0, 1), a, samples=3, rtol=1e-12, target="numpy")
+    np.testing.assert_array_equal(many.state[:, 0], alone.state)
+    for method in ("dop853", "scipy:DOP853"):
+        run = nine.simulate(state[:, 0], (0, 1), a[:, 0], samples=3, rtol=1e-11, method=method)
+        np.testing.assert_allclose(run.state, alone.state, atol=1e-8)
+    known = np.linalg.eigvalsh(1j * _matrix(state[:, 0], 9))  # the motion is isospectral
+    found = np.linalg.eigvalsh(1j * _matrix(alone.state[:, -1], 9))
+    np.testing.assert_allclose(found, known, atol=1e-11)
+
+
+def _matrix(state, n):
+    """An antisymmetric matrix from what is above its diagonal."""
+    M = np.zeros((n, n))
+    M[np.triu_indices(n, 1)] = state
+    return M - M.T
 
 
 def test_rows_name_the_vector():

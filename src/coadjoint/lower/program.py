@@ -8,9 +8,11 @@ Read next: `coadjoint.lower.lowering`, which makes Programs of Equations.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 from typing import Literal, TypeVar
 
 Value = TypeVar("Value")
@@ -142,6 +144,21 @@ class Table:
     def names(self) -> frozenset[str]:
         """Names of all factors."""
         return frozenset(name for names in self.vectors for name in names)
+
+    def columns(self) -> dict[str, tuple[float, ...]]:
+        """The table as texts have it, by name.
+
+        These are where the entries of each row begin and where those of the last one end, places of
+        left and right factors, coefficients, and rows that are scaled.
+        """
+        counts = Counter(i for i, *_ in self.entries)
+        return {
+            "table_starts": tuple(accumulate((counts[i] for i in range(len(counts))), initial=0)),
+            "table_left": tuple(j for _, j, _, _ in self.entries),
+            "table_right": tuple(k for _, _, k, _ in self.entries),
+            "table_coefficients": tuple(float(c) for *_, c in self.entries),
+            "table_scaled": self.scaled,
+        }
 
     def sums(self) -> list[Node]:
         """The rows, written out."""

@@ -10,10 +10,8 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import accumulate
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -30,7 +28,7 @@ from coadjoint.lower.program import (
 )
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.printers import WIDTH, Printer, number_text
+from coadjoint.render.printers import WIDTH, Printer
 from coadjoint.render.solvers import arrange, arrange_function, select_programs
 from coadjoint.render.targets import TARGETS
 
@@ -38,9 +36,6 @@ from coadjoint.render.targets import TARGETS
 TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
     file: template for target in TARGETS.values() for file, template in target.files.items()
 }
-
-#: The files of solvers, which systems whose rates are loops do not have.
-SOLVER_FILES: Final = ("solver.c", "solver.h", "solver.py")
 
 #: Where the id is to stand; no name, unit or number has these marks.
 PLACE: Final = "<the 16 letters>"
@@ -132,17 +127,12 @@ def arrange_table(programs: Iterable[Program]) -> TableText | None:
     table = next((each.table for each in programs if each.table), None)
     if table is None:
         return None
-    counts = Counter(i for i, *_ in table.entries)
     size = len(table.vectors[0])
-    return TableText(
-        starts=_fill(map(str, accumulate((counts[i] for i in range(len(counts))), initial=0))),
-        left=_fill(str(j) for _, j, _, _ in table.entries),
-        right=_fill(str(k) for _, _, k, _ in table.entries),
-        coefficients=_fill(number_text(c) for *_, c in table.entries),
-        scaled=_fill(map(str, table.scaled)),
-        rows=size - len(table.scaled),
-        size=size,
-    )
+    columns = {
+        name.removeprefix("table_"): _fill(map(repr, column))
+        for name, column in table.columns().items()
+    }
+    return TableText(rows=size - len(table.scaled), size=size, **columns)
 
 
 def render_system(context: KernelContext) -> dict[str, str]:
@@ -178,12 +168,10 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
-    rhs = next(program for program in context.programs if program.name == "rhs")
-    templates = {f: t for f, t in TEMPLATES.items() if not (rhs.table and f in SOLVER_FILES)}
     rendered = render_templates(
-        tuple(templates.values()),
+        tuple(TEMPLATES.values()),
         {
-            **({} if rhs.table else _solver(context)),
+            **_solver(context),
             "name": context.name,
             "spec": context.spec,
             "licence": _licence(context.license),
@@ -214,14 +202,17 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "domain": list(map(declaration, context.domain)),
         },
     )
-    return {file: rendered[template] for file, template in templates.items()}
+    return {file: rendered[template] for file, template in TEMPLATES.items()}
 
 
 def _solver(context: KernelContext) -> dict[str, Any]:
     """What the templates of solvers read alone."""
     solved, table = select_programs(context.programs), dop853()
+    solver = arrange(solved, is_written_out=False)
+    numbers = solver.loops.numbers if solver.loops else {}
     return {
-        "solver": arrange(solved),
+        "solver": solver,
+        "loop_tables": {name: _fill(map(repr, column)) for name, column in numbers.items()},
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {
