@@ -86,6 +86,7 @@ OPERATIONS: Mapping[str, type[Add | Multiply | Divide | Negate]] = {
     "negate": Negate,
 }
 ZERO = Number(Fraction(0))
+ONE = Number(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +127,8 @@ class Table:
     right: over all entries with the first pair of vectors, then with the next pair.
 
     Attributes:
-        entries: i, j, k and c, by rows, of which each has at least one entry.
+        entries: i, j, k and c, by rows, of which each has at least one entry. The place after the
+            last value of a vector stands for the number 1.
         vectors: Names of the values, and of what else products are of, in the same order: those of
             rows of the first argument, then those of member statements ``scale * row``.
         scaled: Of each of these statements, the place of its row in a vector.
@@ -164,7 +166,7 @@ class Table:
         """The rows, written out."""
         rows: dict[int, Node] = {}
         for left, right in self.passes:
-            a, b = (tuple(map(Symbol, self.vectors[place])) for place in (left, right))
+            a, b = ((*map(Symbol, self.vectors[place]), ONE) for place in (left, right))
             for i, j, k, c in self.entries:
                 term = Multiply(Multiply(Number(c), a[j]), b[k])
                 rows[i] = Add(rows[i], term) if i in rows else term

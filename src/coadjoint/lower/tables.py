@@ -1,7 +1,7 @@
 """Lowering, tables: rates that are sums of many products of two values, as loops.
 
 Comes in: Equations. Goes out: a `Table` where the rates are such sums, and the Programs of the
-rates and of their derivative along a vector. The terms of a bracket on so(n) grow with the cube of
+rates, of their derivative along a vector, and of energy and observables of the same form. The terms of a bracket on so(n) grow with the cube of
 n: written out, those of so(20) are 10 000 operations, and the entries of its Jacobian 7000
 statements. A loop over a table of coefficients has a text that compilers read at once.
 Read next: `coadjoint.lower.check`, which undoes this exactly.
@@ -9,6 +9,7 @@ Read next: `coadjoint.lower.check`, which undoes this exactly.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -30,6 +31,8 @@ from coadjoint.lower.program import (
 #: Products in all rates together beyond which they are loops: so(8) has 336 and is written out,
 #: so(9) has 504 (docs/decisions/coefficient-tables.md).
 UNROLLED_PRODUCTS: Final = 400
+#: The name of the value that is the number 1.
+_ONE: Final = ""
 #: A product of two names: their number, and the names in the order of the field.
 _Product = tuple[Fraction, str, str]
 
@@ -118,6 +121,89 @@ def differentiate_along(rhs: Program, rows: Rows) -> Program:
         statements=(*rhs.statements_at("parameters"), *statements),
     )
     return _add_sums(program, rows, table)
+
+
+def loop_rows(rows: Rows, name: str, rhs: Program) -> Program | None:
+    """A function of the values of looped rates as a Program that loops over them, too.
+
+    Args:
+        rows: What the function computes: the energy, or observables.
+        name: Its name.
+        rhs: The rates.
+
+    Returns:
+        None where a row is no sum of products of two values, of values and of numbers.
+    """
+    assert rhs.table is not None, rhs.name
+    splitting = _Splitting(rows.of, rhs)
+    products = [splitting.split(element) for element in rows.elements]
+    if not all(products):
+        return None
+    place = {each: n for n, each in enumerate((*rhs.table.vectors[0], _ONE))}
+    entries = (
+        (i, place[a], place[b], number)
+        for i, row in enumerate(products)
+        for number, a, b in row or ()
+    )
+    table = replace(rhs.table, entries=tuple(entries))
+    return _add_sums(replace(rhs, name=name, shape=rows.shape), rows, table)
+
+
+class _Splitting:
+    """Elements as sums of products of two values, each with a number.
+
+    Args:
+        equations: Where the elements are from.
+        rhs: The looped rates, which say what the values are.
+    """
+
+    def __init__(self, equations: Equations, rhs: Program) -> None:
+        assert rhs.table is not None, rhs.name
+        self.field, self.equations = equations.setting.field, equations
+        known, names = dict(equations.exact.definitions), rhs.table.vectors[0]
+        self._values = frozenset(names)
+        self._scales = {
+            rhs.state[place]: (name, known[name] / self.field[rhs.state[place]])
+            for name, place in zip(names[len(rhs.state) :], rhs.table.scaled, strict=True)
+        }
+
+    def split(self, element: Element) -> list[_Product] | None:
+        """The terms; None where there is another one, or none at all."""
+        parts = self._collect(element)
+        found = [self._match(product, part) for product, part in parts.items()]
+        return [each for each in found if each] if found and all(found) else None
+
+    def _collect(self, element: Element) -> dict[tuple[str, ...], Element]:
+        """The coefficient of each product of values."""
+        parts: dict[tuple[str, ...], Element] = {}
+        for written in self.field.quotients(element):
+            below = self.field.one
+            for divisor, power in written.divisors:
+                below = below * divisor**power
+            for monomial in written.monomials:
+                part, product = self.field.number(monomial.number) / below, list[str]()
+                for name, power in monomial.powers:
+                    if name in self._values:
+                        product += [name] * power
+                    else:
+                        part = part * self.field[name] ** power
+                known = parts.get(tuple(product))
+                parts[tuple(product)] = part if known is None else known + part
+        return parts
+
+    def _match(self, product: tuple[str, ...], part: Element) -> _Product | None:
+        """A term with values that are scaled in the place of components, so that a number is left."""
+        if len(product) > 2 or self.field.reach(part) & self.equations.moving:
+            return None
+        choices = [
+            [(name, self.field.one), *([self._scales[name]] if name in self._scales else [])]
+            for name in (*product, _ONE, _ONE)[:2]
+        ]
+        for (left, one), (right, other) in itertools.product(*choices):
+            number = self.field.as_number(part / (one * other))
+            if number is not None:
+                return number, left, right
+        return None
 
 
 def _add_sums(program: Program, rows: Rows, table: Table) -> Program:

@@ -11,7 +11,8 @@ import hashlib
 import json
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -77,6 +78,7 @@ class Function:
         zeros: Their rows, as lines of numbers with commas. Large Jacobians and Poisson tensors are
             mostly zero, and compilers take twice the time where each zero is a statement.
         table: The table that it loops over, if it does; `of_member` and `outputs` are empty then.
+        first: Its first row in the table of the kernel.
         scales: What the scaled values are times, in order, where it does.
     """
 
@@ -96,6 +98,7 @@ class Function:
     outputs: tuple[tuple[int, Output], ...]
     zeros: tuple[str, ...]
     table: Table | None
+    first: int
     scales: tuple[str, ...]
 
 
@@ -122,17 +125,27 @@ class TableText:
     size: int
 
 
-def arrange_table(programs: Iterable[Program]) -> TableText | None:
-    """The table that functions loop over, which is one; None where there is none."""
-    table = next((each.table for each in programs if each.table), None)
-    if table is None:
-        return None
-    size = len(table.vectors[0])
+def arrange_table(programs: Iterable[Program]) -> tuple[TableText | None, dict[str, int]]:
+    """The table that functions loop over, all of them together, and the first row of each.
+
+    The rates and their derivative along a vector have the same rows.
+    """
+    tables = {each.name: each.table for each in programs if each.table}
+    if not tables:
+        return None, {}
+    firsts, entries = dict[Any, int](), list[tuple[int, int, int, Fraction]]()
+    for table in tables.values():
+        if table.entries not in firsts:
+            first = firsts[table.entries] = entries[-1][0] + 1 if entries else 0
+            entries += ((first + i, j, k, c) for i, j, k, c in table.entries)
+    whole = replace(tables["rhs"], entries=tuple(entries))
+    size = len(whole.vectors[0])
     columns = {
         name.removeprefix("table_"): _fill(map(repr, column))
-        for name, column in table.columns().items()
+        for name, column in whole.columns().items()
     }
-    return TableText(rows=size - len(table.scaled), size=size, **columns)
+    text = TableText(rows=size - len(whole.scaled), size=size, **columns)
+    return text, {name: firsts[table.entries] for name, table in tables.items()}
 
 
 def render_system(context: KernelContext) -> dict[str, str]:
@@ -168,6 +181,7 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
+    table, firsts = arrange_table(context.programs)
     rendered = render_templates(
         tuple(TEMPLATES.values()),
         {
@@ -188,9 +202,10 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 if array != "reconstructed"
             },
             "functions": [
-                _function(program, _summary(context, program)) for program in context.programs
+                _function(program, _summary(context, program), firsts.get(program.name, 0))
+                for program in context.programs
             ],
-            "table": arrange_table(context.programs),
+            "table": table,
             "called": _list_called(context.programs),
             "elementary": tuple_text(map(quote, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
@@ -287,8 +302,8 @@ def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
     return [Row(index, name, unit) for index, (name, unit) in enumerate(named, first)]
 
 
-def _function(program: Program, summary: str) -> Function:
-    """A Program as the templates read it."""
+def _function(program: Program, summary: str, first: int) -> Function:
+    """A Program as the templates read it, with its first row in the table of the kernel."""
     names_used, table = program.names_used(), program.table
     rows = [] if table else list(enumerate(program.outputs))
     return Function(
@@ -314,6 +329,7 @@ def _function(program: Program, summary: str) -> Function:
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
         table=table,
+        first=first,
         scales=tuple(map(Printer("").text, table.scales)) if table else (),
     )
 

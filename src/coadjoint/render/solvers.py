@@ -13,9 +13,9 @@ from fractions import Fraction
 from itertools import islice, pairwise
 
 from coadjoint.lower.jets import Cell, Jets, make_jets
-from coadjoint.lower.motion import ONE
 from coadjoint.lower.polynomials import product_of
 from coadjoint.lower.program import (
+    ONE,
     ZERO,
     Add,
     Call,
