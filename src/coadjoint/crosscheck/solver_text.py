@@ -19,7 +19,7 @@ from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.lower.program import Node, Program
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.kernels import Row
+from coadjoint.render.kernels import Row, tell_loops
 from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
 from coadjoint.render.targets import TARGETS
 from coadjoint.render.targets.body import Loop, SolverBody, failure
@@ -224,7 +224,6 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         reads=frozenset(),
         fixed_reads=frozenset(),
         branches=solver.branches,
-        loops=solver.loops,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
     templates = {
@@ -242,7 +241,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
             "solver": bare,
-            "loop_tables": dict.fromkeys(solver.loops.numbers if solver.loops else (), ()),
+            "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},

@@ -166,11 +166,15 @@ class Table:
         """The rows, written out."""
         rows: dict[int, Node] = {}
         for left, right in self.passes:
-            a, b = ((*map(Symbol, self.vectors[place]), ONE) for place in (left, right))
+            a, b = (self._factors(place) for place in (left, right))
             for i, j, k, c in self.entries:
                 term = Multiply(Multiply(Number(c), a[j]), b[k])
                 rows[i] = Add(rows[i], term) if i in rows else term
         return list(rows.values())
+
+    def _factors(self, vector: int) -> tuple[Node, ...]:
+        """The values of a vector, and the number 1."""
+        return (*map(Symbol, self.vectors[vector]), ONE)
 
     def products(self) -> list[tuple[str, Node]]:
         """The statements ``scale * row`` by name, vector by vector."""

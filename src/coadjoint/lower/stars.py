@@ -12,7 +12,7 @@ Read next: `coadjoint.render.solvers`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import accumulate
 from typing import Final
@@ -101,20 +101,33 @@ def _gather(pairs: list[_Pair]) -> Iterator[tuple[int, list[int]]]:
         yield left, sorted(chosen)
 
 
-def make_looped_jets(rhs: Program, stars: Stars) -> tuple[Jets, tuple[Statement, ...]]:
-    """The recurrences of rates that loop over a table, written out, and the weights of terms.
+def make_looped_jets(
+    rhs: Program, stars: Stars, *, is_written_out: bool = True
+) -> tuple[Jets, tuple[Statement, ...]]:
+    """The recurrences of rates that loop over a table, and the weights of terms.
 
     What depends on parameters alone ends with the scales of the values that are scaled.
 
     Args:
         rhs: The Program of the rates.
         stars: Those of its table.
+        is_written_out: Whether to write out what loops are, recurrences and weights.
     """
     table = rhs.table
     assert table is not None, rhs.name
     scales = tuple(
         Statement(f"_c{n}", scale, "parameters") for n, scale in enumerate(table.scales, 1)
     )
+    jets = Jets(
+        state=rhs.state,
+        driving=(*rhs.inputs, *rhs.time),
+        parameters=rhs.parameters,
+        fixed=(*rhs.statements_at("parameters"), *scales),
+        cells=(),
+        rates=(),
+    )
+    if not is_written_out:
+        return jets, ()
     products = [Multiply(Symbol(rhs.state[a]), Symbol(rhs.state[b])) for a, b in stars.products()]
     names = [f"_j{n}" for n, _ in enumerate(products, 1)]
     weights = _weigh(table, stars, [statement.name for statement in scales])
@@ -123,18 +136,12 @@ def make_looped_jets(rhs: Program, stars: Stars) -> tuple[Jets, tuple[Statement,
         for term in range(stars.bounds[place], stars.bounds[place + 1]):
             row, part = stars.rows[term], Multiply(Symbol(weights[term].name), Symbol(name))
             sums[row] = Add(sums[row], part) if row in sums else part
-    jets = Jets(
-        state=rhs.state,
-        driving=(*rhs.inputs, *rhs.time),
-        parameters=rhs.parameters,
-        fixed=(*rhs.statements_at("parameters"), *scales),
-        cells=tuple(
-            Cell(name=name, value=value, tail=None, depth=1)
-            for name, value in zip(names, products, strict=True)
-        ),
-        rates=tuple((sums[row], sums[row]) for row in range(len(rhs.outputs))),
+    cells = tuple(
+        Cell(name=name, value=value, tail=None, depth=1)
+        for name, value in zip(names, products, strict=True)
     )
-    return jets, weights
+    rates = tuple((sums[row], sums[row]) for row in range(len(rhs.outputs)))
+    return replace(jets, cells=cells, rates=rates), weights
 
 
 def _weigh(table: Table, stars: Stars, scales: list[str]) -> tuple[Statement, ...]:

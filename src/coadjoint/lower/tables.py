@@ -1,19 +1,19 @@
 """Lowering, tables: rates that are sums of many products of two values, as loops.
 
 Comes in: Equations. Goes out: a `Table` where the rates are such sums, and the Programs of the
-rates, of their derivative along a vector, and of energy and observables of the same form. The terms of a bracket on so(n) grow with the cube of
-n: written out, those of so(20) are 10 000 operations, and the entries of its Jacobian 7000
-statements. A loop over a table of coefficients has a text that compilers read at once.
+rates, of their derivative along a vector, and of energy and observables of the same form. The
+terms of a bracket on so(n) grow with the cube of n: written out, those of so(20) are 10 000
+operations, and the entries of its Jacobian 7000 statements. A loop over a table of coefficients has
+a text that compilers read at once.
 Read next: `coadjoint.lower.check`, which undoes this exactly.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import Rows
@@ -33,6 +33,8 @@ from coadjoint.lower.program import (
 UNROLLED_PRODUCTS: Final = 400
 #: The name of the value that is the number 1.
 _ONE: Final = ""
+#: A term: factors that are values, its number, and what else is in it: factors and denominators.
+_Term = tuple[tuple[str, ...], Fraction, Any]
 #: A product of two names: their number, and the names in the order of the field.
 _Product = tuple[Fraction, str, str]
 
@@ -141,9 +143,7 @@ def loop_rows(rows: Rows, name: str, rhs: Program) -> Program | None:
         return None
     place = {each: n for n, each in enumerate((*rhs.table.vectors[0], _ONE))}
     entries = (
-        (i, place[a], place[b], number)
-        for i, row in enumerate(products)
-        for number, a, b in row or ()
+        (i, place[a], place[b], number) for i, row in enumerate(products) for number, a, b in row
     )
     table = replace(rhs.table, entries=tuple(entries))
     return _add_sums(replace(rhs, name=name, shape=rows.shape), rows, table)
@@ -159,50 +159,47 @@ class _Splitting:
 
     def __init__(self, equations: Equations, rhs: Program) -> None:
         assert rhs.table is not None, rhs.name
-        self.field, self.equations = equations.setting.field, equations
-        known, names = dict(equations.exact.definitions), rhs.table.vectors[0]
+        self.field, names = equations.setting.field, rhs.table.vectors[0]
         self._values = frozenset(names)
-        self._scales = {
-            rhs.state[place]: (name, known[name] / self.field[rhs.state[place]])
-            for name, place in zip(names[len(rhs.state) :], rhs.table.scaled, strict=True)
-        }
+        self._scaled: dict[str, tuple[str, _Term]] = {}
+        known = dict(equations.exact.definitions)
+        for name, place in zip(names[len(rhs.state) :], rhs.table.scaled, strict=True):
+            terms = self._terms(known[name])
+            if len(terms) == 1:
+                self._scaled[rhs.state[place]] = name, terms[0]
 
-    def split(self, element: Element) -> list[_Product] | None:
-        """The terms; None where there is another one, or none at all."""
-        parts = self._collect(element)
-        found = [self._match(product, part) for product, part in parts.items()]
-        return [each for each in found if each] if found and all(found) else None
+    def split(self, element: Element) -> list[_Product]:
+        """The terms; none where one has another form."""
+        found = list(map(self._match, self._terms(element)))
+        return [each for each in found if each] if all(found) else []
 
-    def _collect(self, element: Element) -> dict[tuple[str, ...], Element]:
-        """The coefficient of each product of values."""
-        parts: dict[tuple[str, ...], Element] = {}
+    def _terms(self, element: Element) -> list[_Term]:
+        """The terms as they are written."""
+        found = list[_Term]()
         for written in self.field.quotients(element):
-            below = self.field.one
-            for divisor, power in written.divisors:
-                below = below * divisor**power
             for monomial in written.monomials:
-                part, product = self.field.number(monomial.number) / below, list[str]()
-                for name, power in monomial.powers:
-                    if name in self._values:
-                        product += [name] * power
-                    else:
-                        part = part * self.field[name] ** power
-                known = parts.get(tuple(product))
-                parts[tuple(product)] = part if known is None else known + part
-        return parts
+                product = tuple(
+                    name
+                    for name, power in monomial.powers
+                    if name in self._values
+                    for _ in range(power)
+                )
+                rest = tuple(each for each in monomial.powers if each[0] not in self._values)
+                found.append((product, monomial.number, (rest, written.divisors)))
+        return found
 
-    def _match(self, product: tuple[str, ...], part: Element) -> _Product | None:
-        """A term with values that are scaled in the place of components, so that a number is left."""
-        if len(product) > 2 or self.field.reach(part) & self.equations.moving:
+    def _match(self, term: _Term) -> _Product | None:
+        """A term of two values; one that is scaled stands for a component and all of the rest."""
+        product, number, rest = term
+        if len(product) > 2:
             return None
-        choices = [
-            [(name, self.field.one), *([self._scales[name]] if name in self._scales else [])]
-            for name in (*product, _ONE, _ONE)[:2]
-        ]
-        for (left, one), (right, other) in itertools.product(*choices):
-            number = self.field.as_number(part / (one * other))
-            if number is not None:
-                return number, left, right
+        left, right = (*product, _ONE, _ONE)[:2]
+        if rest == ((), ()):
+            return number, left, right
+        for name, other in ((left, right), (right, left)):
+            scaled, (_, part, own) = self._scaled.get(name, ("", ((), number, None)))
+            if rest == own:
+                return number / part, scaled, other
         return None
 
 

@@ -23,14 +23,13 @@ from coadjoint.lower.program import (
     Output,
     Program,
     Statement,
-    Table,
     operation,
     walk,
 )
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
-from coadjoint.render.solvers import arrange, arrange_function, select_programs
+from coadjoint.render.solvers import LoopText, arrange, arrange_function, select_programs
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -77,7 +76,9 @@ class Function:
         outputs: Row and value of the results, those left out that are zero everywhere.
         zeros: Their rows, as lines of numbers with commas. Large Jacobians and Poisson tensors are
             mostly zero, and compilers take twice the time where each zero is a statement.
-        table: The table that it loops over, if it does; `of_member` and `outputs` are empty then.
+        passes: The vectors of each pass over the table, if it loops over one; `of_member` and
+            `outputs` are empty then.
+        vectors: How many vectors there are.
         first: Its first row in the table of the kernel.
         scales: What the scaled values are times, in order, where it does.
     """
@@ -97,7 +98,8 @@ class Function:
     of_member: tuple[Statement, ...]
     outputs: tuple[tuple[int, Output], ...]
     zeros: tuple[str, ...]
-    table: Table | None
+    passes: tuple[tuple[int, int], ...]
+    vectors: int
     first: int
     scales: tuple[str, ...]
 
@@ -224,14 +226,26 @@ def _solver(context: KernelContext) -> dict[str, Any]:
     """What the templates of solvers read alone."""
     solved, table = select_programs(context.programs), dop853()
     solver = arrange(solved, is_written_out=False)
-    numbers = solver.loops.numbers if solver.loops else {}
     return {
-        "solver": solver,
-        "loop_tables": {name: _fill(map(repr, column)) for name, column in numbers.items()},
+        "solver": replace(solver, loops=None),
+        "loops": solver.loops and tell_loops(solver.loops),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {
             each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
+        },
+    }
+
+
+def tell_loops(loops: LoopText, *, is_empty: bool = False) -> dict[str, Any]:
+    """What templates read of the loops of recurrences, perhaps with empty tables."""
+    return {
+        "scales": loops.scales,
+        "sizes": loops.sizes,
+        "star_sizes": loops.star_sizes,
+        "tables": {
+            name: () if is_empty else _fill(map(repr, column))
+            for name, column in loops.numbers.items()
         },
     }
 
@@ -328,7 +342,8 @@ def _function(program: Program, summary: str, first: int) -> Function:
         of_member=() if table else program.statements_at("member"),
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
-        table=table,
+        passes=table.passes if table else (),
+        vectors=len(table.vectors) if table else 0,
         first=first,
         scales=tuple(map(Printer("").text, table.scales)) if table else (),
     )

@@ -151,12 +151,10 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     if rates.table is None:
         return _arrange(programs, make_jets(rates), ())
     stars = find_stars(rates.table)
-    jets, weights = make_looped_jets(rates, stars)
+    jets, weights = make_looped_jets(rates, stars, is_written_out=is_written_out)
     names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
-    loops = LoopText(table=rates.table, stars=stars, scales=names)
-    if not is_written_out:
-        jets, weights = replace(jets, cells=(), rates=()), ()
     lines = tuple(Line(statement.name, statement.value) for statement in weights)
+    loops = LoopText(table=rates.table, stars=stars, scales=names)
     return replace(_arrange(programs, jets, lines), loops=loops)
 
 
@@ -217,6 +215,8 @@ def arrange_function(name: str, program: Program) -> FunctionText:
         name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
         program: What to arrange.
     """
+    if program.table is not None:  # the template has the loops
+        return FunctionText((), frozenset())
     statements = program.statements_at("member") if name == "rates" else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]

@@ -91,6 +91,7 @@ def _sums(loops: Loops, vectors: Sequence[Sequence[str]], count: int) -> list[No
         raise ValueError(f"{len(left)}, {len(right)} and {len(coefficients)} entries")
     if len(starts) <= loops.first + count:
         raise ValueError(f"{count} rows from {loops.first} on")
+    values: list[tuple[Node, ...]]
     values = [(*map(Symbol, names), Number(Fraction(1))) for names in vectors]
     rows = list[Node]()
     for start, end in pairwise(starts[loops.first : loops.first + count + 1]):

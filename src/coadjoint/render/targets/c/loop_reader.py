@@ -50,7 +50,8 @@ _FUNCTION = re.compile(
     r"if \(_first == 0 \|\| parameters_stride != 0\) \{ COADJOINT_INDEPENDENT "
     r"for \(size_t _n = 0; _n < _count; \+\+_n\) \{ (?P<lines>[^{}]*)\} \} "
     r"(?P<fills>(?:fill_vector\([^;]*\); )+)"
-    r"add_products\((?P<first>\d+), (?P<rows>\d+), (?P<count>\d+), _passes, out \+ _first, out_stride, _count\); \}"
+    r"add_products\((?P<first>\d+), (?P<rows>\d+), (?P<count>\d+), _passes, "
+    r"out \+ _first, out_stride, _count\); \}"
 )
 _FILL = re.compile(
     r"fill_vector\(_vector(\d+), _scales, state \+ (\d+) \* ROWS \* state_stride \+ _first, "
