@@ -167,8 +167,9 @@ class Table:
         rows: dict[int, Node] = {}
         for left, right in self.passes:
             a, b = (self._factors(place) for place in (left, right))
+            lefts = {(c, j): Multiply(Number(c), a[j]) for _, j, _, c in self.entries}
             for i, j, k, c in self.entries:
-                term = Multiply(Multiply(Number(c), a[j]), b[k])
+                term = Multiply(lefts[c, j], b[k])
                 rows[i] = Add(rows[i], term) if i in rows else term
         return list(rows.values())
 
