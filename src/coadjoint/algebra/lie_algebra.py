@@ -107,7 +107,8 @@ class LieAlgebra(Invariants):
 
         It moves parameters into another field, or puts numbers for them.
         """
-        rows = (*self.constants.values(), *self.matrices, *self.elements)
+        rows: list[Mapping[Any, Any]]
+        rows = [*self.constants.values(), *self.matrices, *self.elements]
         if all(isinstance(value, int | Fraction) for row in rows for value in row.values()):
             return self
         constants = {pair: convert_entries(row, convert) for pair, row in self.constants.items()}

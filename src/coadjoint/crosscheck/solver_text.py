@@ -19,8 +19,9 @@ from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.lower.program import Node, Program
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.kernels import Row, tell_loops
+from coadjoint.render.kernels import Row
 from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
+from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets import TARGETS
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c import solver_reader as c_reader

@@ -12,7 +12,6 @@ import json
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from fractions import Fraction
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -29,7 +28,8 @@ from coadjoint.lower.program import (
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
-from coadjoint.render.solvers import LoopText, arrange, arrange_function, select_programs
+from coadjoint.render.solvers import arrange, arrange_function, select_programs
+from coadjoint.render.tables import arrange_table, fill, tell_loops
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
@@ -102,52 +102,6 @@ class Function:
     vectors: int
     first: int
     scales: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class TableText:
-    """The table of coefficients of a system as lines of numbers, each number with a comma.
-
-    Attributes:
-        starts: Where the entries of each row begin, and where those of the last one end.
-        left: Places of the left factors.
-        right: Places of the right factors.
-        coefficients: The numbers that multiply both.
-        scaled: Rows that are multiplied by scales.
-        rows: How many rows a vector has.
-        size: How many values follow from these, with the rows themselves.
-    """
-
-    starts: list[str]
-    left: list[str]
-    right: list[str]
-    coefficients: list[str]
-    scaled: list[str]
-    rows: int
-    size: int
-
-
-def arrange_table(programs: Iterable[Program]) -> tuple[TableText | None, dict[str, int]]:
-    """The table that functions loop over, all of them together, and the first row of each.
-
-    The rates and their derivative along a vector have the same rows.
-    """
-    tables = {each.name: each.table for each in programs if each.table}
-    if not tables:
-        return None, {}
-    firsts, entries = dict[Any, int](), list[tuple[int, int, int, Fraction]]()
-    for table in tables.values():
-        if table.entries not in firsts:
-            first = firsts[table.entries] = entries[-1][0] + 1 if entries else 0
-            entries += ((first + i, j, k, c) for i, j, k, c in table.entries)
-    whole = replace(tables["rhs"], entries=tuple(entries))
-    size = len(whole.vectors[0])
-    columns = {
-        name.removeprefix("table_"): _fill(map(repr, column))
-        for name, column in whole.columns().items()
-    }
-    text = TableText(rows=size - len(whole.scaled), size=size, **columns)
-    return text, {name: firsts[table.entries] for name, table in tables.items()}
 
 
 def render_system(context: KernelContext) -> dict[str, str]:
@@ -231,33 +185,8 @@ def _solver(context: KernelContext) -> dict[str, Any]:
         "loops": solver.loops and tell_loops(solver.loops),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "strict": [bound.strict for bound in context.domain],
-        "dop853": {
-            each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
-        },
+        "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
     }
-
-
-def tell_loops(loops: LoopText, *, is_empty: bool = False) -> dict[str, Any]:
-    """What templates read of the loops of recurrences, perhaps with empty tables."""
-    return {
-        "scales": loops.scales,
-        "sizes": loops.sizes,
-        "star_sizes": loops.star_sizes,
-        "tables": {
-            name: () if is_empty else _fill(map(repr, column))
-            for name, column in loops.numbers.items()
-        },
-    }
-
-
-def _fill(entries: Iterable[str]) -> list[str]:
-    """Entries of a table as lines, each with its comma; `textwrap` would take half a second."""
-    lines = [""]
-    for entry in entries:
-        if len(lines[-1]) + len(entry) + 2 > WIDTH - 8:
-            lines.append("")
-        lines[-1] += f" {entry}," if lines[-1] else f"{entry},"
-    return lines
 
 
 def _note_unproved(number: int) -> list[str]:
