@@ -113,6 +113,31 @@ def test_rates_are_loops_from_so9_on():
     assert list(programs(9)) == ["rhs", "jacobian_vector", "energy", "observables"]
 
 
+def test_energy_and_observables_are_loops_over_the_same_values():
+    """M Omega/2 for each plane, and velocities times 1; the shipped body has its Casimir, too."""
+    own = programs(9)
+    values = own["rhs"].table.vectors
+    assert own["energy"].table.vectors == own["observables"].table.vectors == values
+    assert own["energy"].table.entries == tuple((0, 36 + k, k, Fraction(1, 2)) for k in range(36))
+    assert (1, 36, len(values[0]), 1) in own["observables"].table.entries
+    body = lowering.lower(derive(shipped("so9_body")))
+    assert body["rhs"].table.entries == own["rhs"].table.entries
+    rows = {row for row, j, k, c in body["observables"].table.entries if j == k < 36 and c == 1}
+    assert [body["observables"].outputs[row].label for row in rows] == ["casimir1"]
+
+
+def test_an_observable_of_another_form_is_written_out():
+    """A power of four is no product of two values; the energy is a loop all the same."""
+    text = SPEC.format(n=4, default=[1, 2, 3, 4]) + '\n[observables]\nfour = "M12^4"\n'
+    other = derive(read_spec_text(text, Path("four.toml")))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lowering, "UNROLLED_PRODUCTS", 0)
+        found = lowering.lower(other)
+    assert found["energy"].table
+    assert found["observables"].table is None
+    check.check_programs(other, found)
+
+
 @pytest.mark.parametrize("name", ["heavy_top", "so8_body", "kirchhoff", "n_particles"])
 def test_other_rates_are_written_out(name):
     """Terms with other factors, and few products, stay formulas."""
@@ -184,6 +209,12 @@ def test_kernels_compute_the_bracket(nine, target):
     slopes = np.stack([rates(x + 1j * step * v, p).imag / step for x, v, p in pairs], axis=1)
     found = nine.jacobian_vector(state, vector, a, target=target)
     np.testing.assert_allclose(found, slopes, atol=1e-13)
+    i, j = np.triu_indices(9, 1)
+    omega = state / (a[i] + a[j])
+    energy = (state * omega).sum(axis=0) / 2
+    np.testing.assert_allclose(nine.energy(state, a, target=target), energy, rtol=1e-14)
+    found = nine.observables(state, a, target=target)
+    np.testing.assert_allclose(found, [energy, *omega], rtol=1e-14)
 
 
 def test_the_ladder_holds_loops(tmp_path):
@@ -207,8 +238,11 @@ def spoil(program: Program, **changes):
     return replace(program, outputs=values, table=table)
 
 
-@pytest.mark.parametrize("function", ["rhs", "jacobian_vector"])
-@pytest.mark.parametrize("change", ["sign", "factor", "row"])
+WRONG = [(each, change) for each in ("rhs", "jacobian_vector") for change in ("sign", "row")]
+WRONG += [(each, "factor") for each in ("rhs", "jacobian_vector", "energy", "observables")]
+
+
+@pytest.mark.parametrize(("function", "change"), [*WRONG, ("energy", "sign")])
 def test_a_wrong_entry_is_caught(function, change):
     """One coefficient, one factor or one row in the table of so(5)."""
     program = programs(5, 0)[function]
