@@ -16,7 +16,7 @@ from pydantic import Field
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
-from coadjoint.algebra.families import so_indefinite
+from coadjoint.algebra.families import so, so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
@@ -327,7 +327,8 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
             a, b = place[i], place[j]
             sign = 1 if a < b else -1
             constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    if size > 2 and constants != dict(so_indefinite(size, 0).constants):
+    planes = so_indefinite(3, 0) if size == 3 else so(size)  # so(3) has other axes
+    if size > 2 and constants != dict(planes.constants):
         names = list_names(algebra.basis[b] for b in block)
         raise source.fault(
             key,
