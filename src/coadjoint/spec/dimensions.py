@@ -288,7 +288,11 @@ class Units:
             name: Measured(each.shape, tuple(e and balance.reduce(e) for e in each.entries))
             for name, each in self.names.items()
         }
-        return KnownUnits(names, self.own)
+        known = KnownUnits(names, self.own)
+        if not self.asked:
+            return known
+        declared = "" if self.spec.time is None else self.spec.time.unit
+        return replace(known, time=declared or known.label([balance.reduce(self.time)]))
 
 
 def _list_quantities(spec: Spec) -> Iterator[tuple[KeyPath, Any]]:
@@ -318,8 +322,8 @@ def infer_units(source: Source, spec: Spec, demand_laws: Callable[[Units], None]
     known = units.known(balance)
 
     def say(each: Any) -> str:
-        if isinstance(each, Time) and not units.asked:
-            return each.unit or "s"
+        if isinstance(each, Time):
+            return each.unit or known.time
         return each.unit or known.label(known.names[name].entries[0] for name in each.components)
 
     return replace(_fill(spec, say), units=known)

@@ -102,10 +102,12 @@ class KnownUnits:
     Attributes:
         names: Whole quantities, components and ``energy``.
         own: The symbols with a factor that the spec uses, in which labels are written.
+        time: The text of the unit of time, "s" where no unit is declared.
     """
 
     names: Mapping[str, Measured]
     own: Mapping[str, Unit]
+    time: str = "s"
 
     def label(self, entries: Iterable[Entry]) -> str:
         """The text of the units of some components, one where they agree; "" if not known."""
