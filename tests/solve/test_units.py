@@ -58,5 +58,5 @@ def test_time_has_its_unit_in_every_output(tmp_path):
     assert '"time": "h"' in (tmp_path / "table.csv").read_text()
     dataset = solution.to_xarray()
     assert dataset["time"].attrs["units"] == "h"
-    assert rigid_body.unit_of_time == "s"
+    assert rigid_body.system.unit_of_time == "s"
     assert unit_label("1") == ""
