@@ -1,6 +1,7 @@
 """Units: their texts, what formulas and laws demand of them, and what is inferred."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -370,6 +371,9 @@ def test_a_pendulum_is_in_units_and_in_no_others():
     )
     assert (energy.found, energy.expected) == ("kg m", "kg m^2/s^2")
     assert energy.key == "lagrangian.l"
+    said = "the unit of the energy is kg m; expected kg m^2/s^2. A momentum times its velocity is"
+    assert said in str(energy)
+    assert said in (Path(__file__).parents[2] / "docs" / "specs.md").read_text()
     degrees = refused(PENDULUM, ('"rad"', '"deg"'), ('"rad/s"', '"deg/s"'))
     assert "deg" in degrees.found or "deg" in str(degrees)
     assert "nothing is converted" in str(refused(PENDULUM, ('"kg"', '"g"')))
