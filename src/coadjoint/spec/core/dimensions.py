@@ -79,7 +79,7 @@ class Balance:
         if not free:
             return left == ONE
         rest = Unit(tuple((name, e) for name, e in left.powers if name != free[0]))
-        value = rest ** (-1 / powers[free[0]])
+        value = rest ** (-1 / Fraction(powers[free[0]]))
         if free[0] == self.pure and value != ONE:
             return False
         self.known[free[0]] = value
@@ -87,12 +87,14 @@ class Balance:
 
     def reduce(self, unit: Unit) -> Unit:
         """A unit with all that is known put in."""
-        while any(name in self.known for name in unit.unknowns):
-            unit = product_of(
-                (self.known.get(name) or Unit(((name, Fraction(1)),)), exponent)
-                for name, exponent in unit.powers
-            )
-        return unit
+        found = [name for name in unit.unknowns if name in self.known]
+        if not found:
+            return unit
+        for name in found:  # kept, so that no chain of names is walked twice
+            self.known[name] = self.reduce(self.known[name])
+        return product_of(
+            (self.known.get(name) or Unit(((name, 1),)), exponent) for name, exponent in unit.powers
+        )
 
 
 @dataclass(frozen=True)

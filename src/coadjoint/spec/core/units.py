@@ -21,6 +21,8 @@ from types import MappingProxyType
 
 from coadjoint.spec.core.faults import find_near
 
+#: Exact; an integer where it is one, which is faster by far than a fraction.
+Exponent = int | Fraction
 #: What a base unit of the SI is, what a prime factor is, and pi; and what is not known yet.
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd")
 UNKNOWN = "?"
@@ -80,7 +82,7 @@ class Unit:
     (True, False)
     """
 
-    powers: tuple[tuple[str, Fraction], ...] = ()
+    powers: tuple[tuple[str, Exponent], ...] = ()
 
     def __mul__(self, other: Unit) -> Unit:
         return product_of(((self, 1), (other, 1)))
@@ -88,7 +90,7 @@ class Unit:
     def __truediv__(self, other: Unit) -> Unit:
         return product_of(((self, 1), (other, -1)))
 
-    def __pow__(self, exponent: Fraction | int) -> Unit:
+    def __pow__(self, exponent: Exponent) -> Unit:
         return product_of(((self, exponent),))
 
     @property
@@ -100,22 +102,23 @@ class Unit:
 ONE = Unit()
 
 
-def product_of(factors: Iterable[tuple[Unit, Fraction | int]]) -> Unit:
+def product_of(factors: Iterable[tuple[Unit, Exponent]]) -> Unit:
     """A product of powers of units.
 
     >>> write_unit(product_of([(read_unit("kg m/s"), 2), (read_unit("kg"), -1)]))
     'kg m^2/s^2'
     """
-    powers: dict[str, Fraction] = {}
+    powers: dict[str, Exponent] = {}
     for unit, times in factors:
         for name, exponent in unit.powers:
-            powers[name] = powers.get(name, Fraction(0)) + exponent * times
-    return Unit(tuple(sorted((name, e) for name, e in powers.items() if e)))
+            powers[name] = powers.get(name, 0) + exponent * times
+    whole = ((n, e.numerator if e.denominator == 1 else e) for n, e in powers.items() if e)
+    return Unit(tuple(sorted(whole)))
 
 
 def unknown(name: str) -> Unit:
     """A unit that is not known yet, called by a name."""
-    return Unit(((UNKNOWN + name, Fraction(1)),))
+    return Unit(((UNKNOWN + name, 1),))
 
 
 # -- texts to units -------------------------------------------------------------------------------
@@ -239,14 +242,14 @@ def find_symbol(symbol: str) -> Unit | None:
     True
     """
     if symbol in BASE:
-        return Unit(((symbol, Fraction(1)),))
+        return Unit(((symbol, 1),))
     if symbol in _DERIVED:
         return read_unit(_DERIVED[symbol])
     if symbol in _SCALED:
         factor, text = _SCALED[symbol]
         return factor_unit(factor) * read_unit(text)
     if symbol in _DEGREES:
-        return Unit((("pi", Fraction(1)),)) / factor_unit(Fraction(_DEGREES[symbol]))
+        return Unit((("pi", 1),)) / factor_unit(Fraction(_DEGREES[symbol]))
     for prefix, power in _PREFIXES.items():
         rest = symbol.removeprefix(prefix)
         known = (*BASE, *_DERIVED, *_SCALED)
@@ -257,7 +260,7 @@ def find_symbol(symbol: str) -> Unit | None:
 
 def factor_unit(factor: Fraction) -> Unit:
     """A number as a product of powers of primes."""
-    powers: dict[str, Fraction] = {}
+    powers: dict[str, Exponent] = {}
     for whole, sign in ((factor.numerator, 1), (factor.denominator, -1)):
         rest, prime = whole, 2
         while rest > 1:
@@ -265,7 +268,7 @@ def factor_unit(factor: Fraction) -> Unit:
                 prime = rest
             while rest % prime == 0:
                 rest //= prime
-                powers[str(prime)] = powers.get(str(prime), Fraction(0)) + sign
+                powers[str(prime)] = powers.get(str(prime), 0) + sign
             prime += 1
     return Unit(tuple(sorted(powers.items())))
 
@@ -298,11 +301,11 @@ def write_unit(unit: Unit, own: Mapping[str, Unit] = MappingProxyType({})) -> st
     >>> write_unit(read_unit("km/h"), {"km": read_unit("km"), "h": read_unit("h")})
     'km/h'
     """
-    words: list[tuple[str, Fraction]] = []
+    words: list[tuple[str, Exponent]] = []
     for symbol, each in own.items():
         powers, has = dict(each.powers), dict(unit.powers)
         base = [name for name in powers if name in BASE] or ["pi"]
-        times = has.get(base[0], Fraction(0)) / powers.get(base[0], Fraction(1))
+        times = Fraction(has.get(base[0], 0)) / powers.get(base[0], 1)
         if times:
             unit = unit / each**times
             words.append((symbol, times))
@@ -324,7 +327,7 @@ def label_unit(unit: Unit, own: Mapping[str, Unit] = MappingProxyType({})) -> st
     rest = unit
     for each in own.values():
         base = [name for name, _ in each.powers if name in BASE] or ["pi"]
-        times = dict(rest.powers).get(base[0], Fraction(0)) / dict(each.powers)[base[0]]
+        times = Fraction(dict(rest.powers).get(base[0], 0)) / dict(each.powers)[base[0]]
         rest = rest / each**times * Unit(tuple((n, times) for n in base if n in BASE and times))
     return write_unit(unit, own) if is_plain(rest) else ""
 
@@ -363,7 +366,7 @@ def split_units(text: str, count: int) -> Sequence[tuple[str, int]] | None:
     )
 
 
-def _write_factor(powers: Sequence[tuple[str, Fraction]]) -> list[str]:
+def _write_factor(powers: Sequence[tuple[str, Exponent]]) -> list[str]:
     """The number in front of a unit."""
     whole = [(int(name), int(e)) for name, e in powers if e.denominator == 1]
     number = Fraction(1)
@@ -373,7 +376,7 @@ def _write_factor(powers: Sequence[tuple[str, Fraction]]) -> list[str]:
     return [*([str(number)] if number != 1 else []), *roots]
 
 
-def _power(name: str, exponent: Fraction) -> str:
+def _power(name: str, exponent: Exponent) -> str:
     if exponent == 1:
         return name
     text = str(exponent)
