@@ -213,6 +213,16 @@ def test_unknown_units_are_found_by_exact_elimination():
     assert not balance.meet(Demand(found=c, expected=read_unit("m")))
 
 
+def test_a_long_chain_of_unknown_units_is_no_recursion():
+    """x1 = x2 = ... = x3000, and the last one is a metre: so is the first."""
+    chain, balance = [unknown(f"x{n}") for n in range(3000)], Balance()
+    for one, other in zip(chain, chain[1:], strict=False):
+        assert balance.meet(Demand(found=one, expected=other))
+    assert balance.meet(Demand(found=chain[-1], expected=read_unit("m")))
+    assert write_unit(balance.reduce(chain[0])) == "m"
+    assert not balance.meet(Demand(found=chain[7], expected=read_unit("s")))
+
+
 # -- specs ----------------------------------------------------------------------------------------
 
 BODY = RIGID_BODY.replace('role = "velocity"', 'role = "velocity", unit = "1/s"').replace(

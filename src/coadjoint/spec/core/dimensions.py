@@ -87,11 +87,24 @@ class Balance:
 
     def reduce(self, unit: Unit) -> Unit:
         """A unit with all that is known put in."""
-        found = [name for name in unit.unknowns if name in self.known]
-        if not found:
+        pending = self._list_known(unit)
+        while pending:  # what is put in is kept, so that no chain of names is walked twice
+            inner = self._list_known(self.known[pending[-1]])
+            deeper = [name for name in inner if self._list_known(self.known[name])]
+            pending += deeper
+            if not deeper:
+                name = pending.pop()
+                self.known[name] = self._put_in(self.known[name])
+        return self._put_in(unit)
+
+    def _list_known(self, unit: Unit) -> list[str]:
+        """The unknowns in a unit that are known by now."""
+        return [name for name in unit.unknowns if name in self.known]
+
+    def _put_in(self, unit: Unit) -> Unit:
+        """A unit with what is known put in once."""
+        if not self._list_known(unit):
             return unit
-        for name in found:  # kept, so that no chain of names is walked twice
-            self.known[name] = self.reduce(self.known[name])
         return product_of(
             (self.known.get(name) or Unit(((name, 1),)), exponent) for name, exponent in unit.powers
         )
