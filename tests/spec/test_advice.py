@@ -94,6 +94,13 @@ ADVICE = [
         'Write unit = "1/s".',
         write("m/s", "1/s"),
     ),
+    # -- blocks
+    (
+        TOP.replace("[parameters]", '[representations.turn]\nright = "rotation"\n[parameters]'),
+        write('representation = "vector"', 'representation = "turn", block = "rotation"'),
+        "Remove block.",
+        write(', block = "rotation"', ""),
+    ),
     # -- routes
     (
         RIGID_BODY,

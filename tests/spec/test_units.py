@@ -1,6 +1,7 @@
 """Units: their texts, what formulas and laws demand of them, and what is inferred."""
 
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -216,7 +217,7 @@ def test_unknown_units_are_found_by_exact_elimination():
 def test_a_long_chain_of_unknown_units_is_no_recursion():
     """x1 = x2 = ... = x3000, and the last one is a metre: so is the first."""
     chain, balance = [unknown(f"x{n}") for n in range(3000)], Balance()
-    for one, other in zip(chain, chain[1:], strict=False):
+    for one, other in pairwise(chain):
         assert balance.meet(Demand(found=one, expected=other))
     assert balance.meet(Demand(found=chain[-1], expected=read_unit("m")))
     assert write_unit(balance.reduce(chain[0])) == "m"

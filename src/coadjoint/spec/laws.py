@@ -119,9 +119,9 @@ def _demand_advected(units: Units, each: Variable, along: dict[int, Unit]) -> No
             for unit in _of_constant(units, value):
                 moved = along[place] * unit * own[column] * units.time
                 units.require(_unit_key(each), own[row], moved, why)
-    if action.name in ATTITUDES:
+    if action.name in ATTITUDES or each.form == "quaternion":
         entries = units.names[each.name]
-        fixed = own if action.name == "quaternion" else entries.entries[:: entries.shape[0] + 1]
+        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[0] + 1]
         for entry in fixed:
             units.require(_unit_key(each), entry, ONE, "An attitude is made of pure numbers.")
 
@@ -216,18 +216,20 @@ def _multiply(units: Units, mass: Formula, matrix: Measured, rate: Measured) -> 
 
 def _demand_constraints(units: Units) -> None:
     """Both sides fit, and a multiplier times what is constrained is a power."""
-    for each in units.spec.constraints:
+    for each in (*units.spec.constraints, *units.spec.variational):
         left, right = units.value(each.left), units.value(each.right)
         what = "the left side has the unit {expected} and the right side {found}"
         length = max(len(left), len(right))  # a side that is 0 may stand for a vector
         sides = [side if len(side) == length else (None,) * length for side in (left, right)]
-        reactions = units.names[each.reaction].entries
-        for one, other, reaction in zip(*sides, reactions, strict=True):
+        for one, other in zip(*sides, strict=True):
             units.require(each.left.path, other, one, what=what, wanted="two sides of one unit")
-            residual = other if one is None else one
-            if residual is not None:
-                expected = units.energy / units.time / residual
-                units.require(each.left.path, reaction, expected, _POWER)
+        if each in units.spec.constraints:
+            reactions = units.names[each.reaction].entries
+            for one, other, reaction in zip(*sides, reactions, strict=True):
+                residual = other if one is None else one
+                if residual is not None:
+                    expected = units.energy / units.time / residual
+                    units.require(each.left.path, reaction, expected, _POWER)
     for condition in units.spec.domain:
         units.compare(condition.left, condition.right)
 
