@@ -117,6 +117,12 @@ def test_every_table_and_every_key_is_on_the_page():
     shown = [find_part(table).model_fields.keys() for table in marked]
     missing = [p.__name__ for p in parts if not any(p.model_fields.keys() <= s for s in shown)]
     assert missing == []
+    index = re.findall(r"^\|.*\| \[`\[(\w+).*\]\(#([\w-]+)\) \|", write_page(PROSE), re.MULTILINE)
+    assert sorted(name for name, _ in index) == sorted(table.key for table in TABLES)
+    headings = re.findall(r"^## (.*)$", PROSE, re.MULTILINE)
+    assert {place for _, place in index} <= {
+        h.lower().replace(" ", "-").replace("'", "") for h in headings
+    }
     assert len(parts) > 30
 
 

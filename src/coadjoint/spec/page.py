@@ -17,7 +17,7 @@ from coadjoint.algebra.catalogue import FAMILIES, MEANINGS, REPRESENTATIONS
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.shapes import FUNCTIONS
 from coadjoint.spec.schema import Head, SpecFile
-from coadjoint.spec.tables import BY_KEY, TABLES
+from coadjoint.spec.tables import BY_KEY
 
 NOTICE = "<!-- Made from docs/specs.in.md by `make docs`: edit that file. -->\n"
 _MARK = re.compile(r"^\{\{ (\w+)(?: ([\w.]+))? \}\}$|\{\{ (algebras) \}\}", re.MULTILINE)
@@ -33,6 +33,8 @@ def write_page(prose: str) -> str:
     """
 
     def expand(mark: re.Match[str]) -> str:
+        if mark[1] == "tables":
+            return _write_tables(prose)
         return _EXPANSIONS[mark[1] or mark[3]](mark[2] or "")
 
     return NOTICE + _NAMED.sub("```toml", _MARK.sub(expand, prose))
@@ -68,9 +70,19 @@ def find_parts(annotation: Any) -> Iterator[type[Part]]:
 # -- what takes the place of a mark ---------------------------------------------------------------
 
 
-def _write_tables(_: str) -> str:
-    rows = [("table", "what it says")]
-    rows += [(f"`{_head_of(each.key)}`", each.description) for each in TABLES]
+def _write_tables(prose: str) -> str:
+    """All tables in the order of the page, under its titles, each with a link to its place."""
+    rows, group, place = [("", "table", "what it says")], "", ""
+    for line in prose.splitlines():
+        mark = _MARK.fullmatch(line)
+        if line.startswith("# ") and not line.startswith("# added"):
+            group = line.removeprefix("# ")
+        elif line.startswith("## "):
+            place = line.removeprefix("## ").lower().replace(" ", "-").replace("'", "")
+        elif mark is not None and mark[2] in BY_KEY:
+            link = f"[`{_head_of(mark[2])}`](#{place})"
+            rows.append((group, link, BY_KEY[mark[2]].description))
+            group = ""  # said once, in its first row
     return _lay_out(rows)
 
 
@@ -147,7 +159,6 @@ def _write_algebras(_: str) -> str:
 
 
 _EXPANSIONS: Mapping[str, Callable[[str], str]] = {
-    "tables": _write_tables,
     "keys": _write_keys,
     "functions": _write_functions,
     "representations": _write_representations,
