@@ -14,7 +14,7 @@ from tests.derive.test_configuration import FREE, LAW, WITHOUT_MOMENTA
 from tests.derive.test_lax_alone import TODA, VOLTERRA
 from tests.prove.test_reductions import IN_STEP
 from tests.spec.test_consistency import MOMENTA_ONLY
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, shipped, spec, unitless
 
 FOLDER = Path(coadjoint.derive.__file__).parent
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
@@ -48,7 +48,7 @@ B = [[0, 0, 1], [0, 0, 0], [-1, 0, 0]]
 C = [[0, -1, 0], [1, 0, 0], [0, 0, 0]]"""
 COMPLEX = [('"lie-poisson"]', '"lie-poisson", "complexification"]')]
 #: Manakov's pair with a quadratic potential, the declared pair left out.
-POTENTIAL = shipped("quadratic_potential_so3").path.read_text(encoding="utf-8")
+POTENTIAL = unitless(shipped("quadratic_potential_so3").path.read_text(encoding="utf-8"))
 POTENTIAL = POTENTIAL[: POTENTIAL.index("[lax]")].replace(
     '["euler-poincare", "matrix-euler-poincare", "lie-poisson", "lax", "manakov"]',
     '["euler-poincare", "manakov"]',
