@@ -12,7 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven
+from tests.sources import classical, driven, fields, machines
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -181,6 +181,8 @@ CONFIGURATIONS = (
     "n_particles",
     "rocking_disk",
     *classical.CONFIGURATIONS,
+    *fields.CONFIGURATIONS,
+    *machines.CONFIGURATIONS,
     *ROLLING,
     "tippe_top",
 )
@@ -192,9 +194,10 @@ QUOTIENTS = (
     *BALLS,
     *CONFIGURATIONS,
     *classical.QUOTIENTS,
+    *machines.QUOTIENTS,
 )
 #: Constrained motions: their bracket moves momenta, and Jacobi's identity fails.
-CONSTRAINED = (*BALLS, *ROLLING, *classical.TENSORS)
+CONSTRAINED = (*BALLS, *ROLLING, *classical.TENSORS, *machines.TENSORS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -237,6 +240,8 @@ RATES = {
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
     **classical.RATES,
     **driven.RATES,
+    **fields.RATES,
+    **machines.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
     "tippe_top": tippe_rates,
@@ -277,6 +282,8 @@ OBSERVABLES = {
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
     **classical.OBSERVABLES,
     **driven.OBSERVABLES,
+    **fields.OBSERVABLES,
+    **machines.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
     "tippe_top": tippe_observables,
@@ -315,6 +322,8 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
     **classical.TENSORS,
     **driven.TENSORS,
+    **fields.TENSORS,
+    **machines.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -355,6 +364,8 @@ STATES = {
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
     **classical.STATES,
     **driven.STATES,
+    **fields.STATES,
+    **machines.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
     "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
@@ -395,6 +406,8 @@ PARAMETERS = {
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
     **classical.PARAMETERS,
     **driven.PARAMETERS,
+    **fields.PARAMETERS,
+    **machines.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
