@@ -138,10 +138,10 @@ def maxwell_observables(x: Vector, parameters: Vector) -> dict[str, Any]:
 # -- charges in a magnetic bottle: Northrop (1963), Littlejohn (1983) ------------------------------
 
 
-def bottle_field(x: Vector, B0: Any, L: Any, twist: Any = 0) -> list[Any]:
-    """``B0 (-x z/L^2 - twist y, -y z/L^2 + twist x, 1 + z^2/L^2)``."""
+def bottle_field(x: Vector, B0: Any, L: Any) -> list[Any]:
+    """``B0 (-x z/L^2, -y z/L^2, 1 + z^2/L^2)``."""
     w = x[2] / L**2
-    return times(B0, [-x[0] * w - twist * x[1], -x[1] * w + twist * x[0], 1 + x[2] * w])
+    return times(B0, [-x[0] * w, -x[1] * w, 1 + x[2] * w])
 
 
 def bottle_rates(state: Vector, parameters: Vector) -> list[Any]:
@@ -211,14 +211,13 @@ def centre_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def centre_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """``m u^2/2 + mu |B|``, and ``q A_phi rho + m u b_phi rho``."""
-    m, q, mu, B0, L, _ = parameters
-    b, strength, _, _ = centre_parts(state, parameters)
+    """``m u^2/2 + mu |B|``, and ``q A_phi rho``."""
+    m, q, mu, B0, L = parameters
     x, y, z, u = state
     flux = B0 * (x**2 + y**2) * (1 + z**2 / L**2) / 2
     return {
-        "energy": m * u**2 / 2 + mu * strength,
-        "J": q * flux + m * u * (x * b[1] - y * b[0]),
+        "energy": m * u**2 / 2 + mu * centre_parts(state, parameters)[1],
+        "J": q * flux,
     }
 
 
@@ -273,7 +272,7 @@ PARAMETERS = {
     "hess_appelrot": ("I1", "I3", "d", "m", "g", "chi"),
     "maxwell_bloch": (),
     "magnetic_bottle": ("m", "q", "B0", "L"),
-    "guiding_centre": ("m", "q", "mu", "B0", "L", "twist"),
+    "guiding_centre": ("m", "q", "mu", "B0", "L"),
 }
 #: With lengths of the state, typed to 80 digits.
 CONFIGURATIONS = ("magnetic_bottle", "guiding_centre")
