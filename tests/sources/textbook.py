@@ -12,7 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven, fields, machines
+from tests.sources import classical, driven, extremals, fields, machines
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -181,6 +181,7 @@ CONFIGURATIONS = (
     "n_particles",
     "rocking_disk",
     *classical.CONFIGURATIONS,
+    *extremals.CONFIGURATIONS,
     *fields.CONFIGURATIONS,
     *machines.CONFIGURATIONS,
     *ROLLING,
@@ -240,6 +241,7 @@ RATES = {
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
     **classical.RATES,
     **driven.RATES,
+    **extremals.RATES,
     **fields.RATES,
     **machines.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
@@ -282,6 +284,7 @@ OBSERVABLES = {
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
     **classical.OBSERVABLES,
     **driven.OBSERVABLES,
+    **extremals.OBSERVABLES,
     **fields.OBSERVABLES,
     **machines.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
@@ -322,6 +325,7 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
     **classical.TENSORS,
     **driven.TENSORS,
+    **extremals.TENSORS,
     **fields.TENSORS,
     **machines.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
@@ -364,6 +368,7 @@ STATES = {
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
     **classical.STATES,
     **driven.STATES,
+    **extremals.STATES,
     **fields.STATES,
     **machines.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
@@ -406,6 +411,7 @@ PARAMETERS = {
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
     **classical.PARAMETERS,
     **driven.PARAMETERS,
+    **extremals.PARAMETERS,
     **fields.PARAMETERS,
     **machines.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
