@@ -75,8 +75,9 @@ def test_a_double_pendulum_hangs_with_the_frequencies_of_the_book():
 
 
 def test_the_rods_of_a_double_pendulum_keep_their_length():
-    """Over a minute, to the accuracy of the projection and of the steps."""
-    motion = system("double_spherical_pendulum").simulate(time=(0, 20), samples=201)
+    """Over twenty seconds, to the accuracy of the projection and of the steps."""
+    start = [0.6, 0, -0.8, 0, 0.28, -0.96, 0, 1, 0, 1, 0, 0]
+    motion = system("double_spherical_pendulum").simulate(start, (0, 20), samples=201)
     assert motion.status == "OK"
     assert np.abs(np.sum(motion["gamma1"] ** 2, axis=0) - 1).max() < 1e-7
     assert max(motion.drift.values()) < 1e-6
