@@ -22,6 +22,7 @@ from coadjoint.lower.program import (
     Program,
     Statement,
     Symbol,
+    Table,
     walk,
 )
 
@@ -200,4 +201,47 @@ FOLLOWED = replace(
         program("reconstruction", "q p x y", "r", BELOW, "_t1 - _t2; _t3 + r", (2,)),
     ),
     reconstructed=(Quantity("x", (), "1", ("x",)), Quantity("y", (), "1", ("y",))),
+)
+
+#: Entries of a table over x, y, z, u = p x and v = 3 z/2: a product that two rates have, one that
+#: three entries have, squares, and products of two values that are scaled.
+ENTRIES = """
+0 1 2 1     0 3 1 1/2   0 4 1 -2
+1 0 2 -1    1 3 4 3/4   1 1 1 1/8
+2 0 1 1/2   2 1 2 -1/4  2 3 3 -1/8
+"""
+_numbers = ENTRIES.split()
+TABLE = Table(
+    entries=tuple(
+        (int(i), int(j), int(k), Fraction(c))
+        for i, j, k, c in zip(*(_numbers[place::4] for place in range(4)), strict=True)
+    ),
+    vectors=(("x", "y", "z", "u", "v"),),
+    scaled=(0, 2),
+    scales=(Symbol("_p1"), Number(Fraction(3, 2))),
+    passes=((0, 0),),
+)
+_RATES = program("rhs", "x y z", "p q", "_p1 = p/q; u = _p1*x; v = 1.5*z", "0; 0; 0", (3,))
+
+#: Rates that loop over this table, in a domain.
+LOOPED = KernelContext(
+    name="looped",
+    spec="derivations/looped.toml",
+    license="",
+    routes=("Route: typed by hand.",),
+    equations=("dx/dt = y*z + u*y/2 - 2*v*y", "dy/dt = ...", "dz/dt = ..."),
+    state=(Quantity("X", (3,), "1", ("x", "y", "z")),),
+    parameters=(Quantity("p", (), "1", ("p",), (0.75,)), Quantity("q", (), "1", ("q",), (1.5,))),
+    observables=(Quantity("sum", (), "1", ("sum",)),),
+    programs=(
+        replace(
+            _RATES,
+            outputs=tuple(map(Output, ("dx/dt", "dy/dt", "dz/dt"), TABLE.sums())),
+            table=TABLE,
+        ),
+        program("energy", "x y z", "p q", "", "(x*x + y*y + z*z)/2", (), "energy"),
+        program("observables", "x y z", "p q", "", "x + y + z", (1,), "sum"),
+        program("domain", "x y z", "p q", "", "8 - x", (1,), "one"),
+    ),
+    domain=(Bound("one", "condition", True, ("x",)),),
 )

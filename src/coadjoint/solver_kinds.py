@@ -54,11 +54,9 @@ FILES: Final = tuple(file for kind in KINDS for file in kind.files)
 
 
 def list_kinds(functions: Collection[str]) -> tuple[SolverKind, ...]:
-    """The kinds of solvers that a system has; none where its rates are loops over a table.
+    """The kinds of solvers that a system has.
 
     Args:
         functions: The names of its functions.
     """
-    if "jacobian_vector" in functions:
-        return ()
     return tuple(kind for kind in KINDS if set(kind.rates) <= set(functions))

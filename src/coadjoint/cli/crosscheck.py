@@ -109,8 +109,6 @@ def _print(report: Mapping[str, Any]) -> None:
     ]
     columns = ("function", "target", ">k", ">ulp", ">points", ">with NumPy")
     print_table(columns, rows, title=f"Cross-check of {report['system']}")
-    if not report["solvers"]:
-        say("solvers: none, since the rates are loops over a table")
     for kind, figures in report["solvers"].items():
         _print_solvers(kind, figures)
     for rung, status in report["rungs"].items():

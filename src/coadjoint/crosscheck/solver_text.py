@@ -12,7 +12,7 @@ Read next: `coadjoint.crosscheck.recurrences`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import zip_longest
 
@@ -22,6 +22,7 @@ from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import TEMPLATES, Row, name_solver
 from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
+from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c import solver_reader as c_reader
 from coadjoint.render.targets.numpy import solver_reader as numpy_reader
@@ -62,11 +63,16 @@ def check_solver_texts(texts: SolverTexts) -> int:
     """
     c, _, numpy = texts.kind.files
     check_rest(texts)
-    compared = _check_tables(c_reader.read_tables(texts.files[c], c), dop853(), c)
+    loops, table = texts.recurrences.loops, dop853()
+    looped = loops.numbers if loops else {}
+    tableau = {each.name: tuple(map(float, getattr(table, each.name))) for each in fields(table)}
+    compared = _check_tables(c_reader.read_tables(texts.files[c], c), {**looped, **tableau}, c)
+    compared += _check_tables(numpy_reader.read_tables(texts.files[numpy], numpy), looped, numpy)
     for function in ("find_fixed", "expand", *(f"find_{name}" for name in texts.programs)):
-        body = c_reader.read_function(texts.files[c], function, c)
-        compared += _check_body(body, _expected(texts, function), c, function)
-    body = numpy_reader.read_expand(texts.files[numpy], numpy)
+        if not loops or function not in c_reader.LOOPED:
+            body = c_reader.read_function(texts.files[c], function, c)
+            compared += _check_body(body, _expected(texts, function), c, function)
+    body = numpy_reader.read_expand(texts.files[numpy], numpy, is_looped=loops is not None)
     return compared + _check_body(body, _expected(texts, numpy), numpy, "expand")
 
 
@@ -86,6 +92,10 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
         found = arrange_function(name, texts.programs[name])
         arrays = ("state", "parameters", "driving", *(["fixed"] if name == "rates" else []))
         return _body(rows, arrays, found.reads, found.lines)
+    if solver.loops:
+        body = _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
+        body.scales = list(solver.loops.scales)
+        return body
     is_c = function == "expand"
     reads = solver.reads.union(program.state, (frozenset() if is_c else solver.fixed_reads))
     arrays = ("state", "parameters", "driving", *(["fixed"] if is_c else []))
@@ -130,6 +140,7 @@ def _check_body(found: SolverBody, expected: SolverBody, file: str, function: st
     lines = [
         *zip_longest(sorted(found.inputs.items()), sorted(expected.inputs.items())),
         *zip_longest(found.kept, expected.kept),
+        *zip_longest(found.scales, expected.scales),
         *zip_longest(found.lines, expected.lines),
         *zip_longest(found.orders, expected.orders),
     ]
@@ -146,22 +157,22 @@ def _check_body(found: SolverBody, expected: SolverBody, file: str, function: st
     return sum(1 + (len(one.lines) if isinstance(one, Loop) else 0) for one, _ in lines)
 
 
-def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau, file: str) -> int:
-    """The tables are the tableau, number by number."""
-    compared = 0
-    for field in fields(table):
-        entries = tuple(map(float, getattr(table, field.name)))
-        for place, (one, other) in enumerate(zip_longest(found.get(field.name, ()), entries)):
+def _check_tables(
+    found: Mapping[str, Sequence[float]], expected: Mapping[str, Sequence[float]], file: str
+) -> int:
+    """The tables are what they are to be, number by number."""
+    for name in {**expected, **found}:
+        pairs = zip_longest(found.get(name, ()), expected.get(name, ()))
+        for place, (one, other) in enumerate(pairs):
             if one != other:
                 raise failure(
-                    f"{file}: entry {place} of {field.name} is {one!r}; expected {other!r}",
-                    field.name,
+                    f"{file}: entry {place} of {name} is {one!r}; expected {other!r}",
+                    name,
                     file=file,
                     found=repr(one),
                     expected=repr(other),
                 )
-        compared += len(entries)
-    return compared
+    return sum(map(len, expected.values()))
 
 
 # -- the rest of the text -------------------------------------------------------------------------
@@ -174,10 +185,9 @@ def check_rest(texts: SolverTexts) -> None:
         CrossCheckError: A line differs.
     """
     expected = _render_without_lines(texts)
-    cuts: tuple[Callable[[str], str], ...] = (c_reader.rest, str, numpy_reader.rest)
-    for file, cut in zip(texts.kind.files, cuts, strict=True):
-        text = texts.files[file]
-        pairs = zip_longest(cut(text).splitlines(), cut(expected[file]).splitlines())
+    for file, text in texts.files.items():
+        cut = (_cut(texts, file, each) for each in (text, expected[file]))
+        pairs = zip_longest(*map(str.splitlines, cut))
         for number, (one, other) in enumerate(pairs, 1):
             if one != other:
                 raise failure(
@@ -188,6 +198,15 @@ def check_rest(texts: SolverTexts) -> None:
                     found=str(one),
                     expected=str(other),
                 )
+
+
+def _cut(texts: SolverTexts, file: str, text: str) -> str:
+    """A text without what belongs to the system."""
+    looped = texts.recurrences.loops is not None
+    c, _, numpy = texts.kind.files
+    if file == c:
+        return c_reader.rest(text, is_looped=looped)
+    return numpy_reader.rest(text, is_looped=looped) if file == numpy else text
 
 
 def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
@@ -219,6 +238,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
             "solver": bare,
+            "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},

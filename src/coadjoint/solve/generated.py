@@ -70,8 +70,6 @@ def find_stepwise(system: System, inputs: Any) -> str:
     """
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
-    if not list_kinds(system.functions):
-        return "the rates are loops over a table, for which no recurrences are generated"
     return ""
 
 

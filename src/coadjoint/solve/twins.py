@@ -132,9 +132,9 @@ class NumpyStepper:
 class StepwiseStepper(NumpyStepper):
     """Steps that are made in Python, each stage by a call of the kernel and of the inputs.
 
-    For inputs that are a function of Python, which no compiled solver can call, and for rates that
-    are loops over a table. It has the methods of Runge and Kutta: a Taylor series has all orders of
-    the inputs, and a function tells their values alone.
+    For inputs that are a function of Python, which no compiled solver can call. It has the methods
+    of Runge and Kutta: a Taylor series has all orders of the inputs, and a function tells their
+    values alone.
 
     Args:
         system: The System.
