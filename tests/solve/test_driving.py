@@ -271,7 +271,9 @@ def test_a_run_without_inputs_takes_none():
 
 def test_a_domain_that_moves(tmp_path):
     """X = 3 t^2/4 < f + t, with f = 3, until t = (1 + sqrt(10))/1.5; the message has f and t."""
-    bounded = POINT + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    bounded = (
+        POINT.replace(', unit = "N"', "") + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    )
     found = build(rendered(bounded).texts, tmp_path / "sample").simulate([0.0, 0.0], (0.0, 4.0))
     assert found.status == "DOMAIN"
     assert abs(found.time_reached - (1 + np.sqrt(10)) / 1.5) < 1e-9
@@ -356,7 +358,9 @@ def test_a_function_is_asked_by_one_thread_and_never_beyond_the_run(system):
 
 def test_a_function_leaves_and_keeps_what_others_do(system, tmp_path):
     """Domain, constraints that move, checkpoint and file have the inputs of the moment."""
-    bounded = POINT + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    bounded = (
+        POINT.replace(', unit = "N"', "") + '[time]\nname = "t"\n[domain]\nahead = "x < f + t"\n'
+    )
     found = build(rendered(bounded).texts, tmp_path / "sample").simulate(
         [0.0, 0.0], (0.0, 4.0), None, lambda t: {"f": 3.0}
     )
