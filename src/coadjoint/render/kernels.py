@@ -201,6 +201,8 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
     present = [f"{name}={name.upper()}" for name in _optional(context)]
+    if context.unit_of_time != "s":
+        present.append(f"unit_of_time={quote(context.unit_of_time)}")
     return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 

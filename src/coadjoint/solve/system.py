@@ -62,6 +62,7 @@ class System(Functions):
         RECONSTRUCTED: What follows from the motion without acting on it, in order.
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
+        unit_of_time: The unit of the time, also where the system does not depend on it.
     """
 
     def __init__(
@@ -78,6 +79,7 @@ class System(Functions):
         reconstructed: Quantities | None = None,
         inputs: Quantities | None = None,
         time: Quantities | None = None,
+        unit_of_time: str = "s",
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -91,6 +93,7 @@ class System(Functions):
         self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
         self.INPUTS = Quantities() if inputs is None else inputs
         self.TIME = Quantities() if time is None else time
+        self.unit_of_time = unit_of_time
 
     # -- functions --------------------------------------------------------------------------------
 

@@ -93,7 +93,7 @@ class VariablePart(Part):
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
         "components, or a list of them",
     )
-    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 
@@ -107,7 +107,7 @@ class Variable(Components):
         shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
         block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
-        unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
+        unit: Unit text, ``"1"`` if dimensionless; inferred where none is declared.
         doc: Free text for documents.
         form: One of `FORMS` if the components are the entries of a matrix, else "".
         of: The coordinate whose velocity or momentum it is; "" over an algebra.
@@ -122,7 +122,7 @@ class Variable(Components):
     shape: Shape
     block: tuple[int, ...] = ()
     representation: Representation | None = None
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
     form: str = ""
     of: str = ""
