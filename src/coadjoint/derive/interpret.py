@@ -117,7 +117,7 @@ def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], fie
         case tree.Call(function=function) if function in _TENSOR_FUNCTIONS:
             return _TENSOR_FUNCTIONS[function](*below)
         case tree.Call(function=function):
-            return field.call(function, below[0])
+            return field.call(function, *below)
     raise AssertionError(node)
 
 

@@ -26,13 +26,21 @@ from math import prod
 
 from sympy.polys.rings import PolyElement
 
+from coadjoint.elementary import Arithmetic, evaluate
 from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import Factor, factors_of
-from coadjoint.exact.field import Adjoined, Field
+from coadjoint.exact.field import Adjoined, Field, refuse_call
 from coadjoint.exact.lattices import Lattice
 from coadjoint.exact.products import Products, product
 from coadjoint.exact.witness import witness_nonzero
 
+#: Functions in exponentials e of their arguments.
+EXPONENTIALS = {
+    "exp": "e",
+    "sinh": "(e - 1/e)/2",
+    "cosh": "(e + 1/e)/2",
+    "tanh": "(e*e - 1)/(e*e + 1)",
+}
 #: Terms of a sine of a sum; one with more keeps a generator of its own.
 EXPANDED = 64
 #: Generators for signs and logarithms beyond one for each factor of a radicand or an argument.
@@ -61,7 +69,7 @@ class Relations:
     def __init__(self, field: Field, names: Iterable[str]) -> None:
         self.field, self.names = field, frozenset(names)
         called = [known for name, known in field.adjoined.items() if name in self.names]
-        powers = [known for known in called if known.function == "exp"]
+        powers = [known for known in called if known.function in EXPONENTIALS]
         angles = [known for known in called if known.function in ("sin", "cos")]
         products = [known for known in called if known.function in ("sqrt", "log")]
         roots = sum(known.function == "sqrt" for known in products)
@@ -70,6 +78,7 @@ class Relations:
         self._lonely = [n for n, row in enumerate(self._angles.rows) if _terms(row) > EXPANDED]
         count = len(self._exponents.basis) + 2 * len(self._angles.basis) + 2 * len(self._lonely)
         count += sum(SPARE + len(_polynomial_factors(field, known.argument)) for known in products)
+        count += len(called) - len(powers) - len(angles) - len(products)  # one for each other
         free = [f"__{n + 1}" for n in range(count)]
         self.ring = Field([*field.names, *free], positive=field.positive)
         self.products = Products(self.ring, free, self._exponent_of)
@@ -130,16 +139,19 @@ class Relations:
     def _image_of(self, known: Adjoined) -> Element:
         """A function in the new ring."""
         match known.function:
-            case "exp":
-                row = self._exponents.rows[self._exponents_of[known.generator]]
-                return product(self.ring, zip(self._powers, row, strict=True))
             case "sqrt":
                 return self.products.root(self._image(known.argument))
             case "log":
                 return self.products.logarithm(self._image(known.argument))
-        place = self._angles_of[known.generator]
-        cosine, sine = self._turn(place)
-        return cosine if known.function == "cos" else sine
+            case "sin" | "cos":
+                cosine, sine = self._turn(self._angles_of[known.generator])
+                return cosine if known.function == "cos" else sine
+            case function if function in EXPONENTIALS:
+                row = self._exponents.rows[self._exponents_of[known.generator]]
+                power = product(self.ring, zip(self._powers, row, strict=True))
+                own = Arithmetic(number=self.ring.number, call=refuse_call)
+                return self.products.normalize(evaluate(EXPONENTIALS[function], own, e=power))
+        return self.products.new()
 
     def _turn(self, place: int) -> tuple[Element, Element]:
         """Cosine and sine of the argument in a place, by the addition theorem."""

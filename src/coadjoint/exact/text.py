@@ -68,4 +68,7 @@ def _bracket(field: Field, element: Element) -> str:
 def _name(field: Field, name: str) -> str:
     """A symbol, or the function that an adjoined generator stands for."""
     known = field.adjoined.get(name)
-    return name if known is None else f"{known.function}({element_text(field, known.argument)})"
+    if known is None:
+        return name
+    arguments = (element_text(field, each) for each in known.arguments)
+    return f"{known.function}({', '.join(arguments)})"

@@ -9,32 +9,55 @@ from __future__ import annotations
 
 from functools import reduce
 from operator import mul
+from typing import cast
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, by_name, evaluate
 from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of, rational_root, to_fraction
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign
 
-#: Values at 0, but for the logarithm.
-_AT_ZERO = {"sqrt": 0, "sin": 0, "cos": 1, "exp": 1}
+#: Cosine and sine of an inverse function, in its arguments and ``r``.
+_OF_INVERSES = {
+    "asin": ("r", "u", "1 - u*u"),
+    "acos": ("u", "r", "1 - u*u"),
+    "atan": ("1/r", "u/r", "1 + u*u"),
+    "atan2": ("v/r", "u/r", "u*u + v*v"),
+}
 
 
-def known_value(field: Field, function: str, argument: Element) -> Element | None:
+def known_value(field: Field, function: str, *arguments: Element) -> Element | None:
     """The value of a function where it is an element without it; else None.
 
     >>> field = Field(["m", "q"], slots=1, positive=["m"])
     >>> known_value(field, "sqrt", 4 * field["m"] ** 2), known_value(field, "sqrt", field["q"] ** 2)
     (2*m, None)
     """
-    if function in _AT_ZERO and argument == 0:
-        return field.number(_AT_ZERO[function])
+    argument, at_zero = arguments[0], ELEMENTARY[function].at_zero
+    if at_zero is not None and argument == 0:
+        return field.number(at_zero)
     match function:
+        case "sin" | "cos":
+            return _of_inverse(field, function, argument)
         case "sqrt":
             return _root(field, argument)
         case "log":
             return field.zero if argument == 1 else _exponent(field, argument)
         case "exp":
             return _power(field, argument)
+    return None
+
+
+def _of_inverse(field: Field, function: str, argument: Element) -> Element | None:
+    """The sine or cosine of an inverse function: ``cos(asin(u)) = sqrt(1 - u^2)``."""
+    for name in field.functions_in(argument):
+        known = field.adjoined[name]
+        if known.function in _OF_INVERSES and argument == field[name]:
+            cosine, sine, square = _OF_INVERSES[known.function]
+            own, values = Arithmetic(number=field.number, call=field.call), by_name(known.arguments)
+            root = field.call("sqrt", evaluate(square, own, **values))
+            text = sine if function == "sin" else cosine
+            return cast(Element, evaluate(text, own, r=root, **values))
     return None
 
 

@@ -415,8 +415,8 @@ class _Sized:
         return _Sized(exact, abs(exact))
 
     @staticmethod
-    def call(function: str, argument: _Sized) -> _Sized:
-        return _Sized.of(real_function(function, argument.value))
+    def call(function: str, *arguments: _Sized) -> _Sized:
+        return _Sized.of(real_function(function, *(each.value for each in arguments)))
 
 
 def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.motion import ONE
-from coadjoint.lower.polynomials import product_of
+from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ZERO,
     Add,
@@ -26,6 +27,7 @@ from coadjoint.lower.program import (
     Number,
     Program,
     Symbol,
+    children,
     walk,
 )
 
@@ -80,12 +82,12 @@ class SolverText:
         first: Order 0 of all, and order 1 of the state.
         stages: Each order k > 0.
         rates: Coefficients of the state at the order k + 1.
-        functions: Elementary functions that are called, sqrt left out.
+        functions: Elementary functions that are called, with their arguments, sqrt left out.
         products: How many sums there are.
         reads: Names that the recurrences read.
         fixed_reads: Names that ``fixed`` reads.
-        branches: Whether the rates call sqrt or log of what moves. A motion may be analytic where
-            these have branch points.
+        branches: Whether the rates call functions of what moves that have branch points or jumps,
+            as sqrt and log. A motion may be analytic there.
     """
 
     fixed: tuple[Line, ...]
@@ -93,7 +95,7 @@ class SolverText:
     first: tuple[Line, ...]
     stages: tuple[Stage, ...]
     rates: tuple[Line, ...]
-    functions: tuple[str, ...]
+    functions: tuple[tuple[str, str], ...]
     products: int
     reads: frozenset[str]
     fixed_reads: frozenset[str]
@@ -117,7 +119,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
-    branches = bool(calls & {"sqrt", "log"})
+    branches = any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls)
     values = (value for program in programs.values() for value in program.values())
     calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
@@ -127,7 +129,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
         first=tuple(first),
         stages=stages,
         rates=rates,
-        functions=tuple(sorted(calls - {"sqrt"})),
+        functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         products=jets.products,
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
@@ -181,8 +183,8 @@ def _at(node: Node, order: str, arrays: frozenset[str]) -> Node:
             return Symbol(f"{name}[{order}]") if name in arrays else node
         case Negate(operand=operand):
             return Negate(_at(operand, order, arrays))
-        case Call(function=function, argument=argument):
-            return Call(function, _at(argument, order, arrays))
+        case Call(function=function):
+            return Call(function, *(_at(each, order, arrays) for each in children(node)))
         case Add(left=left, right=right) | Multiply(left=left, right=right):
             return type(node)(_at(left, order, arrays), _at(right, order, arrays))
         case Divide(left=left, right=right):
@@ -215,8 +217,8 @@ def _divisor(cell: Cell) -> Node | None:
             return right
         case Call(function="sqrt"):
             return Multiply(Number(Fraction(2)), Symbol(cell.name))
-        case Call(function="log", argument=argument):
-            return argument
+        case Call() if cell.divisor:
+            return Symbol(cell.divisor)
     return None
 
 
@@ -297,15 +299,25 @@ def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -
         case Call(function="sqrt", argument=argument):
             rest = Add(_at(argument, "_k", arrays), Negate(total))
             return term(name, name), Multiply(rest, reciprocal)
-        case Call(function="exp", argument=Symbol(name=a)):
-            return term(a, name, _WEIGHT), Add(Multiply(part, total), ends(a, name))
-        case Call(function="log", argument=Symbol(name=a)):
-            rest = Add(Symbol(f"{a}[_k]"), Negate(Multiply(part, total)))
-            return term(name, a, _WEIGHT), Multiply(rest, reciprocal)
-        case Call(function=function, argument=Symbol(name=a)):
-            result = Add(Multiply(part, total), ends(a, cell.partner))
-            return (
-                term(a, cell.partner, _WEIGHT),
-                Negate(result) if function == "cos" else result,
-            )
+        case Call(argument=Symbol(name=a), other=None):
+            ((factor, minus),) = cell.factors
+            if not cell.divisor:
+                whole = Add(Multiply(part, total), ends(a, factor))
+                return term(a, factor, _WEIGHT), Negate(whole) if minus else whole
+            if not factor:
+                left = sum_of([(minus, Symbol(f"{a}[_k]")), (True, Multiply(part, total))])
+                return term(name, cell.divisor, _WEIGHT), Multiply(left, reciprocal)
+        case Call() if cell.divisor:
+            pairs = list(zip(children(cell.value), cell.factors, strict=True))
+            added = [(minus, term(_name_of(a), factor)) for a, (factor, minus) in pairs]
+            last = [(minus, ends(_name_of(a), factor)) for a, (factor, minus) in pairs]
+            inner = sum_of([*added, (True, term(name, cell.divisor))])
+            whole = Add(Multiply(part, total), sum_of(last))
+            return Multiply(_WEIGHT, inner), Multiply(whole, reciprocal)
     raise AssertionError(cell)
+
+
+def _name_of(node: Node) -> str:
+    """The name that a node is."""
+    assert isinstance(node, Symbol), node
+    return node.name

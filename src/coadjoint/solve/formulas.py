@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import KernelArgumentError
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
-from coadjoint.spec.core.shapes import ELEMENTARY, shape_of, words
+from coadjoint.spec.core.shapes import shape_of, words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -232,5 +233,6 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "outer": lambda a, b: _stack(_stack(x * y for y in b) for x in a),
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
-    **{name: getattr(np, name) for name in ELEMENTARY},
+    "tan": np.tan,
+    **{name: getattr(np, each.numpy_name) for name, each in ELEMENTARY.items()},
 }

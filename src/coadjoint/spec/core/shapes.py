@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, fault_at, list_names
 from coadjoint.spec.core.tree import (
@@ -26,8 +27,8 @@ from coadjoint.spec.core.tree import (
     evaluate_nodes,
 )
 
-#: The functions that are adjoined to the field, by their own names.
-ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
+#: Functions of scalars by how many they take: those of kernels, and what is written by these.
+SCALAR = {each.name: each.arity for each in ELEMENTARY.values()} | {"tan": 1}
 #: Determinants and inverses are written out; larger systems are solved inside the kernel.
 LARGEST_INVERSE = 3
 
@@ -57,7 +58,7 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
         "rows": lambda *a: (len(a), *a[0]) if len(a[0]) == 1 and set(a) == {a[0]} else None,
         "vector": lambda *a: None if any(a) else (len(a),),
-        **dict.fromkeys(ELEMENTARY, lambda a: () if a == () else None),
+        **dict.fromkeys(SCALAR, lambda *a: None if any(a) else ()),
     }
 )
 
@@ -95,12 +96,8 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "vector": Function(0, "scalars", "vector of these components"),
         "rows": Function(0, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, "a vector", "sqrt(dot(a, a))"),
-        "sqrt": Function(1, "a scalar", "square root"),
-        "sin": Function(1, "a scalar", "sine"),
-        "cos": Function(1, "a scalar", "cosine"),
         "tan": Function(1, "a scalar", "tangent"),
-        "exp": Function(1, "a scalar", "exponential"),
-        "log": Function(1, "a scalar", "natural logarithm"),
+        **{e.name: Function(e.arity, e.takes, e.meaning) for e in ELEMENTARY.values()},
     }
 )
 

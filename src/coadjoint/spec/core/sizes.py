@@ -9,15 +9,16 @@ Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb, factorial
 
 from coadjoint import limits
+from coadjoint.elementary import ELEMENTARY, has_constant_value
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.shapes import ELEMENTARY, shapes
+from coadjoint.spec.core.shapes import SCALAR, shapes
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -104,8 +105,8 @@ def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
             return _sum(below[0], _negate(below[1]) if operator == "-" else below[1])
         case Component():
             return replace(below[0], diagonal=False, constant=None)
-        case Call(function=function) if function in ELEMENTARY:
-            return _function(node, function, below[0])
+        case Call(function=function) if function in SCALAR:
+            return _function(node, function, below)
         case Call(function=function):
             return _tensor(node, function, below, shape)
     return Size(degree=1)
@@ -180,19 +181,23 @@ def _power(node: Node, base: Size, exponent: int, shape: Shape) -> Size:
     )
 
 
-def _function(node: Node, function: str, argument: Size) -> Size:
+def _function(node: Node, function: str, arguments: Sequence[Size]) -> Size:
     """An elementary function: a new name; a constant argument must be within the limits."""
-    if argument.fixed:
-        value = argument.constant
-        if value is None or abs(value) > limits.FUNCTION_ARGUMENT:
-            raise _refusal(
-                node, "FUNCTION_ARGUMENT", f"{function} of a constant that is not a small rational"
-            )
-        if (value < 0 and function == "sqrt") or (value <= 0 and function == "log"):
-            problem = f"{function} of {value} is not a real number"
-            raise _no_value(node, problem, "a positive argument")
-        return Size(fixed=True)
-    return Size(degree=1)
+    if not all(argument.fixed for argument in arguments):
+        return Size(degree=1)
+    values = tuple(argument.constant or Fraction(0) for argument in arguments)
+    if any(each.constant is None for each in arguments) or max(map(abs, values)) > (
+        limits.FUNCTION_ARGUMENT
+    ):
+        raise _refusal(
+            node, "FUNCTION_ARGUMENT", f"{function} of a constant that is not a small rational"
+        )
+    if function in ELEMENTARY and not has_constant_value(function, values):
+        problem = f"{function} of {', '.join(map(str, values))} is not a real number"
+        if function in ("asin", "acos") and abs(values[0]) == 1:
+            problem = f"{function} of {values[0]} is written without a function"
+        raise _no_value(node, problem, ELEMENTARY[function].expects)
+    return Size(fixed=True)
 
 
 def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) -> Size:
