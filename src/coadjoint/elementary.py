@@ -72,6 +72,11 @@ class Elementary:
         return len(self.slopes)
 
     @property
+    def is_locally_constant(self) -> bool:
+        """Whether all derivatives are 0."""
+        return set(self.slopes) == {"0"}
+
+    @property
     def calls_others(self) -> bool:
         """Whether its derivative calls functions other than its partner."""
         return not self.partner and any(map(_has_call, self.slopes))
@@ -207,6 +212,16 @@ _ENTRIES: Final = (
         expects="a point other than the origin",
         jumps=("u", "v"),
         numpy="arctan2",
+    ),
+    Elementary(
+        name="sign",
+        meaning="-1, 0 or 1",
+        slopes=("0",),
+        enclosed="u/sqrt(u*u)",
+        jumps=("u", ""),
+        parity=-1,
+        square="1",
+        is_bounded=True,
     ),
 )
 

@@ -35,7 +35,7 @@ Built = TypeVar("Built")
 Declared = Variable | Parameter | Input | Time
 #: The functions for which the field needs room; the others are sums and products.
 #: Functions of which elements are adjoined to the field, and how many each.
-_ADJOINED = dict.fromkeys(("tan", "norm"), 1) | {
+_ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
     name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
 }
 

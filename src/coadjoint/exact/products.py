@@ -158,6 +158,10 @@ class Products:
         positive = {f: e for f, e in vector.items() if f != -1}
         return self._multiply(positive) * self._sign_of(positive)
 
+    def sign_of(self, element: Element) -> Element:
+        """The sign of an element other than 0."""
+        return self.normalize(self._sign_of(self.factor(element)))
+
     def _sign_of(self, vector: Powers) -> Element:
         """The sign of a product: a number, or a product of generators of square 1."""
         rest, number = self._plain_signs(odd_factors(vector))

@@ -146,6 +146,8 @@ class Relations:
             case "sin" | "cos":
                 cosine, sine = self._turn(self._angles_of[known.generator])
                 return cosine if known.function == "cos" else sine
+            case "sign":
+                return self.products.sign_of(self._image(known.argument))
             case function if function in EXPONENTIALS:
                 row = self._exponents.rows[self._exponents_of[known.generator]]
                 power = product(self.ring, zip(self._powers, row, strict=True))

@@ -51,6 +51,8 @@ def _sum(field: Field, monomials: tuple[Monomial, ...]) -> str:
 def _product(field: Field, monomial: Monomial) -> str:
     """One addend without its sign."""
     number = abs(monomial.number)
+    for name, exponent in monomial.powers:  # pi is 4*atan(1)
+        number = number / 4**exponent if _is_eighth(field, name) else number
     factors = [_power(_name(field, name), exponent) for name, exponent in monomial.powers]
     return "*".join(([] if number == 1 and factors else [str(number)]) + factors)
 
@@ -65,10 +67,18 @@ def _bracket(field: Field, element: Element) -> str:
     return text if text.isidentifier() else f"({text})"
 
 
+def _is_eighth(field: Field, name: str) -> bool:
+    """Whether a generator is an eighth of a turn, ``atan(1)``."""
+    known = field.adjoined.get(name)
+    return known is not None and known.function == "atan" and known.argument == 1
+
+
 def _name(field: Field, name: str) -> str:
     """A symbol, or the function that an adjoined generator stands for."""
     known = field.adjoined.get(name)
     if known is None:
         return name
+    if _is_eighth(field, name):
+        return "pi"
     arguments = (element_text(field, each) for each in known.arguments)
     return f"{known.function}({', '.join(arguments)})"

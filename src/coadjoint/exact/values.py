@@ -7,7 +7,9 @@ Read next: `coadjoint.exact.signs`.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import reduce
+from math import floor
 from operator import mul
 from typing import cast
 
@@ -39,6 +41,8 @@ def known_value(field: Field, function: str, *arguments: Element) -> Element | N
     match function:
         case "sin" | "cos":
             return _of_inverse(field, function, argument)
+        case "sign":
+            return _sign(field, argument)
         case "sqrt":
             return _root(field, argument)
         case "log":
@@ -59,6 +63,26 @@ def _of_inverse(field: Field, function: str, argument: Element) -> Element | Non
             text = sine if function == "sin" else cosine
             return cast(Element, evaluate(text, own, r=root, **values))
     return None
+
+
+def _sign(field: Field, argument: Element) -> Element | None:
+    """The sign of a product of factors, of which each is irreducible; None of a single one.
+
+    Raises:
+        ZeroDivisionError: Of 0, where a sign jumps.
+    """
+    whole = field.normal(argument).combine()
+    if whole == 0:
+        raise ZeroDivisionError("the sign of 0")
+    if (known := sign(field, whole)) != 0:
+        return field.number(known)
+    top, bottom = field.fraction(whole)
+    content, factors = factors_of(top)
+    powers = [*factors, *(f for divisor, _ in bottom for f in factors_of(divisor)[1])]
+    if len(powers) == 1 and powers[0][1] == 1 and content == 1 and not bottom:
+        return None
+    signs = (field.call("sign", field.from_polynomial(f)) ** e for f, e in powers)
+    return field.normal(reduce(mul, signs, field.number(1 if content > 0 else -1)))
 
 
 def _root(field: Field, argument: Element) -> Element | None:
@@ -93,16 +117,18 @@ def _exponent(field: Field, argument: Element) -> Element | None:
 
 
 def _power(field: Field, argument: Element) -> Element | None:
-    """``exp(n*log(u) + v) = u^n*exp(v)`` for whole and half n."""
+    """``exp((n + a)*log(u) + v) = u^n*exp(a*log(u) + v)`` for whole n, and n + 1/2 alone."""
     for name in sorted(field.names_in(argument) & field.adjoined.keys()):
         known = field.adjoined[name]
         if known.function != "log":
             continue
-        slope = field.as_number(field.slope(argument, name))
-        if slope is None or (2 * slope).denominator != 1:
+        numbers = map(field.as_number, field.terms(field.slope(argument, name)))
+        slope = sum((number for number in numbers if number is not None), Fraction(0))
+        whole = slope if (2 * slope).denominator == 1 else Fraction(floor(slope))
+        if not whole:
             continue
-        rest = field.call("exp", argument - slope * field[name])
-        if slope.denominator == 1:
-            return rest * known.argument ** int(slope)
-        return rest * field.call("sqrt", known.argument) ** int(2 * slope)
+        rest = field.call("exp", argument - whole * field[name])
+        if whole.denominator == 1:
+            return rest * known.argument ** int(whole)
+        return rest * field.call("sqrt", known.argument) ** int(2 * whole)
     return None

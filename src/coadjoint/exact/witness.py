@@ -309,6 +309,11 @@ class Domain:
 
 def _float(field: Field, element: Element, place: Mapping[str, float]) -> float:
     """The value of an element to double precision."""
-    return field.evaluate(
-        element, place, float, lambda function, *of: float(getattr(math, function)(*of))
-    )
+    return field.evaluate(element, place, float, _float_of)
+
+
+def _float_of(function: str, *arguments: float) -> float:
+    """A function in double precision."""
+    if function == "sign":
+        return math.copysign(1.0, *arguments)
+    return float(getattr(math, function)(*arguments))

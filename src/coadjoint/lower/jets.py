@@ -36,6 +36,7 @@ from coadjoint.lower.polynomials import (
     sum_of,
 )
 from coadjoint.lower.program import (
+    ZERO,
     Call,
     Divide,
     Multiply,
@@ -201,6 +202,8 @@ class _Making:
                 cell = self._with_factors(cell, meaning)
             elif isinstance(value, Call) and ELEMENTARY[value.function].partner:
                 cell = self._with_partner(cell, value)
+            elif isinstance(value, Call) and ELEMENTARY[value.function].is_locally_constant:
+                cell = replace(cell, tail=ZERO)
             self._append(cell)
         elif name and self._known[value] != name:  # the partner of another has it
             same = Symbol(self._known[value])

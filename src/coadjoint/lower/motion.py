@@ -47,8 +47,11 @@ from coadjoint.lower.program import (
 )
 
 ONE = Number(Fraction(1))
-#: Functions whose recurrence needs nothing else: a root, and those that stand with a partner.
-ALONE = ("sqrt", *(name for name, each in ELEMENTARY.items() if each.partner))
+#: Functions whose recurrence needs nothing else: a root, signs, and what stands with a partner.
+ALONE = (
+    "sqrt",
+    *(name for name, each in ELEMENTARY.items() if each.partner or each.is_locally_constant),
+)
 #: What makes nodes of the texts of functions.
 NODES = Arithmetic(
     number=Number, call=Call, add=Add, multiply=Multiply, divide=Divide, negate=Negate

@@ -429,17 +429,13 @@ def real_function(function: str, *arguments: Any) -> Any:
     """
     positive = domain_of(function, arguments, _REAL)
     zero, side = jump_of(function, arguments)
-    if (zero == 0 and (side is None or side <= 0)) or (
-        positive is not None
-        and (positive < 0 or (positive == 0 and not ELEMENTARY[function].has_edge))
-    ):
+    jumps, has_edge = zero == 0 and (side is None or side <= 0), ELEMENTARY[function].has_edge
+    if jumps or (positive is not None and (positive < 0 or (positive == 0 and not has_edge))):
         raise ValueError(f"{function} of {arguments}")
     return getattr(mpmath, function)(*arguments)
 
 
-_REAL = Arithmetic(
-    number=lambda number: mpmath.mpf(number.numerator) / number.denominator, call=real_function
-)
+_REAL = Arithmetic(number=real, call=real_function)
 
 
 def _is_rational(value: Any) -> bool:

@@ -205,10 +205,17 @@ def prove_by_normal_form(ring: Field) -> Decision:
 
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
     """
-    return Decision(
-        verdict=Verdict.PROVED,
-        method=NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM,
-    )
+    method = NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM
+    return Decision(verdict=Verdict.PROVED, method=f"{method}{apart_from_kinks(ring)}")
+
+
+def apart_from_kinks(ring: Field) -> str:
+    """What a proof leaves out where a field has signs: the zeros of their arguments."""
+    texts = [element_text(ring, k.argument) for k in ring.adjoined.values() if k.function == "sign"]
+    return f", wherever {' and '.join(texts)} {_IS[len(texts) > 1]} not 0" if texts else ""
+
+
+_IS = {False: "is", True: "are"}
 
 
 def _decide_where(
@@ -286,7 +293,8 @@ def _proof(
             raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
         empty = f"no point is found at which it has a value, where {where.scope}"
         raise UndecidedError(f"{empty}. {ADVICE}")
-    return Decision(verdict=Verdict.PROVED, method=f"normal form {text}{_but_for(poles, where)}")
+    method = f"normal form {text}{_but_for(poles, where)}{apart_from_kinks(where.field)}"
+    return Decision(verdict=Verdict.PROVED, method=method)
 
 
 def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:

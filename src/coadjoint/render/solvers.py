@@ -243,7 +243,22 @@ def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
     for loop in _loops(terms):
         sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
         yield Stage(tuple(Line(name, ZERO) for name, _ in loop), sums, ())
-    yield Stage((), (), tuple(lines))
+    yield Stage((), (), tuple(_without_unread(lines, [*terms.values(), *_rates(jets, arrays)])))
+
+
+def _rates(jets: Jets, arrays: frozenset[str]) -> Iterator[Node]:
+    """The rates of the state at an order k > 0."""
+    return (_at(tail, "_k", arrays) for _, tail in jets.rates)
+
+
+def _without_unread(lines: list[Line], others: list[Node]) -> list[Line]:
+    """Lines but for names that nothing reads, as the arguments of signs at orders k > 0."""
+    kept, read = list[Line](), {name for node in others for name in _names(node)}
+    for line in reversed(lines):
+        if not line.is_new or line.name in read:
+            kept.append(line)
+            read.update(_names(line.value))
+    return kept[::-1]
 
 
 def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:

@@ -234,5 +234,9 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
     "tan": np.tan,
+    "pow": np.power,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
     **{name: getattr(np, each.numpy_name) for name, each in ELEMENTARY.items()},
 }

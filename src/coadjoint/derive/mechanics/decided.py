@@ -177,6 +177,8 @@ def call_modulo(function: str, *arguments: Residue) -> Residue:
         power, half = draw(f"exp {argument.value}"), Residue(1) / Residue(2)
         cosh, sinh = (power + Residue(1) / power) * half, (power + -(Residue(1) / power)) * half
         return {"sinh": sinh, "cosh": cosh}.get(function) or sinh / cosh
+    if function == "sign":
+        return Residue((-1) ** draw(f"sign {argument.value}").value)
     return draw(f"{function} {' '.join(str(each.value) for each in arguments)}")
 
 

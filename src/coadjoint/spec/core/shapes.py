@@ -29,6 +29,8 @@ from coadjoint.spec.core.tree import (
 
 #: Functions of scalars by how many they take: those of kernels, and what is written by these.
 SCALAR = {each.name: each.arity for each in ELEMENTARY.values()} | {"tan": 1}
+#: Functions of scalars that are linear between kinks, where an argument or a difference is 0.
+PIECEWISE = ("abs", "min", "max")
 #: Determinants and inverses are written out; larger systems are solved inside the kernel.
 LARGEST_INVERSE = 3
 
@@ -58,7 +60,7 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
         "rows": lambda *a: (len(a), *a[0]) if len(a[0]) == 1 and set(a) == {a[0]} else None,
         "vector": lambda *a: None if any(a) else (len(a),),
-        **dict.fromkeys(SCALAR, lambda *a: None if any(a) else ()),
+        **dict.fromkeys((*SCALAR, *PIECEWISE, "pow"), lambda *a: None if any(a) else ()),
     }
 )
 
@@ -97,6 +99,10 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "rows": Function(0, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, "a vector", "sqrt(dot(a, a))"),
         "tan": Function(1, "a scalar", "tangent"),
+        "pow": Function(2, "two scalars", "power with any exponent, of a positive base: a^b"),
+        "abs": Function(1, "a scalar", "absolute value"),
+        "min": Function(2, "two scalars", "the smaller one"),
+        "max": Function(2, "two scalars", "the larger one"),
         **{e.name: Function(e.arity, e.takes, e.meaning) for e in ELEMENTARY.values()},
     }
 )

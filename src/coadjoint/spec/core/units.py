@@ -18,7 +18,7 @@ from coadjoint.spec.core import tree
 Unit = Mapping[str, Fraction]
 
 _FACTOR = re.compile(r"([A-Za-z]+)(?:\^(-?\d+))?|1")
-_SAME = ("transpose", "trace", "diag", "hat", "norm")
+_SAME = ("transpose", "trace", "diag", "hat", "norm", "abs")
 _PRODUCT = ("dot", "cross", "commutator", "outer")
 
 
@@ -105,7 +105,13 @@ def _of_call(function: str, arguments: list[Unit | None]) -> Unit | None:
         return first
     if function in _PRODUCT:
         return _combine("*", first, arguments[1])
-    if function in ("rows", "vector"):
+    if function == "sign":
+        return {} if first is not None else None
+    if function == "atan2":
+        return {} if first is not None and first == arguments[1] else None
+    if function == "pow":
+        return {} if first == arguments[1] == {} else None
+    if function in ("rows", "vector", "min", "max"):
         return first if all(argument == first for argument in arguments) else None
     if function == "inverse":
         return _raise_to(first, Fraction(-1))
