@@ -225,8 +225,9 @@ _ENTRIES: Final = (
     ),
 )
 
+_TABLE: Final = {each.name: each for each in _ENTRIES}
 #: Every elementary function by name, in the order in which kernels count them.
-ELEMENTARY: Final = MappingProxyType({each.name: each for each in _ENTRIES})
+ELEMENTARY: Final = MappingProxyType(_TABLE)
 #: The names of the arguments in the texts of entries.
 ARGUMENTS: Final = ("u", "v")
 

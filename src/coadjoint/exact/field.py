@@ -190,6 +190,30 @@ class Field(Rationals):
         numer = sum((self.from_polynomial(p) * square**k for k, p in parts.items()), self.zero)
         return numer * Element(self._factors, [(ring.one, quotient.powers)])
 
+    def reduce_modulo(
+        self, element: Element, generator: str, coefficients: Sequence[Fraction]
+    ) -> Element:
+        """A single quotient whose numerator is reduced by a monic polynomial in a generator.
+
+        Args:
+            element: The quotient.
+            generator: A root of the polynomial.
+            coefficients: Those of the polynomial, the highest power first.
+        """
+        place, ring = self._position[generator], self._ring
+        degree = len(coefficients) - 1
+        if not element or element.parts[0].numer.degree(ring.gens[place]) < degree:
+            return element
+        (quotient,) = element.parts
+        parts, root = split_by_powers(quotient.numer, place), ring.gens[place]
+        for power in range(max(parts), degree - 1, -1):
+            top = parts.pop(power, ring.zero)
+            for n, number in enumerate(coefficients[1:], 1):
+                ground = ring.domain(number.numerator, number.denominator)
+                parts[power - n] = parts.get(power - n, ring.zero) - top * ground
+        numer = sum((part * root**power for power, part in parts.items()), ring.zero)
+        return Element(self._factors, [(numer, quotient.powers)])
+
     def is_zero(self, element: Element) -> bool:
         """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
 

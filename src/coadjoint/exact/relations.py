@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
-from math import prod
+from math import lcm, prod
 
 from sympy.polys.rings import PolyElement
 
@@ -32,6 +32,7 @@ from coadjoint.exact.factors import Factor, factors_of
 from coadjoint.exact.field import Adjoined, Field, refuse_call
 from coadjoint.exact.lattices import Lattice
 from coadjoint.exact.products import Products, product
+from coadjoint.exact.values import half_turns
 from coadjoint.exact.witness import witness_nonzero
 
 #: Functions in exponentials e of their arguments.
@@ -45,6 +46,8 @@ EXPONENTIALS = {
 EXPANDED = 64
 #: Generators for signs and logarithms beyond one for each factor of a radicand or an argument.
 SPARE = 3
+#: Parts of a half turn whose cosines are algebraic numbers; with more, equations are too long.
+PARTS = 60
 #: What a term costs to rewrite, in products of two terms.
 WORK = 20
 
@@ -84,7 +87,11 @@ class Relations:
         self.products = Products(self.ring, free, self._exponent_of)
         self._images: dict[str, Element] = {}
         self._powers = [self.products.new(positive=True) for _ in self._exponents.basis]
-        self._circles = [self.products.circle() for _ in self._angles.basis]
+        self._turns = [half_turns(field, each) for each in self._angles.basis]
+        self._circles = [
+            self.products.circle() if turn is None else self._part_of_turn(turn)
+            for turn in self._turns
+        ]
         self._angles_of = {known.generator: n for n, known in enumerate(angles)}
         self._exponents_of = {known.generator: n for n, known in enumerate(powers)}
         self._alone: dict[tuple[Fraction, ...], tuple[Element, Element]] = {}
@@ -109,6 +116,8 @@ class Relations:
     def are_any(self) -> bool:
         """Whether a function is more than a generator of its own."""
         angles = set(self._angles.vectors)
+        if any(turn is not None for turn in self._turns):
+            return True
         if len(self._exponents.rows) + len(angles) > len(self._powers) + len(self._circles):
             return True
         products = [
@@ -155,6 +164,16 @@ class Relations:
                 return self.products.normalize(evaluate(EXPONENTIALS[function], own, e=power))
         return self.products.new()
 
+    def _part_of_turn(self, turn: Fraction) -> tuple[Element, Element]:
+        """Cosine and sine of a rational multiple of pi, in the cosine of a smallest part."""
+        parts = lcm(2, turn.denominator)
+        if parts > PARTS:
+            return self.products.circle()
+        cosine, count = self.products.cosine_of_part(parts), int(turn * parts)
+        both = (cosine_of_multiple(self.ring, cosine, n) for n in (count, parts // 2 - count))
+        first, second = map(self.products.normalize, both)
+        return first, second
+
     def _turn(self, place: int) -> tuple[Element, Element]:
         """Cosine and sine of the argument in a place, by the addition theorem."""
         row = self._angles.rows[place]
@@ -169,6 +188,14 @@ class Relations:
                 s_turn = s if count > 0 else -s
                 cosine, sine = cosine * c - sine * s_turn, sine * c + cosine * s_turn
         return self.products.normalize(cosine), self.products.normalize(sine)
+
+
+def cosine_of_multiple(ring: Field, cosine: Element, count: int) -> Element:
+    """``cos(n*a)`` as Chebyshev's polynomial of ``cos(a)``."""
+    last, result = cosine, ring.one  # cos(-a), cos(0)
+    for _ in range(abs(count)):
+        last, result = result, 2 * cosine * result - last
+    return result
 
 
 def relations_of(field: Field, names: frozenset[str]) -> Relations | None:

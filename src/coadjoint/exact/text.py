@@ -6,6 +6,7 @@ of generated files and in documents.
 
 from __future__ import annotations
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 from coadjoint.exact.rationals import Monomial, Written
@@ -82,3 +83,18 @@ def _name(field: Field, name: str) -> str:
         return "pi"
     arguments = (element_text(field, each) for each in known.arguments)
     return f"{known.function}({', '.join(arguments)})"
+
+
+def text_of_jumps(field: Field) -> str:
+    """What proofs in a field leave out: they hold between jumps of functions, not across them.
+
+    A quantity such as ``sign(q)`` has the rate 0 and changes all the same.
+    """
+    texts = list[str]()
+    for known in field.adjoined.values():
+        if known.function == "sign":
+            texts.append(f"{element_text(field, known.argument)} is not 0")
+        elif ELEMENTARY[known.function].jumps[0]:
+            zero, side = (element_text(field, each) for each in known.arguments)
+            texts.append(f"{zero} is not 0 or {side} is positive")
+    return f", where and while {' and '.join(texts)}" if texts else ""

@@ -18,6 +18,7 @@ from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of, rational_root, to_fraction
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign
+from coadjoint.limits import EXPONENT
 
 #: Cosine and sine of an inverse function, in its arguments and ``r``.
 _OF_INVERSES = {
@@ -40,7 +41,7 @@ def known_value(field: Field, function: str, *arguments: Element) -> Element | N
         return field.number(at_zero)
     match function:
         case "sin" | "cos":
-            return _of_inverse(field, function, argument)
+            return _of_inverse(field, function, argument) or _of_turn(field, function, argument)
         case "sign":
             return _sign(field, argument)
         case "sqrt":
@@ -62,6 +63,32 @@ def _of_inverse(field: Field, function: str, argument: Element) -> Element | Non
             root = field.call("sqrt", evaluate(square, own, **values))
             text = sine if function == "sin" else cosine
             return cast(Element, evaluate(text, own, r=root, **values))
+    return None
+
+
+def _of_turn(field: Field, function: str, argument: Element) -> Element | None:
+    """The cosine or sine of a multiple of pi/3 or pi/2 that is a rational number."""
+    half = half_turns(field, argument)
+    if half is None:
+        return None
+    place = (half if function == "cos" else Fraction(1, 2) - half) % 2
+    place = min(place, 2 - place)
+    value = _COSINES.get(min(place, 1 - place))
+    if value is None:
+        return None
+    return field.number(value if place <= Fraction(1, 2) else -value)
+
+
+#: Cosines by the part of pi, up to a half.
+_COSINES = {Fraction(0): Fraction(1), Fraction(1, 3): Fraction(1, 2), Fraction(1, 2): Fraction(0)}
+
+
+def half_turns(field: Field, argument: Element) -> Fraction | None:
+    """The rational number that pi is multiplied by, ``4*atan(1)``; None of what is none."""
+    for name in field.names_in(argument) & field.adjoined.keys():
+        if field.adjoined[name].function == "atan" and field.adjoined[name].argument == 1:
+            number = field.as_number(argument / field[name])
+            return None if number is None else number / 4
     return None
 
 
@@ -125,7 +152,7 @@ def _power(field: Field, argument: Element) -> Element | None:
         numbers = map(field.as_number, field.terms(field.slope(argument, name)))
         slope = sum((number for number in numbers if number is not None), Fraction(0))
         whole = slope if (2 * slope).denominator == 1 else Fraction(floor(slope))
-        if not whole:
+        if not whole or abs(whole) > EXPONENT:
             continue
         rest = field.call("exp", argument - whole * field[name])
         if whole.denominator == 1:

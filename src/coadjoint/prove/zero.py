@@ -20,6 +20,7 @@ import mpmath
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.text import text_of_jumps
 from coadjoint.exact.witness import enclosure
 from coadjoint.prove.certificate import Claim, Finding, Shown, Verdict
 from coadjoint.prove.ideals import Ideal
@@ -206,16 +207,7 @@ def prove_by_normal_form(ring: Field) -> Decision:
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
     """
     method = NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM
-    return Decision(verdict=Verdict.PROVED, method=f"{method}{apart_from_kinks(ring)}")
-
-
-def apart_from_kinks(ring: Field) -> str:
-    """What a proof leaves out where a field has signs: the zeros of their arguments."""
-    texts = [element_text(ring, k.argument) for k in ring.adjoined.values() if k.function == "sign"]
-    return f", wherever {' and '.join(texts)} {_IS[len(texts) > 1]} not 0" if texts else ""
-
-
-_IS = {False: "is", True: "are"}
+    return Decision(verdict=Verdict.PROVED, method=f"{method}{text_of_jumps(ring)}")
 
 
 def _decide_where(
@@ -293,7 +285,7 @@ def _proof(
             raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
         empty = f"no point is found at which it has a value, where {where.scope}"
         raise UndecidedError(f"{empty}. {ADVICE}")
-    method = f"normal form {text}{_but_for(poles, where)}{apart_from_kinks(where.field)}"
+    method = f"normal form {text}{_but_for(poles, where)}{text_of_jumps(where.field)}"
     return Decision(verdict=Verdict.PROVED, method=method)
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import comb, factorial
+from math import ceil, comb, factorial
 
 from coadjoint import limits
 from coadjoint.elementary import ELEMENTARY, has_constant_value
@@ -194,6 +194,11 @@ def _any_power(node: Node, base: Size, exponent: Size) -> Size:
     """A power by a root, or by an exponential and a logarithm."""
     if base.constant is not None and base.constant <= 0:
         raise _no_value(node, f"a power of {base.constant}", "a positive base")
+    number = exponent.constant
+    if number is not None and abs(number) > limits.EXPONENT:
+        raise _refusal(node, "EXPONENT", f"the exponent is {number}")
+    if number is not None and number.denominator <= 2:
+        return _power(node, replace(base, constant=None), ceil(abs(number)), ())
     return Size(fixed=base.fixed and exponent.fixed, degree=base.degree + 1)
 
 
