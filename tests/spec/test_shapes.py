@@ -46,6 +46,7 @@ SCOPE = {
         ("det(A)", ()),
         ("inverse(A)*u", (3,)),
         ("hat(u)", (3, 3)),
+        ("complex(C, 2*C)", (4, 6)),
         ("diag(q)", (4, 4)),
         ("diag(A)", (3,)),
         ("norm(q)", ()),
@@ -68,7 +69,7 @@ def test_shape_of_what_fits(text, shape):
 
 def test_every_function_is_tried_above():
     """No function of the table is missing from the test above."""
-    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(36))
+    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(37))
     assert all(f"{name}(" in texts for name in FUNCTIONS)
 
 

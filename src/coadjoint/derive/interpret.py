@@ -247,5 +247,9 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Value]] = {
     "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
     "rows": lambda *rows: rows,
     "vector": lambda *components: components,
+    "complex": lambda a, b: (
+        *(x + tuple(-e for e in y) for x, y in zip(a, b, strict=True)),
+        *(y + x for x, y in zip(a, b, strict=True)),
+    ),
     "commutator": commutator,
 }

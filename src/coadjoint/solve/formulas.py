@@ -170,6 +170,13 @@ def _power(base: Array, exponent: int) -> Array:
     return reduce(_multiply, [base] * abs(exponent)) if exponent else one
 
 
+def _complex(a: Array, b: Array) -> Array:
+    """A complex matrix as a real one of twice the size."""
+    a, b = np.broadcast_arrays(a, b)
+    above, below = np.concatenate([a, -b], axis=1), np.concatenate([b, a], axis=1)
+    return np.concatenate([above, below], axis=0)
+
+
 def _cross(a: Array, b: Array) -> Array:
     pairs = ((1, 2), (2, 0), (0, 1))
     return _stack(a[i] * b[j] - a[j] * b[i] for i, j in pairs)
@@ -233,6 +240,7 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "outer": lambda a, b: _stack(_stack(x * y for y in b) for x in a),
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
+    "complex": _complex,
     "tan": np.tan,
     "pow": np.power,
     "abs": np.abs,

@@ -54,6 +54,7 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "transpose": lambda a: a[::-1] if len(a) == 2 else None,
         "det": lambda a: () if _is_small_square(a) else None,
         "inverse": lambda a: a if _is_small_square(a) else None,
+        "complex": lambda a, b: (2 * a[0], 2 * a[1]) if len(a) == 2 and a == b else None,
         "hat": lambda a: (3, 3) if a == (3,) else None,
         "diag": lambda a: a * 2 if len(a) == 1 else a[:1] if _is_square(a) else None,
         "norm": lambda a: () if len(a) == 1 else None,
@@ -90,6 +91,9 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "transpose": Function(1, "a matrix", "A_ji"),
         "det": Function(1, _SMALL, "determinant"),
         "inverse": Function(1, _SMALL, "inverse matrix"),
+        "complex": Function(
+            2, "two matrices of one size", "A + iB as the real matrix of A, -B; B, A"
+        ),
         "hat": Function(1, "a 3-vector", "the matrix with hat(a)*b = a x b"),
         "diag": Function(
             1, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"

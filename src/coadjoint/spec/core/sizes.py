@@ -239,7 +239,7 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             return _product(a, below[1], n)
         case "outer":
             return _product(a, below[1])
-        case "rows" | "vector":
+        case "rows" | "vector" | "complex":
             return _largest(below)
         case "cross":
             return _product(a, below[1], 2)

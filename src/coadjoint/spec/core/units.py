@@ -111,7 +111,7 @@ def _of_call(function: str, arguments: list[Unit | None]) -> Unit | None:
         return {} if first is not None and first == arguments[1] else None
     if function == "pow":
         return {} if first == arguments[1] == {} else None
-    if function in ("rows", "vector", "min", "max"):
+    if function in ("rows", "vector", "complex", "min", "max"):
         return first if all(argument == first for argument in arguments) else None
     if function == "inverse":
         return _raise_to(first, Fraction(-1))
