@@ -7,7 +7,10 @@ import pytest
 
 from coadjoint import elementary, pipeline
 from coadjoint.errors import ClaimError, CoadjointError, DerivationError, SpecError
+from coadjoint.exact import Field
 from coadjoint.prove import Verdict
+from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.zero import UndecidedError, decide_zero
 from coadjoint.solve.system import load_folder
 from tests.kernels import COMPILER
 from tests.specs import prove_claims, render_claims, spec
@@ -228,3 +231,18 @@ def test_claims_say_that_they_hold_between_kinks(potential, claim, verdict):
     ]
     assert found.verdict is verdict
     assert verdict is Verdict.REFUTED or "where and while q is not 0" in found.method
+
+
+def test_nothing_is_proved_on_a_kink():
+    """Where q = 0, ``sign(q)^2`` is 0, and not the 1 of its normal form."""
+    field = Field(["q", "p"], slots=6)
+    q, p, sign = field["q"], field["p"], field.call("sign", field["q"])
+    assert decide_zero([sign**2 * p - p], field).verdict is Verdict.PROVED  # while q is not 0
+    for element in (sign**2 * p - p, sign * p, sign):
+        with pytest.raises(UndecidedError):
+            decide_zero([element], field, Ideal(field, [q]))
+    assert decide_zero([sign - 1], field, Ideal(field, [q - 3])).verdict is Verdict.PROVED
+    field = Field(["q", "p"], slots=6)
+    q, p = field["q"], field["p"]
+    angle, turn = field.call("atan2", q, p), 4 * field.call("atan", field.one)
+    assert decide_zero([angle - turn], field, Ideal(field, [q])).verdict is Verdict.REFUTED

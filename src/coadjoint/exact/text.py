@@ -96,5 +96,6 @@ def text_of_jumps(field: Field) -> str:
             texts.append(f"{element_text(field, known.argument)} is not 0")
         elif ELEMENTARY[known.function].jumps[0]:
             zero, side = (element_text(field, each) for each in known.arguments)
-            texts.append(f"{zero} is not 0 or {side} is positive")
+            either = f"{zero} is not 0 or " if known.arguments[0] != 0 else ""
+            texts.append(f"{either}{side} is positive")
     return f", where and while {' and '.join(texts)}" if texts else ""

@@ -216,6 +216,10 @@ def _decide_where(
     """Whether every element is zero where relations hold: on each branch of their zero set."""
     if where.contains(where.field.one):
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    for known in where.field.adjoined.values():
+        if known.function == "sign" and where.contains(known.argument):
+            kink = element_text(where.field, known.argument)
+            raise UndecidedError(f"it is asked for on the kink where {kink} is 0. {ADVICE}")
     if all(map(where.contains, elements)):
         return _proof(elements, where, defined, f"modulo the ideal of {where.scope}")
     try:
