@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import sympy
 
 from coadjoint import elementary, pipeline
 from coadjoint.errors import ClaimError, CoadjointError, DerivationError, SpecError
-from coadjoint.exact import Field
+from coadjoint.exact import Field, element_text
 from coadjoint.prove import Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
@@ -246,3 +247,14 @@ def test_nothing_is_proved_on_a_kink():
     q, p = field["q"], field["p"]
     angle, turn = field.call("atan2", q, p), 4 * field.call("atan", field.one)
     assert decide_zero([angle - turn], field, Ideal(field, [q])).verdict is Verdict.REFUTED
+
+
+def test_documents_write_words_as_books_do():
+    """The circle's number is pi, also to a power, and functions have all their arguments."""
+    field = Field(["q", "k"], slots=8)
+    q, k, turn = field["q"], field["k"], 4 * field.call("atan", field.one)
+    assert element_text(field, turn**2 * q / 3) == "1/3*q*pi^2"
+    assert element_text(field, field.call("cos", 2 * turn / 7)) == "cos(2/7*pi)"
+    assert element_text(field, field.call("atan2", q, k + 1)) == "atan2(q, k + 1)"
+    shown = sympy.latex(field.to_sympy(field.call("sinh", turn * q) + field.call("sign", q)))
+    assert shown == r"\sinh{\left(\pi q \right)} + \operatorname{sign}{\left(q \right)}"

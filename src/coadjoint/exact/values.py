@@ -105,8 +105,11 @@ def _sign(field: Field, argument: Element) -> Element | None:
         return field.number(known)
     top, bottom = field.fraction(whole)
     content, factors = factors_of(top)
-    powers = [*factors, *(f for divisor, _ in bottom for f in factors_of(divisor)[1])]
-    if len(powers) == 1 and powers[0][1] == 1 and content == 1 and not bottom:
+    powers = list(factors)
+    for divisor, power in bottom:
+        powers += [(f, e * power) for f, e in factors_of(divisor)[1]]
+    is_single = len(powers) == 1 and powers[0][1] == 1 and content == 1 and not bottom
+    if is_single or len(powers) > field.room:  # then it has a generator of its own
         return None
     signs = (field.call("sign", field.from_polynomial(f)) ** e for f, e in powers)
     return field.normal(reduce(mul, signs, field.number(1 if content > 0 else -1)))
