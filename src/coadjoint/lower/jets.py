@@ -26,7 +26,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.motion import ONE, Function, Meaning, Plan, Quotient, find_plan
+from coadjoint.lower.motion import Function, Meaning, Plan, Quotient, find_plan
 from coadjoint.lower.polynomials import (
     Constant,
     Polynomial,
@@ -36,6 +36,7 @@ from coadjoint.lower.polynomials import (
     sum_of,
 )
 from coadjoint.lower.program import (
+    ONE,
     ZERO,
     Call,
     Divide,

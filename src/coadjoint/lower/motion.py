@@ -31,6 +31,7 @@ from coadjoint.lower.polynomials import (
 )
 from coadjoint.lower.products import Pair, share_pairs
 from coadjoint.lower.program import (
+    ONE,
     Add,
     Call,
     Divide,
@@ -46,7 +47,6 @@ from coadjoint.lower.program import (
     with_children,
 )
 
-ONE = Number(Fraction(1))
 #: Functions whose recurrence needs nothing else: a root, signs, and what stands with a partner.
 ALONE = (
     "sqrt",
