@@ -191,8 +191,8 @@ class Lowering:
             if name in self._scales:
                 self._coefficient(self._scales.take(name)[0])
             if name in self.field.adjoined:
-                argument = self.field.adjoined[name].argument
-                self._form(argument, self._level(argument))
+                for argument in self.field.adjoined[name].arguments:
+                    self._form(argument, self._level(argument))
 
     def _moves(self, element: Element) -> bool:
         """Whether an element depends on the member, not on parameters alone."""
@@ -284,9 +284,9 @@ class Lowering:
         known = self.field.adjoined.get(name)
         if known is None:
             return self.graph.node_of_name(name, self._numbers)
-        level = self._level(known.argument)
-        argument = self._build(self._form(known.argument, level), level)
-        return self.graph.call(known.function, argument)
+        levels = [(argument, self._level(argument)) for argument in known.arguments]
+        arguments = (self._build(self._form(each, level), level) for each, level in levels)
+        return self.graph.call(known.function, *arguments)
 
 
 def _mark(element: Element) -> Any:

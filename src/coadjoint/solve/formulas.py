@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import KernelArgumentError
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
-from coadjoint.spec.core.shapes import ELEMENTARY, shape_of, words
+from coadjoint.spec.core.shapes import shape_of, words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -170,6 +171,13 @@ def _power(base: Array, exponent: int) -> Array:
     return reduce(_multiply, [base] * abs(exponent)) if exponent else one
 
 
+def _complex(a: Array, b: Array) -> Array:
+    """A complex matrix as a real one of twice the size."""
+    a, b = np.broadcast_arrays(a, b)
+    above, below = np.concatenate([a, -b], axis=1), np.concatenate([b, a], axis=1)
+    return np.concatenate([above, below], axis=0)
+
+
 def _cross(a: Array, b: Array) -> Array:
     pairs = ((1, 2), (2, 0), (0, 1))
     return _stack(a[i] * b[j] - a[j] * b[i] for i, j in pairs)
@@ -233,5 +241,11 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "outer": lambda a, b: _stack(_stack(x * y for y in b) for x in a),
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
-    **{name: getattr(np, name) for name in ELEMENTARY},
+    "complex": _complex,
+    "tan": np.tan,
+    "pow": np.power,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
+    **{name: getattr(np, each.numpy_name) for name, each in ELEMENTARY.items()},
 }

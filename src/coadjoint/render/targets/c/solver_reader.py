@@ -74,9 +74,25 @@ class VectorReader(Reader):
     file = FILE
     token = re.compile(
         r"\s+|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)"
-        r"|(?P<name>[A-Za-z_]\w*(?:\[(?:\d+|_k(?: [-+] 1)?|_m|_k - _m)\])?)|(?P<mark>[-+*/()])"
+        r"|(?P<name>[A-Za-z_]\w*(?:\[(?:\d+|_k(?: [-+] 1)?|_m|_k - _m)\])?)|(?P<mark>[-+*/(),])"
     )
     suffix = "_of"
+
+    def read_argument(self) -> Node:
+        """One argument; a number goes to all lanes."""
+        if self.tokens[self.at][1] != "all":
+            return self.sum()
+        self.take()
+        self.suffix, own = "", self.suffix
+        (inner,) = self.read_arguments(1)
+        self.suffix = own
+        return inner
+
+
+class NumberReader(VectorReader):
+    """Reads a number that goes to all lanes."""
+
+    suffix = ""
 
 
 def read_function(text: str, function: str) -> SolverBody:
@@ -235,7 +251,8 @@ class _Reading:
         if not found:
             raise self._refusal(line)
         constant = re.fullmatch(r"all\((.*)\)", found[3])
-        value = VectorReader(constant[1] if constant else found[3], self.function).whole()
+        reader = NumberReader if constant else VectorReader
+        value = reader(constant[1] if constant else found[3], self.function).whole()
         return found[1] or "", found[2], value
 
     def _refusal(self, line: str) -> Exception:

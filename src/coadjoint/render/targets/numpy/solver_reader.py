@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.targets.body import Loop, SolverBody, failure
-from coadjoint.render.targets.python_text import Reader
+from coadjoint.render.targets.python_text import NUMPY_FUNCTIONS, Reader
 
 FILE = "solver.py"
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
@@ -93,7 +93,7 @@ def _called(function: ast.expr) -> str | None:
     """``sqrt`` of ``np.sqrt``."""
     match function:
         case ast.Attribute(ast.Name("np"), called):
-            return called
+            return NUMPY_FUNCTIONS.get(called)
     return None
 
 
