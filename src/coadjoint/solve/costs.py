@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 #: The least and the greatest order of the method of Taylor.
 ORDERS: Final = (4, 40)
 #: The tolerances of ``dop853``, as a part of those of the method of Taylor, for the same errors.
-SHARE: Final = 1e-3
+SHARE: Final = 2.0**-12
 #: Tolerances between which the methods are compared. At looser ones both change alike; at tighter
 #: ones that part of them is below the roundings.
-LOOSEST, TIGHTEST = 1e-6, 1e-12
+LOOSEST, TIGHTEST = 1e-6, 1e-11
 #: Rates in a step of ``dop853``, and operations for each component besides them.
 RATES, SUMS = 12, 70
 

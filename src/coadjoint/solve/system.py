@@ -218,7 +218,7 @@ class System(Functions):
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
                 `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
                 ``"dop853"``. Where its operations say that it is faster, as for a free body on
-                so(8), it is ``"dop853"`` with a thousandth of the tolerances, but not below what
+                so(8), it is ``"dop853"`` with 1/4096 of the tolerances, but not below what
                 rounding leaves: errors are as small as those of ``"taylor"``. With ``events`` or
                 ``dense`` it is not. Where generated solvers do not apply it is ``"scipy:DOP853"``:
                 where rates are loops over a table, with ``reconstruct``, inputs that are a
