@@ -159,7 +159,12 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
     lines = tuple(Line(statement.name, statement.value) for statement in weights)
     loops = LoopText(table=rates.table, stars=stars, scales=names)
-    return replace(_arrange(programs, jets, lines), loops=loops)
+    return replace(
+        _arrange(programs, jets, lines),
+        loops=loops,
+        products=len(list(stars.products())),
+        operations=3 * len(rates.table.entries) + len(rates.table.scaled),
+    )
 
 
 def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, ...]) -> SolverText:

@@ -19,7 +19,8 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
-from coadjoint.solve.solvers import GENERATED, Choice, choose_order
+from coadjoint.solve.costs import choose_order
+from coadjoint.solve.solvers import GENERATED, Choice
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -244,6 +245,23 @@ def check_progress(progress: Any) -> None:
             f"progress is {progress!r}; expected True, False, or a function of the part done.",
             found=str(progress)[:80],
         )
+
+
+def prefers_dop853(
+    system: System, method: Any, step: float | None, rtol: float, obstacle: str
+) -> bool:
+    """Whether ``"auto"`` is ``dop853`` with tolerances that are `SHARE` of those given.
+
+    Args:
+        system: The System.
+        method: As given.
+        step: As given.
+        rtol: As given, or the default.
+        obstacle: Why generated solvers do not apply or their polynomials are asked for, or "".
+    """
+    if _normal(method) != "auto" or step is not None or obstacle:
+        return False
+    return system._solvers.costs.is_dop853_faster(rtol)
 
 
 def choose_method(

@@ -16,6 +16,7 @@ from coadjoint.solve import generated
 from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
+from coadjoint.solve.costs import SHARE, find_rounding
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import Trail, make_driving
 from coadjoint.solve.domain import Domain, Exit
@@ -38,6 +39,7 @@ from coadjoint.solve.request import (
     check_steps,
     choose_method,
     list_times,
+    prefers_dop853,
 )
 from coadjoint.solve.solution import Solution
 
@@ -84,6 +86,10 @@ def simulate(
     check_target(target)
     check_progress(progress)
     obstacle = generated.find_obstacle(system, inputs, target, reconstruct)
+    name = choose_method(system, method, step, obstacle, tolerances=tolerances)
+    within = "the path within steps is asked for" if events or dense else obstacle
+    if prefers_dop853(system, method, step, float(rtol), within):
+        name, rtol, atol = "dop853", rtol * SHARE, max(atol * SHARE, find_rounding(initial))
     request = Request(
         state=initial,
         start=start,
@@ -91,7 +97,7 @@ def simulate(
         samples=int(samples) if times.size == 1 else times.size,
         parameters=parameters,
         inputs=inputs,
-        method=choose_method(system, method, step, obstacle, tolerances=tolerances),
+        method=name,
         rtol=float(rtol),
         atol=float(atol),
         step=None if step is None else float(step),

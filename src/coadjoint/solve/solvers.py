@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from math import ceil, log
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
@@ -23,6 +22,7 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.calls import CStepper
+from coadjoint.solve.costs import Costs, read_costs
 from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Limits, Record
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.ready import make_pack
@@ -39,26 +39,12 @@ if TYPE_CHECKING:
 GENERATED: Final = ("taylor", "dop853", "rk4")
 #: Files that a folder has where its solvers were generated.
 FILES: Final = ("solver.c", "solver.h", "solver.py")
-#: The least and the greatest order of the method of Taylor.
-ORDERS: Final = (4, 40)
 #: Members in the longest vectors, those of AVX-512; others have half as many.
 LANES: Final = 8
 #: Members by which a fresh object is compared with its twin: they fill no whole number of vectors.
 PROBES: Final = 11
 #: The most steps of each.
 MOST_STEPS: Final = 4
-
-
-def choose_order(rtol: float) -> int:
-    """The order of the method of Taylor that a relative tolerance asks for.
-
-    Three more than that of Jorba and Zou, who count operations of sums alone: measured best, see
-    docs/decisions/solver-speed.md.
-
-    >>> choose_order(1e-10), choose_order(2e-16), choose_order(1e-2)
-    (16, 23, 7)
-    """
-    return min(max(ORDERS[0], ceil(4.0 - log(rtol) / 2.0)), ORDERS[1])
 
 
 @dataclass(frozen=True)
@@ -139,6 +125,11 @@ class Solvers:
     def are_there(self) -> bool:
         """Whether the folder of the system has the files of solvers."""
         return all((self.system.folder / file).is_file() for file in FILES)
+
+    @cached_property
+    def costs(self) -> Costs:
+        """What steps of this system cost."""
+        return read_costs(KernelModule(self.system, "solver.py"), self.system.STATE.size)
 
     def get(self, choice: Choice, target: str, members: int = LANES) -> Stepper:
         """The solver of a method; its NumPy twin, which is said, where a compiler cannot make it.

@@ -198,10 +198,10 @@ class Taylor:
         return _larger(self.rtol * _norm(path[:, 0]), np.full(path.shape[2], self.atol))
 
     def _choose(self, path: Array) -> Array:
-        """The step in which the last two orders are a sixteenth of what the tolerances allow."""
+        """The step in which the last two orders are a 64th of what the tolerances allow."""
         order, size = self.order, rough_log2(self._tolerance(path))
-        one = (size - 4.0 - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
-        two = (size - 4.0 - rough_log2(_norm(path[:, order]))) * (1.0 / order)
+        one = (size - 6.0 - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
+        two = (size - 6.0 - rough_log2(_norm(path[:, order]))) * (1.0 / order)
         octaves = _smaller(one, two) - 0.7 / (order - 1) * 1.4426950408889634
         if self.branches:
             most = size - rough_log2(self.rtol * _norm(path[:, 1])) + 2.0

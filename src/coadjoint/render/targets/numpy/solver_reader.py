@@ -82,8 +82,8 @@ def _is_allowed(item: ast.stmt) -> bool:
     match item:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
-        case ast.Assign(targets=[ast.Name(id="ID" | "BRANCHES" | "MEMBERS")], value=ast.Constant()):
-            return True
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
+            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
             return name.startswith(("TABLE_", "STAR_"))
     return False
