@@ -106,7 +106,8 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
     Args:
         programs: As `select_programs` has them.
     """
-    jets = make_jets(programs["rates"])
+    program = programs["rates"]
+    jets = make_jets(program.factored or program)
     arrays = jets.kept.union(jets.state, jets.driving)
     first = list(_first(jets, arrays))
     stages = tuple(_stages(jets, arrays))
