@@ -24,7 +24,6 @@ from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
-from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
 
 if TYPE_CHECKING:
@@ -49,7 +48,7 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
     """
     if "jacobian_vector" in system.functions:
         return "its rates are loops over a table, for which no solvers are generated"
-    if not all((system.folder / file).is_file() for file in FILES):
+    if not system._solvers.are_there:
         return "its folder was generated without them: run `coadjoint regenerate`"
     if reconstruct is not False and reconstruct is not None:
         return "reconstruct integrates more than the state"
@@ -72,7 +71,7 @@ def simulate(system: System, request: Request) -> Solution:
     now = _drive(system, run, request.start)
     check_starts(system, request, run, now)
     recording = _make_recording(system, request, run, driven)
-    stepper = system._solvers.get(request.choice, request.target)
+    stepper = system._solvers.get(request.choice, request.target, run.state.shape[1])
     run.begin(request.start)
     _end_undefined(system, run, now)
     checkpoint = _resume(system, request, run, stepper)
@@ -130,7 +129,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
     members = math.prod(batch)
-    parameters = pack_parameters(system, request.parameters)
+    quick = system._solvers.pack(request.parameters)
+    parameters = pack_parameters(system, request.parameters) if quick is None else np.array(quick)
     check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)
