@@ -164,7 +164,7 @@ def test_names_of_benchmarks_are_checked_first(benchmark_run, capsys):
 
 
 def test_operations_of_peers_are_those_that_move(monkeypatch):
-    """A product is shared, p q rests on parameters alone: x y, its sum with p q and a square are left."""
+    """What rests on parameters alone is left out, and a product that is shared counts once."""
     monkeypatch.syspath_prepend(str(BENCHMARKS))
     operations = import_module("operations")
     x, y, p, q, a, b, c = sympy.symbols("x y p q a b c")
