@@ -204,6 +204,8 @@ class Program:
         inputs: Component names of the inputs, in order; empty where the spec declares none.
         time: The name of the time; empty where the spec declares none.
         table: What the outputs are the sums of, where targets print loops in their place.
+        factored: The same function in fewer products that move, where there is one: recurrences are
+            made of it. It begins with the same statements of level ``parameters``.
     """
 
     name: str
@@ -215,6 +217,7 @@ class Program:
     inputs: tuple[str, ...] = ()
     time: tuple[str, ...] = ()
     table: Table | None = None
+    factored: Program | None = None
 
     @property
     def arrays(self) -> dict[str, tuple[str, ...]]:

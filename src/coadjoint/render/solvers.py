@@ -153,7 +153,7 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     """
     rates = programs["rates"]
     if rates.table is None:
-        return _arrange(programs, make_jets(rates), ())
+        return _arrange(programs, make_jets(rates.factored or rates), ())
     stars = find_stars(rates.table)
     jets, weights = make_looped_jets(rates, stars, is_written_out=is_written_out)
     names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
