@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from coadjoint.solve.crossings import Crossings, Watch, join
-from coadjoint.solve.events import Sought, Surroundings, find_bounds, make_function
 from coadjoint.solve.occurrences import Events, Occurrences
+from coadjoint.solve.surroundings import enclose, make_function
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
+    from coadjoint.solve.surroundings import Surroundings
     from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
@@ -84,8 +86,8 @@ class Lookout:
         endings: list[Ending] = []
         for place, (sought, watch) in enumerate(zip(self.sought, self._watches, strict=True)):
             function = make_function(sought, self.surroundings, steps)
-            bounds = find_bounds(sought, self.surroundings, steps)
-            endings += self._add(place, watch.scan(function, steps, bounds))
+            known = enclose(sought, self.surroundings, steps)
+            endings += self._add(place, watch.scan(function, steps, known))
         return self._end(endings)
 
     def finish(self, members: Iterable[int]) -> list[Ending]:
@@ -160,8 +162,8 @@ def list_occurrences(lookout: Lookout, batch: tuple[int, ...]) -> Events:
         whole, undefined = lookout.collect(place)
         shared = around.parameters.ndim == 1
         inputs = None
-        if around.driving is not None:
-            inputs = around.driving(whole.member, whole.time, whole.time)
+        if around.driven is not None:
+            inputs = around.driven(whole.member, whole.time, whole.time)
         found[sought.event.name] = Occurrences(
             event=sought.event,
             system=around.system,

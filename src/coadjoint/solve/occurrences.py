@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.events import TIME, Event, observe
+from coadjoint.solve.events import TIME, Event
+from coadjoint.solve.surroundings import observe
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
