@@ -130,6 +130,7 @@ def test_roots_are_found_to_the_last_digits():
         return lambda x: x**3 - c[active]
 
     left, right = np.zeros(5), np.full(5, 2.0)
-    found = find_roots(cube, left, right, left**3 - c, right**3 - c, np.zeros(5))
+    found, values = find_roots(cube, left, right, left**3 - c, right**3 - c, np.zeros(5))
     assert np.abs(found - np.cbrt(c)).max() < 1e-15
+    assert values.tolist() == (found**3 - c).tolist()
     assert found[3:].tolist() == [2.0, 0.0]

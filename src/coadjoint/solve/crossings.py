@@ -344,8 +344,8 @@ class _Scan:
                 evaluate = self.function(rows[active])
                 return lambda x: evaluate(x)[0]
 
-            part[place] = find_roots(value, left[place], right[place], *ends, close)
-            there = np.abs(value(np.arange(len(rows)))(part[place]))
+            part[place], there = find_roots(value, left[place], right[place], *ends, close)
+            there = np.abs(there)
             real[place] = (there < np.minimum(*np.abs(ends))) | (there <= self.band[rows])
         return row, part, real
 

@@ -80,8 +80,7 @@ def simulate(system: System, request: Request) -> Solution:
         if request.progress is True:
             told = stack.enter_context(progress_bar())
         threads = request.threads or count_threads()
-        watch = None if recording is None else recording.look
-        march(stepper, run, request.start, threads, told, checkpoint, watch)
+        march(stepper, run, request.start, threads, told, checkpoint, recording)
     if recording is not None:
         recording.finish()
     course = Course(

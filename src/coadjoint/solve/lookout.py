@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from coadjoint.solve.crossings import Crossings, Watch, join
+from coadjoint.solve.crossings import EPS, Crossings, Watch, join
 from coadjoint.solve.occurrences import Events, Occurrences
 from coadjoint.solve.surroundings import enclose, make_function
 
@@ -145,7 +145,10 @@ class Lookout:
         """The crossings of an event up to the ends of trajectories, and where it is undefined."""
         size = self.surroundings.system.STATE.size + self.surroundings.followed
         whole = join(self._lots[place], size)
-        kept = whole.take(whole.time <= self.ends[whole.member])
+        ends = self.ends[whole.member]
+        # of two at one time either may end a trajectory: the other is not lost by its last digit
+        kept = whole.take(whole.time <= ends + 8 * EPS * np.abs(whole.time))
+        kept.time = np.minimum(kept.time, self.ends[kept.member])
         return kept, self._watches[place].undefined
 
 

@@ -19,6 +19,7 @@ from coadjoint.solve.dense_output import Dense, move_onto_constraints
 from coadjoint.solve.enclosures import Enclosure
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending, list_occurrences
+from coadjoint.solve.terms import write_terms
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -105,6 +106,9 @@ class Recording:
         sought: The events.
         surroundings: What the names of their formulas mean.
         keeps: Whether steps are kept.
+
+    Attributes:
+        terms: What has to be recorded, as `Record` has it; None for every step.
     """
 
     def __init__(
@@ -118,6 +122,7 @@ class Recording:
             atol=run.atol,
             members=run.state.shape[1],
         )
+        self.terms = None if keeps else write_terms(sought, surroundings)
         self._endings: list[Ending] = []
         self._kept: list[Polynomials] = []
 

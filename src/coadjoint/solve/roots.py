@@ -176,7 +176,7 @@ def _list_knots(
         def slope(active: Places) -> Callable[[Array], Array]:
             return partial(_slope, own[:, active])
 
-        found = find_roots(slope, minus, plus, slopes[0, place], slopes[1, place], plus * 0.0)
+        found, _ = find_roots(slope, minus, plus, slopes[0, place], slopes[1, place], plus * 0.0)
         inner = left[place] + width[place] * ((found + 1.0) / 2.0)
         values = function(row[place])(inner)[0]
     return Knots(
@@ -273,11 +273,11 @@ def find_roots(
     at_left: Array,
     at_right: Array,
     close: Array,
-) -> Array:
+) -> tuple[Array, Array]:
     """The roots of functions in intervals at whose ends they have other signs, or are zero.
 
     By the method of T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse
-    quadratic interpolation where that is safe, else bisection.
+    quadratic interpolation where that is safe, else bisection. The first place is that of a line.
 
     Args:
         function: Some of the functions, by number, each of a place.
@@ -286,23 +286,28 @@ def find_roots(
         at_left: The values there.
         at_right: Likewise.
         close: How close the place has to be, at the least to the last digits.
+
+    Returns:
+        The roots, and the values there.
     """
-    root = np.where(np.abs(at_left) < np.abs(at_right), left, right)
+    nearer = np.abs(at_left) < np.abs(at_right)
+    root, value = np.where(nearer, left, right), np.where(nearer, at_left, at_right)
     active = np.flatnonzero((at_left != 0) & (at_right != 0) & np.isfinite(at_left * at_right))
     # the best interval ends at a and b, and c was an end before
     a, b, fa, fb, near = (each[active] for each in (right, left, at_right, at_left, close))
-    t, evaluate = np.full(a.shape, 0.5), function(active)
-    going = np.ones(a.shape, bool)
+    evaluate, going = function(active), np.ones(a.shape, bool)
     with np.errstate(all="ignore"):
+        t = np.minimum(np.maximum(fa / (fa - fb), 2.0**-10), 1.0 - 2.0**-10)
         while active.size:
             x = a + t * (b - a)
             fx = evaluate(x)
-            same = np.sign(fx) == np.sign(fa)
+            same = (fx > 0) == (fa > 0)
             c, fc = np.where(same, a, b), np.where(same, fa, fb)
             b, fb = np.where(same, b, a), np.where(same, fb, fa)
             a, fa = x, fx
-            found = np.where(np.abs(fx) < np.abs(fb), x, b)
-            root[active[going]] = found[going]
+            nearer = np.abs(fx) < np.abs(fb)
+            found, there = np.where(nearer, x, b), np.where(nearer, fx, fb)
+            root[active[going]], value[active[going]] = found[going], there[going]
             digits = 4.0 * np.finfo(float).eps * np.maximum(np.abs(found), 2.0**-40)
             limit = np.maximum(digits, near) / np.abs(b - a)
             t = _next_part((a, b, c), (fa, fb, fc), limit)
@@ -311,7 +316,7 @@ def find_roots(
                 a, b, fa, fb, near, t = (each[going] for each in (a, b, fa, fb, near, t))
                 active, going = active[going], going[going]
                 evaluate = function(active)
-    return root
+    return root, value
 
 
 def _next_part(

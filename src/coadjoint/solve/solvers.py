@@ -203,6 +203,8 @@ class _Run(ctypes.Structure):
         ("record", _PLACE),
         ("record_room", _SIZE),
         ("recorded", _SIZE),
+        ("terms", _PLACE),
+        ("term_count", _SIZE),
     )
 
 
@@ -247,6 +249,8 @@ def call(
         return advance(ctypes.byref(run))
     run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
     run.recorded = record.count
+    if record.terms is not None:
+        run.terms, run.term_count = record.terms.ctypes.data, len(record.terms)
     on = advance(ctypes.byref(run))
     record.count = run.recorded
     return on
@@ -293,10 +297,9 @@ class NumpyStepper:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
         self._rates = partial(self._evaluate, "rhs", system.STATE.size)
-        if choice.name == "taylor":
-            module = KernelModule(system, "solver.py")
-            self._expansion = module.function("expand")
-            self._branches = bool(module.value("BRANCHES"))
+        module = KernelModule(system, "solver.py")
+        self._expansion = module.function("expand")
+        self._branches = bool(module.value("BRANCHES"))
         self._limits = Limits(
             domain=partial(self._evaluate, "domain", len(system.DOMAIN)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
@@ -330,8 +333,10 @@ class NumpyStepper:
                 branches=self._branches,
             )
         if self._choice.name == "dop853":
-            return DormandPrince8(self._rates, run.rtol, run.atol, run.size)
-        return RungeKutta4(self._rates, run.size)
+            return DormandPrince8(
+                self._rates, run.rtol, run.atol, run.size, branches=self._branches
+            )
+        return RungeKutta4(self._rates, run.size, branches=self._branches)
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""

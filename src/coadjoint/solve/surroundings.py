@@ -19,11 +19,13 @@ from coadjoint.solve.driving import Function as InputFunction
 from coadjoint.solve.driving import Previous, Signal
 from coadjoint.solve.enclosures import Enclosure, as_enclosure
 from coadjoint.solve.taken import Enclosed
+from coadjoint.solve.terms import Kind, Term, list_components
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.events import Sought
+    from coadjoint.solve.formulas import Formula
     from coadjoint.solve.roots import Function
     from coadjoint.solve.system import System
     from coadjoint.solve.taken import Steps
@@ -74,18 +76,27 @@ class Surroundings:
     driven: Driven | None
     followed: int = 0
 
-    def list_rows(self, names: Iterable[str]) -> Places:
-        """The rows of the state that names of a formula depend on."""
-        system, n = self.system, self.system.STATE.size
-        chosen = np.zeros(n + self.followed, bool)
-        for name in names:
-            if name in system.STATE or name in system.STATE.components:
-                chosen[:n][system.STATE.rows(name)] = True
-            elif name in system.OBSERVABLES or name in system.OBSERVABLES.components:
-                chosen[:n] = True
-            elif name in system.RECONSTRUCTED or name in system.RECONSTRUCTED.components:
-                chosen[n:] = True
-        return np.flatnonzero(chosen)
+    @property
+    def total(self) -> int:
+        """All rows."""
+        return self.system.STATE.size + self.followed
+
+    def list_rows(self, formula: Formula) -> Places:
+        """The rows of the state that a formula depends on."""
+        found, size = formula.evaluate(self.find_values(formula.names, self.name_all()))
+        return np.array(sorted(list_components(found[0]) | list_components(size[0])), np.intp)
+
+    def name_all(self) -> Columns:
+        """A term for all that a formula may read."""
+        own = self.parameters[:, np.newaxis]
+        if self.parameters.ndim > 1:
+            own = as_column(Term(Kind.PARAMETER, row=row) for row in range(len(own)))
+        return Columns(
+            states=as_column(Term(Kind.COMPONENT, row=row) for row in range(self.total)),
+            time=as_column([Term(Kind.TIME)])[0],
+            parameters=own,
+            inputs=as_column(Term(Kind.INPUT, row=row) for row in range(self.system.INPUTS.size)),
+        )
 
     def find_values(self, names: Iterable[str], place: Place) -> dict[str, Array]:
         """The value of each name at a place, ``(*shape, P)``."""
@@ -111,7 +122,7 @@ class Surroundings:
         return found | dict.fromkeys(wanted, place.time)
 
     @cached_property
-    def _observables(self) -> Callable[..., None]:
+    def observables(self) -> Callable[..., None]:
         """The observables of the NumPy kernel, for numbers of any kind."""
         return KernelModule(self.system, "kernel.py").function("_observables")
 
@@ -202,47 +213,42 @@ def observe(
     )
 
 
-class Stretches:
-    """Whole steps: all values are enclosures, ``(..., 1)``.
+@dataclass
+class Columns:
+    """Values that are objects which compute as numbers do, such as enclosures over whole steps.
 
-    Args:
-        steps: The steps.
-        states: The enclosures of the components that a formula reads, by row.
-        total: How many rows there are.
+    Attributes:
+        states: As `Place` has them, ``(n, 1)``.
+        time: Likewise.
+        parameters: ``(k, 1)``.
+        inputs: ``(m, 1)``.
     """
 
-    def __init__(self, steps: Steps, states: dict[int, Enclosure], total: int) -> None:
-        self._steps = steps
-        self.states = _as_column(states.get(row) for row in range(total))
-        self.time = _as_column([Enclosure.of_line(steps.start, steps.size)])[0]
+    states: Array
+    time: Array
+    parameters: Array
+    inputs: Array
 
-    def find_parameters(self, around: Surroundings) -> Array:
+    def find_parameters(self, _: Surroundings) -> Array:
         """As `Place.find_parameters`."""
-        own = around.parameters
-        if own.ndim == 1:
-            return own[:, np.newaxis]
-        return _as_column(Enclosure(row) for row in own[:, self._steps.member])
+        return self.parameters
 
-    def find_inputs(self, around: Surroundings) -> Array:
+    def find_inputs(self, _: Surroundings) -> Array:
         """As `Place.find_inputs`."""
-        assert around.driven is not None, "asked for only where there are inputs"
-        member, start = self._steps.member, self._steps.start
-        first = around.driven(member, start, start)
-        last = around.driven(member, start, start + self._steps.size)
-        return _as_column(map(Enclosure.of_line, first, last - first))
+        return self.inputs
 
     def observe(self, around: Surroundings) -> Array:
         """As `Place.observe`."""
         system = around.system
-        given = [self.states[: system.STATE.size, 0], self.find_parameters(around)[:, 0]]
-        given += [self.find_inputs(around)[:, 0]] if system.INPUTS else []
+        given = [self.states[: system.STATE.size, 0], self.parameters[:, 0]]
+        given += [self.inputs[:, 0]] if system.INPUTS else []
         given += [self.time] if system.TIME else []
         out = np.empty((system.OBSERVABLES.size, 1), object)
-        around._observables(*given, out[:, 0])
+        around.observables(*given, out[:, 0])
         return out
 
 
-def _as_column(values: Iterable[Any]) -> Array:
+def as_column(values: Iterable[Any]) -> Array:
     """Objects as the rows of an array of one column."""
     listed = list(values)
     column = np.empty((len(listed), 1), object)
@@ -256,8 +262,7 @@ def _as_column(values: Iterable[Any]) -> Array:
 def make_function(sought: Sought, around: Surroundings, steps: Steps) -> Function:
     """The left side of an event minus the right side along steps, with the size of both."""
     level, names = float(sought.event.value), sought.formula.names
-    only = around.list_rows(names)
-    total = around.system.STATE.size + around.followed
+    only = around.list_rows(sought.formula)
 
     def function(rows: Places) -> Callable[[Array], tuple[Array, Array]]:
         follow, size = steps.follow(rows, only), steps.size[rows]
@@ -265,7 +270,7 @@ def make_function(sought: Sought, around: Surroundings, steps: Steps) -> Functio
 
         def evaluate(part: Array) -> tuple[Array, Array]:
             after = part * size
-            states = np.empty((total, after.size))
+            states = np.full((around.total, after.size), np.nan)
             states[only] = follow(after).reshape(len(only), after.size)
             begun = np.broadcast_to(start, after.shape).ravel()
             whose = np.broadcast_to(member, after.shape).ravel()
@@ -284,14 +289,32 @@ def enclose(sought: Sought, around: Surroundings, steps: Steps) -> Enclosed | No
     if around.driven is not None and not around.driven.are_lines:
         return None
     states: dict[int, Enclosure] = {}
-    for row in around.list_rows(sought.formula.names).tolist():
+    for row in around.list_rows(sought.formula).tolist():
         enclosure = steps.enclose(row)
         if enclosure is None:
             return None
         states[row] = enclosure
-    whole = Stretches(steps, states, around.system.STATE.size + around.followed)
     with np.errstate(all="ignore"):
-        values = around.find_values(sought.formula.names, whole)
+        values = around.find_values(sought.formula.names, _enclose_all(around, steps, states))
         found, terms = (as_enclosure(each[0]) for each in sought.formula.evaluate(values))
         level = float(sought.event.value)
         return Enclosed(found - level, (terms + abs(level)).top)
+
+
+def _enclose_all(around: Surroundings, steps: Steps, states: dict[int, Enclosure]) -> Columns:
+    """The enclosures of all that a formula may read over steps."""
+    member, start, own = steps.member, steps.start, around.parameters
+    driven: Iterable[Enclosure] = ()
+    if around.driven is not None:
+        first = around.driven(member, start, start)
+        driven = map(
+            Enclosure.of_line, first, around.driven(member, start, start + steps.size) - first
+        )
+    return Columns(
+        states=as_column(states.get(row, Enclosure(np.nan)) for row in range(around.total)),
+        time=as_column([Enclosure.of_line(start, steps.size)])[0],
+        parameters=own[:, np.newaxis]
+        if own.ndim == 1
+        else as_column(map(Enclosure, own[:, member])),
+        inputs=as_column(driven),
+    )
