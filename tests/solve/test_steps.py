@@ -77,7 +77,7 @@ MAIN = """#include "solver.h"
 #include <pthread.h>
 #include <stdlib.h>
 enum { WIDTH = 5 + %(state)d * (%(degree)d + 1), ROOM = 35 };
-/* Where the square of the first component is 1.1, by COMPONENT, MULTIPLY, SHIFT, SIZE and SOUGHT. */
+/* Where the square of a component is 1.1, by COMPONENT, MULTIPLY, SHIFT, SIZE and SOUGHT. */
 static const %(name)s_term terms[] = {
     {.kind = 1}, {.kind = 7}, {.kind = 9, .left = 1, .value = -1.1}, {.kind = 12, .left = 1},
     {.kind = 13, .left = 2, .right = 3, .value = -1.0}};

@@ -136,17 +136,15 @@ def count_lost(whole, few, formula):
 @pytest.mark.parametrize("choice", CHOICES, ids=str)
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_steps_that_are_left_out_have_no_event(choice, formula):
-    """And they are most; the steps that are recorded are those of a full record, to the bit."""
+    """And they are many; the steps that are recorded are those of a full record, to the bit."""
     whole = record(choice, None)
     terms, _ = write(formula)
     few = record(choice, terms)
     lost, left_out = count_lost(whole, few, formula)
     assert lost == 0
-    assert left_out > 0.6 * whole.count
-    places = [
-        np.flatnonzero((whole.rows[:, [0, 3]] == row[[0, 3]]).all(axis=1)) for row in few.rows
-    ]
-    assert (whole.rows[np.concatenate(places)] == few.rows[: few.count]).all()
+    assert left_out > 0.35 * whole.count
+    everything = {row.tobytes() for row in whole.rows[: whole.count]}
+    assert {row.tobytes() for row in few.rows[: few.count]} <= everything
 
 
 @pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
