@@ -238,3 +238,15 @@ def list_scope(quantities: Iterable[Any]) -> dict[str, tuple[int, ...]]:
         for component in quantity.components:
             scope.setdefault(component, ())
     return scope
+
+
+def explain_unknown(name: str, names: list[str]) -> KernelArgumentError:
+    """What to say of a name that has no value at events."""
+    from coadjoint.spec.core.faults import did_you_mean, list_names
+
+    return KernelArgumentError(
+        f"{name!r} is not known at events; expected one of {list_names(names)} or 'time'. "
+        f"{did_you_mean(name, names)}".rstrip(),
+        found=name,
+        expected=names,
+    )
