@@ -1,19 +1,21 @@
-"""Generated C against C by hand, heyoka, numba and SymPy: rates of 1000 members in the cache.
+"""Generated C against C by hand and peers: rates of 1000 members in the cache.
 
 python benchmarks/c_kernels.py [SYSTEM ...]        by default seven systems
 
 Competitors take turns in one run, processor time counts: the median of the rounds, with the spread
 from the fastest to the slowest. State and result begin at multiples of 64 bytes. C by hand
 (`hand/*.c`) is compiled with each of several sets of options, loops in C, and the fastest counts.
-Peers get parameters as numbers in their code, in the equations of `peers.py`; those of heyoka and
-NumPy are called from Python, and of heyoka the time of one member is taken off.
+Peers get parameters as numbers in their code, in the equations of `peers.py`. Those of heyoka,
+casadi and NumPy are called from Python, and but for NumPy the time of one member is taken off; jax
+has a loop of calls in what it compiles. casadi runs in its own machine, and as the C that it
+writes, compiled with the options of C by hand; it has the components of a member together.
 Writes JSON and Markdown to `results/`.
 """
 
 from __future__ import annotations
 
 import ctypes
-import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -27,8 +29,8 @@ from typing import Any
 import numpy as np
 import peers
 import sympy
-from figures import Figure
-from run import processor
+from figures import Figure, Spread
+from results import Table, write
 
 from coadjoint.build.compiler import MACHINES, compile_kernel, find_compiler, one_function
 from coadjoint.build.library import load_library
@@ -37,7 +39,6 @@ from coadjoint.solve.system import load_folder
 
 MEMBERS, ROUNDS, SECONDS = 1000, 21, 0.01
 HAND = Path(__file__).parent / "hand"
-RESULTS = Path(__file__).parent / "results"
 #: Parameters, and how many times SymPy's time we mean to be faster.
 SYSTEMS: Mapping[str, tuple[Sequence[float], float]] = {
     "rigid_body": ((1, 2, 3), 8),
@@ -99,8 +100,14 @@ class Contest:
         found["lambdify"] = self.by_sympy()
         if find_spec("numba") is not None:
             found["numba"] = self.by_numba()
+        if find_spec("jax") is not None:
+            found["jax"] = self.by_jax()
         if find_spec("heyoka") is not None:
             found |= {"heyoka": self.by_heyoka(MEMBERS), "heyoka alone": self.by_heyoka(1)}
+        for who, in_c in (("casadi", False), ("casadi's C", True)):
+            if find_spec("casadi") is not None:
+                given = {who: MEMBERS, f"{who} alone": 1}
+                found |= {each: self.by_casadi(n, in_c) for each, n in given.items()}
         return found
 
     def _call(self, place: int) -> Repeat:
@@ -139,14 +146,13 @@ class Contest:
         function = sympy.lambdify(names, rates, modules="numpy", cse=True)
         return self._each(lambda: function(*self.state))
 
-    def _each(self, function: Callable[[], Sequence[Any]]) -> Repeat:
+    def _each(self, function: Callable[[], Any]) -> Repeat:
         """Calls from Python; the result of the last is kept."""
 
         def call(times: int) -> None:
             for _ in range(times):
                 rows = function()
-            if rows is not self.out:
-                self.out[...] = rows
+            self.out[...] = rows
 
         return call
 
@@ -177,6 +183,66 @@ class Contest:
         out = self.out if members == MEMBERS else np.empty_like(state)
         return self._each_in_place(lambda: function(state, outputs=out))
 
+    def by_jax(self) -> Repeat:
+        """A loop of calls, compiled by XLA for doubles and one core."""
+        os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
+        import jax
+
+        jax.config.update("jax_enable_x64", True)
+        equations = peers.EQUATIONS[self.name]
+
+        @jax.jit
+        def repeat(times: Any, state: Any) -> Any:
+            def again(_: Any, carried: Any) -> Any:
+                rates = jax.numpy.stack(equations(carried[0], self.values))
+                return jax.lax.optimization_barrier((carried[0], rates))  # or it runs once
+
+            return jax.lax.fori_loop(0, times, again, (state, state))[1]
+
+        state = jax.numpy.asarray(self.state)
+
+        def call(times: int) -> None:
+            self.out[...] = repeat(times, state)
+
+        return call
+
+    def by_casadi(self, members: int, in_c: bool) -> Repeat:
+        """A function of casadi for all members, called with memory of ours."""
+        import casadi
+
+        state = casadi.SX.sym("x", self.system.STATE.size)
+        names = casadi.vertsplit(state)
+        rates = casadi.vertcat(*peers.EQUATIONS[self.name](names, self.values))
+        function = casadi.Function("rates", [state], [rates]).map(members)
+        if in_c:
+            function = self._compile_casadi(function, f"casadi{members}")
+        buffer, call = function.buffer()
+        given, found = self.state[:, :members].T.copy(), np.empty((members, len(names)))
+        buffer.set_arg(0, memoryview(given))
+        buffer.set_res(0, memoryview(found))
+
+        def run(times: int) -> None:
+            for _ in range(times):
+                call()
+            if members == MEMBERS:
+                self.out[...] = found.T
+
+        run.buffers = buffer, given, found, function  # type: ignore[attr-defined]  # kept
+        return run
+
+    def _compile_casadi(self, function: Any, stem: str) -> Any:
+        """The same function in C."""
+        import casadi
+
+        source = self.folder / f"{self.name}_{stem}.c"
+        code = casadi.CodeGenerator(source.name)
+        code.add(function)
+        code.generate(f"{source.parent}/")
+        target = source.with_suffix(".so")
+        command = [*find_compiler().command, *FUSED[0], str(source), "-o", str(target)]
+        subprocess.run(command, check=True)
+        return casadi.external(function.name(), str(target))
+
     def _each_in_place(self, function: Callable[[], object]) -> Repeat:
         """Calls from Python that write where they should."""
 
@@ -198,14 +264,14 @@ def check_equal(contest: Contest, competitors: Mapping[str, Repeat]) -> None:
     size = np.abs(expected).max()
     assert size > 0
     for who, call in competitors.items():
-        if who != "heyoka alone":
+        if not who.endswith(" alone"):
             contest.out[...] = np.nan
             call(1)
             error = np.abs(contest.out - expected).max()
             assert error <= 1e-12 * size, (contest.name, who, error)
 
 
-def measure_system(name: str, folder: Path, repeat: Any) -> dict[str, tuple[float, float, float]]:
+def measure_system(name: str, folder: Path, repeat: Any) -> dict[str, Spread]:
     """Nanoseconds of a call by each competitor: median, fastest and slowest round."""
     contest = Contest(name, folder, repeat)
     competitors, times = contest.competitors(), {}
@@ -220,69 +286,48 @@ def measure_system(name: str, folder: Path, repeat: Any) -> dict[str, tuple[floa
             start = process_time()
             call(times[who])
             rounds[who].append((process_time() - start) / times[who] * 1e9)
-    return {who: (median(each), min(each), max(each)) for who, each in rounds.items()}
+    return {who: Spread(median(each), min(each), max(each)) for who, each in rounds.items()}
 
 
-def compare(name: str, taken: Mapping[str, tuple[float, float, float]]) -> list[Figure]:
+def compare(name: str, taken: Mapping[str, Spread]) -> list[Figure]:
     """Our speed in units of the others."""
     medians = {who: each[0] for who, each in taken.items()}
     best = {
         kind: min(value for who, value in medians.items() if who.startswith(kind))
         for kind in ("hand", "unfused")
     }
-    rows: list[tuple[str, str, float | None, float]] = [
+    rows: list[tuple[str, str, float | None, float | None]] = [
         ("fast", "best C by hand", best["hand"], 0.9),
         ("exact", "C by hand without contraction", best["unfused"], 0.9),
         ("fast", "lambdify(cse) with numbers", medians["lambdify"], SYSTEMS[name][1]),
         ("fast", "numba with numbers", medians.get("numba"), 1.2),
     ]
-    heyoka = medians["heyoka"] - medians["heyoka alone"] if "heyoka" in medians else None
-    rows.append(("fast", "heyoka cfunc with numbers", heyoka, 2.5))
+    targets = {"heyoka": ("heyoka cfunc", 2.5), "jax": ("jax", None)}
+    targets |= {"casadi": ("casadi", None), "casadi's C": ("casadi's C", None)}
+    for who, (what, wanted) in targets.items():
+        other = medians[who] - medians.get(f"{who} alone", 0.0) if who in medians else None
+        rows.append(("fast", f"{what} with numbers", other, wanted))
     figures = []
     for build, peer, other, target in rows:
         what = f"{name}: {build} C rhs, N = {MEMBERS}, speed against {peer}"
+        goal = "none" if target is None else f">= {target:g}"
         if other is None:
-            figures.append(Figure(what, f">= {target:g}", "not installed"))
+            figures.append(Figure(what, goal, "not installed"))
             continue
         ratio, own = other / medians[build], medians[build]
         measured = f"{ratio:.2f} ({own:.0f} ns, peer {other:.0f} ns)"
-        figures.append(Figure(what, f">= {target:g}", measured, ratio >= target))
+        figures.append(Figure(what, goal, measured, None if target is None else ratio >= target))
     return figures
 
 
-def write(taken: Mapping[str, Mapping[str, Any]], figures: Sequence[Figure]) -> None:
-    """The files of ``results/``."""
-    RESULTS.mkdir(exist_ok=True)
-    compiler = find_compiler().version
-    record = {
-        "machine": processor(),
-        "compiler": compiler,
-        "members": MEMBERS,
-        "rounds": ROUNDS,
-        "nanoseconds": taken,
-        "figures": [vars(each) for each in figures],
-    }
-    text = json.dumps(record, indent=1) + "\n"
-    (RESULTS / "c_kernels.json").write_text(text, encoding="utf-8")
-    lines = [
-        f"# Rates of {MEMBERS} members in C",
-        "",
-        f"{processor()}; {compiler}. Processor time of one core, medians of {ROUNDS} interleaved",
-        "rounds. `benchmarks/c_kernels.py` says what is measured.",
-        "",
-        "| figure | target | measured | |",
-        "|---|---|---|---|",
-    ]
-    verdicts = {True: "met", False: "MISSED", None: ""}
-    for each in figures:
-        lines.append(f"| {each.what} | {each.target} | {each.measured} | {verdicts[each.met]} |")
-    lines += ["", "Nanoseconds of a call: median, fastest and slowest round.", ""]
+def spread_table(taken: Mapping[str, Mapping[str, Spread]]) -> Table:
+    """Nanoseconds of all competitors."""
     competitors = list(dict.fromkeys(who for of in taken.values() for who in of))
-    lines += [f"| | {' | '.join(competitors)} |", "|---|" + "---|" * len(competitors)]
-    for name, of in taken.items():
-        cells = ["{:.0f} ({:.0f} to {:.0f})".format(*of[who]) for who in competitors]
-        lines.append(f"| {name} | {' | '.join(cells)} |")
-    (RESULTS / "c_kernels.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    rows = [
+        [who, *("{:.0f} ({:.0f} to {:.0f})".format(*of[who]) for of in taken.values())]
+        for who in competitors
+    ]
+    return Table("Nanoseconds of a call: median, fastest and slowest round", ["", *taken], rows)
 
 
 def measure(names: Sequence[str] = tuple(SYSTEMS)) -> list[Figure]:
@@ -294,9 +339,10 @@ def measure(names: Sequence[str] = tuple(SYSTEMS)) -> list[Figure]:
         for name in names:
             taken[name] = measure_system(name, Path(folder), repeat)
             figures += compare(name, taken[name])
-            for each in figures[-5:]:
+            for each in figures[-8:]:
                 print(f"{each.what}: {each.measured} (target {each.target})", file=sys.stderr)
-    write(taken, figures)
+    setting = {"what": f"rates of {MEMBERS} members", "rounds": ROUNDS, "options": list(FUSED)}
+    write("c_kernels", setting, (), figures, [spread_table(taken)])
     return figures
 
 

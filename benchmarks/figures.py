@@ -1,6 +1,6 @@
 """What every benchmark shares: the record of a figure, interleaved timing, and a fresh process.
 
-The machine is noisy, so competitors take turns and the best of many rounds counts; results are
+The machine is noisy, so competitors take turns, and medians count with their spread; results are
 compared as well as speed.
 """
 
@@ -11,9 +11,12 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
+from typing import NamedTuple
 
 SYSTEMS = ("rigid_body", "heavy_top", "kirchhoff")
+#: How a table says whether a target is met.
+VERDICTS = {True: "met", False: "MISSED", None: ""}
 
 
 @dataclass(frozen=True)
@@ -33,24 +36,43 @@ class Figure:
     met: bool | None = None
 
 
-def best_of(
-    competitors: Mapping[str, Callable[[], object]], rounds: int, calls: int = 1
-) -> dict[str, float]:
-    """Seconds of the fastest call of each competitor; they take turns.
+class Spread(NamedTuple):
+    """Seconds of a call over the rounds."""
+
+    median: float
+    fastest: float
+    slowest: float
+
+    def text(self, unit: float, name: str) -> str:
+        """Median and spread in a unit of so many seconds."""
+        each = (f"{value / unit:.3g}" for value in self)
+        return "{} {} ({} to {})".format(next(each), name, *each)
+
+
+def take_turns(
+    competitors: Mapping[str, Callable[[], object]],
+    rounds: int,
+    calls: int = 1,
+    clock: Callable[[], float] = process_time,
+) -> dict[str, Spread]:
+    """Seconds of a call of each competitor; they take turns.
 
     Args:
         competitors: What to call, by name.
         rounds: How often each has its turn.
         calls: Calls in a turn; the mean of a turn counts.
+        clock: What counts: processor time, or wall time for what takes microseconds.
     """
-    best = dict.fromkeys(competitors, float("inf"))
+    taken: dict[str, list[float]] = {name: [] for name in competitors}
     for _ in range(rounds):
         for name, function in competitors.items():
-            start = perf_counter()
+            start = clock()
             for _ in range(calls):
                 function()
-            best[name] = min(best[name], (perf_counter() - start) / calls)
-    return best
+            taken[name].append((clock() - start) / calls)
+    return {
+        name: Spread(statistics.median(each), min(each), max(each)) for name, each in taken.items()
+    }
 
 
 def fresh_process(code: str, runs: int = 5, *, median: bool = False) -> float:
@@ -66,5 +88,5 @@ def fresh_process(code: str, runs: int = 5, *, median: bool = False) -> float:
 def script(measure: Callable[[], list[Figure]]) -> None:
     """Print the figures of one benchmark."""
     for figure in measure():
-        verdict = {True: "met", False: "MISSED", None: ""}[figure.met]
+        verdict = VERDICTS[figure.met]
         print(f"{figure.what}: {figure.measured} (target {figure.target}) {verdict}".rstrip())

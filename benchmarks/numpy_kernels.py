@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import sympy
-from figures import SYSTEMS, Figure, best_of, script
+from figures import SYSTEMS, Figure, Spread, script, take_turns
+from results import Table, write
 
 from coadjoint.derive import derive
 from coadjoint.resources import derivations_folder, systems_folder
@@ -19,9 +20,11 @@ from coadjoint.solve.system import load_folder
 from coadjoint.spec import read_spec
 
 MEMBERS = 1_000_000
+#: Systems of which one and a thousand members are evaluated.
+FEW_SYSTEMS = (*SYSTEMS, "so4_body", "so6_body")
 
 
-def contest(name: str, rounds: int = 5) -> dict[str, float]:
+def contest(name: str, rounds: int = 7) -> dict[str, Spread]:
     """Seconds of one evaluation by each competitor.
 
     Raises:
@@ -48,10 +51,10 @@ def contest(name: str, rounds: int = 5) -> dict[str, float]:
         scale = np.abs(out).max()
         assert scale > 0
         assert np.abs(reference - out).max() <= 1e-13 * scale
-    return best_of(competitors, rounds)
+    return take_turns(competitors, rounds)
 
 
-def contest_of_few(name: str, members: int) -> dict[str, float]:
+def contest_of_few(name: str, members: int) -> dict[str, Spread]:
     """Seconds of one evaluation of a few members, parameters as numbers.
 
     Raises:
@@ -71,30 +74,40 @@ def contest_of_few(name: str, members: int) -> dict[str, float]:
     reference, found = (function() for function in competitors.values())
     assert np.abs(found).max() > 0
     assert np.abs(reference - found).max() <= 1e-12 * np.abs(found).max()
-    return best_of(competitors, rounds=40, calls=max(20, 200 // members))
+    return take_turns(competitors, rounds=61, calls=max(50, 500 // members))
 
 
 def measure() -> list[Figure]:
     """Speed of generated NumPy in units of the others."""
-    figures = []
-    for name in SYSTEMS:
+    figures, rows = [], []
+    for name in FEW_SYSTEMS:
         for members in (1, 1000):
             taken = contest_of_few(name, members)
-            ratio = taken["lambdify"] / taken["generated"]
-            measured = f"{ratio:.2f} ({taken['generated'] * 1e6:.1f} us)"
+            rows.append([f"{name}, N = {members}", *_cells(taken)])
+            ratio = taken["lambdify"].median / taken["generated"].median
+            measured = f"{ratio:.2f} ({taken['generated'].median * 1e6:.1f} us)"
             what = f"{name}: NumPy rhs, N = {members}, speed against lambdify(cse) with numbers"
             figures.append(Figure(what, ">= 1", measured, ratio >= 1.0))
+    for name in SYSTEMS:
         taken = contest(name)
-        ratio = taken["lambdify"] / taken["generated"]
-        measured = f"{ratio:.2f} ({taken['generated'] * 1e3:.0f} ms)"
+        rows.append([f"{name}, N = 1e6", *_cells(taken)])
+        ours = taken["generated"].median
+        ratio = taken["lambdify"].median / ours
         what = f"{name}: NumPy rhs, N = 1e6, speed against lambdify(cse=True)"
-        figures.append(Figure(what, ">= 2.5", measured, ratio >= 2.5))
+        figures.append(Figure(what, ">= 2.5", f"{ratio:.2f} ({ours * 1e3:.0f} ms)", ratio >= 2.5))
         peer = f"{name}: NumPy rhs, N = 1e6, speed against numba"
-        against = (
-            f"{taken['numba'] / taken['generated']:.2f}" if "numba" in taken else "not installed"
-        )
+        against = f"{taken['numba'].median / ours:.2f}" if "numba" in taken else "not installed"
         figures.append(Figure(peer, "none", against))
+    columns = ["", "generated", "lambdify", "numba"]
+    table = Table("Microseconds of a call: median, fastest and slowest round", columns, rows)
+    write("numpy_kernels", {"what": "rates by NumPy kernels"}, (), figures, [table])
     return figures
+
+
+def _cells(taken: dict[str, Spread]) -> list[str]:
+    """Times by competitor."""
+    competitors = ("generated", "lambdify", "numba")
+    return [taken[who].text(1e-6, "") if who in taken else "" for who in competitors]
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from os import getloadavg
 from pathlib import Path
 from typing import Any
 
-from figures import Figure
+from figures import VERDICTS, Figure
 from run import processor
 
 from coadjoint.build.compiler import find_compiler
@@ -41,8 +41,27 @@ class Point:
     worst: float
 
 
+@dataclass(frozen=True)
+class Table:
+    """Numbers that figures follow from.
+
+    Attributes:
+        title: What they are.
+        columns: What stands in each column; the first has names.
+        rows: Names and values.
+    """
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+
+
 def write(
-    stem: str, setting: Mapping[str, Any], points: Sequence[Point], figures: Sequence[Figure]
+    stem: str,
+    setting: Mapping[str, Any],
+    points: Sequence[Point],
+    figures: Sequence[Figure],
+    tables: Sequence[Table] = (),
 ) -> None:
     """JSON, Markdown and, where there are points, a plot.
 
@@ -51,33 +70,43 @@ def write(
         setting: What was measured, by name.
         points: Competitors.
         figures: What follows from them.
+        tables: More of what was measured.
     """
     FOLDER.mkdir(exist_ok=True)
     machine = {
         "machine": processor(),
         "busy": f"{getloadavg()[0]:.1f} processes wanted a processor",
         "compiler": find_compiler().version,
-        "build": "c-fast",
     }
     record = {
         **setting,
         **machine,
+        "tables": [asdict(table) for table in tables],
         "points": [asdict(point) for point in points],
         "figures": [asdict(figure) for figure in figures],
     }
     path = FOLDER / stem
     path.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    text = markdown(stem, {**setting, **machine}, points, figures)
+    text = markdown(stem, {**setting, **machine}, points, figures, tables)
     path.with_suffix(".md").write_text(text, encoding="utf-8")
     if points:
         plot(stem, points, path.with_suffix(".png"))
 
 
 def markdown(
-    title: str, setting: Mapping[str, Any], points: Sequence[Point], figures: Sequence[Figure]
+    title: str,
+    setting: Mapping[str, Any],
+    points: Sequence[Point],
+    figures: Sequence[Figure],
+    tables: Sequence[Table],
 ) -> str:
     """The tables."""
-    lines = [f"# {title}", "", *(f"- {name}: {value}" for name, value in setting.items()), ""]
+    lines = [
+        f"# {title.replace('_', ' ')}",
+        "",
+        *(f"- {name}: {value}" for name, value in setting.items()),
+        "",
+    ]
     if points:
         lines += [
             "| competitor | tolerance | order | us a member | fastest | slowest | error | worst |",
@@ -89,8 +118,11 @@ def markdown(
         ends = f"{point.error:.1e} | {point.worst:.1e}"
         lines.append(f"| {point.who} | {own} | {point.order} | {times} | {ends} |")
     lines += ["", "| figure | target | measured | |", "|---|---|---|---|"]
-    verdicts = {True: "met", False: "missed", None: ""}
-    lines += [f"| {f.what} | {f.target} | {f.measured} | {verdicts[f.met]} |" for f in figures]
+    lines += [f"| {f.what} | {f.target} | {f.measured} | {VERDICTS[f.met]} |" for f in figures]
+    for table in tables:
+        lines += ["", f"## {table.title}", "", f"| {' | '.join(table.columns)} |"]
+        lines += ["|" + "---|" * len(table.columns)]
+        lines += [f"| {' | '.join(map(str, row))} |" for row in table.rows]
     return "\n".join(lines) + "\n"
 
 
@@ -108,6 +140,8 @@ def plot(title: str, points: Sequence[Point], path: Path) -> None:
         axes.loglog(
             [p.error for p in some], [p.microseconds[0] for p in some], marker="o", label=who
         )
-    axes.set(xlabel="median relative error", ylabel="processor time of a member (us)", title=title)
+    axes.set(xlabel="median relative error", ylabel="processor time of a member (us)")
+    axes.set_title(title.replace("_", " "))
+    axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
     canvas.savefig(path, dpi=120)

@@ -97,10 +97,20 @@ ADVICE = [
     (
         RIGID_BODY,
         change(KINETIC, "dot(Omega, Omega)^2"),
-        "Give a [hamiltonian] and the route lie-poisson instead.",
+        "Give a [hamiltonian] and the route lie-poisson instead, or ",
         [
             (BOTH, 'routes = ["lie-poisson"]'),
             ('[lagrangian]\nl = "dot(Omega, Omega)^2"', '[hamiltonian]\nh = "dot(Pi, Pi)/2"'),
+        ],
+    ),
+    (
+        RIGID_BODY,
+        change(KINETIC, "dot(Omega, Omega)^2"),
+        "or remove Pi and take the route nonholonomic, where velocities are the state.",
+        [
+            (BOTH, 'routes = ["nonholonomic"]'),
+            ('Pi = { role = "momentum" }\n', ""),
+            ('\n[claims]\ncasimirs = ["dot(Pi, Pi)"]', ""),
         ],
     ),
     (
@@ -277,6 +287,8 @@ def test_a_route_that_is_not_declared_is_added_as_advised():
 
 #: Advice that is followed in other tests.
 ELSEWHERE = {
+    "Add the kinetic energy of every velocity that the constraints allow": "test_variational.py",
+    "Divide the constraint, as in vz == x*vy": "test_variational.py",
     "Write it in simpler functions": "where no normal form decides whether something is zero",
     "Write the kinetic energy in simpler functions": "the same",
     "Add it to routes to have it proved too.": "above",

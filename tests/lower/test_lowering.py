@@ -137,6 +137,9 @@ BY_HAND = {
     "complex_rigid_body": 6 + 4 * 9 + 2 * 3,  # Kx, Ky; four cross products, two sums
     # Kx, w, N, D, their quotient and root, y, Ky, a cross product and a sum
     "pt_rigid_body": 3 + 9 + 6 + 5 + 2 + 3 + 3 + 9 + 3,
+    # y = p - q B x r/2 with q B/2 once; S^2 = 1 + y . y/(m c)^2 and its root; v = y/(m S); q E + ..
+    "relativistic_particle": 3 * 4 + 5 + 2 + 1 + 3 * 2 + 3 * 4,
+    "heisenberg_sub_riemannian": 3 + 3 + 4 + 3 + 2,  # u, v, w, two torques and a sign
     "kepler": 6 + 2 + 3 * 3,  # |r|, its cube; for each component a product, a quotient and a sign
     # the same; (r . r)^2, lam^2; v x r with lam, mu and two quotients for each component
     "monopole_kepler": 6 + 2 + 1 + 1 + 3 * 10,

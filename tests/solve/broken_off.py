@@ -14,6 +14,8 @@ import time
 import numpy as np
 
 from coadjoint.solve import checkpoints, march
+from coadjoint.solve.calls import CStepper
+from coadjoint.solve.solvers import NumpyStepper
 from coadjoint.systems import heavy_top
 
 BATCH = np.random.default_rng(5).normal(size=(6, 43))
@@ -53,7 +55,8 @@ def main(name, path, place, count, threads):
         threads: How many share the run.
     """
     go(name)  # compiled and loaded, which writes files of its own
-    march.FIRST_WORK, march.GROWTH = 5, 1.0  # short calls,
+    CStepper.first_work = NumpyStepper.first_work = 5
+    march.GROWTH = 1.0  # short calls,
     checkpoints.SECONDS, checkpoints.SHARE = 0.0, np.inf  # and a checkpoint after each
     march.REPORT_SECONDS = 0.0
     sync, seen = os.fsync, []

@@ -11,6 +11,7 @@ from scipy.special import ellipj
 from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.solve import march, solvers
+from coadjoint.solve.calls import CStepper
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.solvers import Choice, choose_order
 from coadjoint.systems import heavy_top, kepler, rigid_body
@@ -152,7 +153,7 @@ def test_neighbours_and_their_order_change_no_bit(options, monkeypatch):
         (np.array([5, 5, 36, 0]), 8, 2, 256),
         (np.array([36]), 2, 5, 256),
     ):
-        monkeypatch.setattr(march, "FIRST_WORK", work)
+        monkeypatch.setattr(CStepper, "first_work", work)
         monkeypatch.setattr(march, "SLICE", slice_)
         found = heavy_top.simulate(state[:, members], threads=threads, **run)
         assert found.state.tobytes() == np.ascontiguousarray(whole.state[:, members]).tobytes()

@@ -12,7 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven
+from tests.sources import classical, driven, extremals
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -181,6 +181,7 @@ CONFIGURATIONS = (
     "n_particles",
     "rocking_disk",
     *classical.CONFIGURATIONS,
+    *extremals.CONFIGURATIONS,
     *ROLLING,
     "tippe_top",
 )
@@ -237,6 +238,7 @@ RATES = {
     **{name: bloch_iserles_rates(n) for name, n in BLOCH_ISERLES.items()},
     **classical.RATES,
     **driven.RATES,
+    **extremals.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
     "tippe_top": tippe_rates,
@@ -277,6 +279,7 @@ OBSERVABLES = {
     **{name: bloch_iserles_observables(n) for name, n in BLOCH_ISERLES.items()},
     **classical.OBSERVABLES,
     **driven.OBSERVABLES,
+    **extremals.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
     "tippe_top": tippe_observables,
@@ -315,6 +318,7 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     "bloch_iserles_3": lambda x, p: minus_bracket(bloch_iserles_ad_star(3, p), x),
     **classical.TENSORS,
     **driven.TENSORS,
+    **extremals.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -355,6 +359,7 @@ STATES = {
     **{name: kept("X", n) for name, n in BLOCH_ISERLES.items()},
     **classical.STATES,
     **driven.STATES,
+    **extremals.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
     "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
@@ -395,6 +400,7 @@ PARAMETERS = {
     **{name: upper("N", n) for name, n in BLOCH_ISERLES.items()},
     **classical.PARAMETERS,
     **driven.PARAMETERS,
+    **extremals.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),

@@ -69,6 +69,13 @@ def before_claims(lines):
 
 #: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    # -- blocks
+    (
+        TOP.replace("[parameters]", '[representations.turn]\nright = "rotation"\n[parameters]'),
+        write('representation = "vector"', 'representation = "turn", block = "rotation"'),
+        "Remove block.",
+        write(', block = "rotation"', ""),
+    ),
     # -- routes
     (
         RIGID_BODY,

@@ -119,6 +119,12 @@ SHIPPED = {
         "I1 I3 m r g e viscous coulomb slow",
         CONSTRAINED,
     ),
+    "relativistic_particle": (
+        "x1 x2 x3 p1 p2 p3",
+        "m c q E1 E2 E3 B1 B2 B3",
+        ("euler-lagrange", "canonical"),
+    ),
+    "heisenberg_sub_riemannian": ("x y z px py pz", "", ("canonical",)),
     "kepler": (ONE_POINT, "mu", ("poisson", "canonical", "euler-lagrange", "newton", "alignment")),
     "monopole_kepler": (ONE_POINT, "mu lam", ("poisson", "canonical", "newton", "alignment")),
     "n_particles": (

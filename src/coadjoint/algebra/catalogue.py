@@ -8,15 +8,16 @@ Read next: `coadjoint.algebra.families`, where the bases are.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cache
 
 from coadjoint.algebra import families
 from coadjoint.algebra.attitudes import attitude, quaternion
-from coadjoint.algebra.lie_algebra import LieAlgebra, check_size
-from coadjoint.algebra.matrices import size
+from coadjoint.algebra.extensions import subalgebra
+from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix, check_size
+from coadjoint.algebra.matrices import size, without_zero_places
 from coadjoint.algebra.representation import (
     Representation,
     adjoint,
@@ -231,6 +232,47 @@ def representation_by_name(
         f"{', '.join(map(repr, REPRESENTATIONS))} or one declared under [representations].{hint}",
         found=name,
     )
+
+
+def representation_on_block(
+    algebra: LieAlgebra, places: Sequence[int], name: str, invariance: str = "left"
+) -> Representation:
+    """A representation of one block, by which the whole algebra acts: the rest of it acts as zero.
+
+    An attitude of a block is named so, since it is not the group element of the whole algebra.
+
+    Args:
+        algebra: The acting algebra.
+        places: Where the block stands in its basis.
+        name: As of `representation_by_name`, for the algebra that the block spans.
+        invariance: As there.
+
+    Raises:
+        AlgebraError: The block is no subalgebra, has no such representation, or the rest of the
+            algebra does not let it act alone.
+
+    >>> turning = representation_on_block(algebra_by_name("se(3)"), (0, 1, 2), "vector")
+    >>> turning.act([0, 0, 1, 5, 5, 5], [1, 0, 0])
+    (0, 1, 0)
+    """
+    ones = {algebra.basis[i]: [int(i == k) for k in range(algebra.dimension)] for i in places}
+    block = subalgebra(algebra, ones, f"the block {', '.join(ones)} of {algebra.name}")
+    block = replace(block, matrices=without_zero_places(block.matrices))
+    own = representation_by_name(block, name, invariance)
+    title = f"{name} of a block" if name in ATTITUDES else name
+    matrices: list[SparseMatrix] = [{} for _ in algebra.basis]
+    for place, matrix in zip(places, own.matrices, strict=True):
+        matrices[place] = matrix
+    try:
+        return Representation(algebra, title, own.dimension, tuple(matrices))
+    except AlgebraError as error:
+        a, b = error.parts["pair"]
+        raise AlgebraError(
+            f"{algebra.name} does not act through the block {', '.join(ones)} alone: [{a}, {b}] "
+            "is not what the matrices of the block make of it. Choose a block that commutators "
+            "with the rest of the algebra do not reach, such as a summand.",
+            pair=[a, b],
+        ) from error
 
 
 def _vector(algebra: LieAlgebra) -> Representation:

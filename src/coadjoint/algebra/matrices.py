@@ -68,6 +68,17 @@ def size(matrices: Iterable[SparseMatrix]) -> int:
     return 1 + max((max(place) for matrix in matrices for place in matrix), default=-1)
 
 
+def without_zero_places(matrices: Sequence[SparseMatrix]) -> tuple[Matrix, ...]:
+    """The matrices without the places whose rows and columns are zero in all of them.
+
+    >>> without_zero_places([{(2, 4): 1}, {(4, 2): -1}])
+    ({(0, 1): 1}, {(1, 0): -1})
+    """
+    used = sorted({place for matrix in matrices for at in matrix for place in at})
+    number = {old: new for new, old in enumerate(used)}
+    return tuple({(number[r], number[c]): x for (r, c), x in m.items()} for m in matrices)
+
+
 def shift(a: SparseMatrix, rows: int, columns: int) -> Matrix:
     """The matrix as a block that begins further down and to the right."""
     return {(r + rows, c + columns): value for (r, c), value in a.items()}

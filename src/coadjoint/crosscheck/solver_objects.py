@@ -23,8 +23,9 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import _key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
+from coadjoint.solve.calls import call
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
-from coadjoint.solve.solvers import Choice, call, make_source
+from coadjoint.solve.solvers import Choice, make_source
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.

@@ -200,6 +200,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         rates=(),
         functions=solver.functions,
         products=0,
+        operations=solver.operations,
         reads=frozenset(),
         fixed_reads=frozenset(),
         branches=solver.branches,

@@ -325,8 +325,10 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     more = len(spec.routes) * bool(symbols) + len(spec.transformations)
     # functions of velocities are functions of momenta, too, where these are the state
     more += bool(spec.having_role("momentum") and spec.having_role("velocity"))
-    if spec.in_frame and _calls_parameters(spec):  # with numbers in their place, twice
+    if spec.in_frame and calls_of(spec, "parameter"):  # with numbers in their place, twice
         more += 2
+    if calls_of(spec, "velocity"):  # a Legendre transform that is not linear, with numbers as well
+        more += 4
     room = len(_list_calls(spec)) * (1 + more)
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
@@ -397,9 +399,10 @@ def _list_calls(spec: Spec) -> list[tree.Call]:
     return [node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED]
 
 
-def _calls_parameters(spec: Spec) -> bool:
-    """Whether an elementary function is taken of parameters, which have numbers in some proofs."""
-    names = {n for each in spec.parameters for n in (each.name, *each.components)}
+def calls_of(spec: Spec, role: str) -> bool:
+    """Whether an elementary function is taken of parameters, or of variables of some role."""
+    quantities = spec.parameters if role == "parameter" else spec.having_role(role)
+    names = {n for each in quantities for n in (each.name, *each.components)}
     inside = (part for call in _list_calls(spec) for part in tree.walk(call))
     return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 

@@ -22,13 +22,27 @@ def simplify_roots(field: Field, element: Element) -> Element:
     """
     short = field.normal(element)
     for name in sorted(field.functions_in(element)):
-        known = field.adjoined[name]
-        while known.function == "sqrt":
-            shorter = short * field[name] ** 2 / known.argument
-            if _size(field, shorter) >= _size(field, short):
-                break
-            short = shorter
+        if field.adjoined[name].function == "sqrt":
+            short = _lift(field, short, name)
     return min(element, short, key=lambda each: _size(field, each))
+
+
+def _lift(field: Field, element: Element, name: str) -> Element:
+    """An element with one root: each of its powers is raised by two as long as that is shorter."""
+    square = field.adjoined[name].argument
+    try:
+        parts = field.coefficients(element, name)
+    except ValueError:  # the root stands in a sum in a denominator
+        return element
+    raised = []
+    for power, whole in parts.items():
+        while power < 0:
+            shorter = field.normal(whole / square)
+            if _size(field, shorter) >= _size(field, whole):
+                break
+            power, whole = power + 2, shorter
+        raised.append(whole * field[name] ** power)
+    return field.sum(raised)
 
 
 def _size(field: Field, element: Element) -> int:

@@ -28,7 +28,7 @@ def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
     pulled = LegendreMap(routes[0])
     invertible = pulled.invertible
     yield (
-        f"the Legendre transform is invertible {invertible.where}",
+        f"the Legendre transform is {'locally ' * pulled.is_local}invertible {invertible.where}",
         "legendre",
         lambda: Decision(verdict=Verdict.PROVED, method=invertible.method),
     )

@@ -46,6 +46,7 @@ from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries, about_transformations
+from coadjoint.prove.variational import about_extremals
 from coadjoint.prove.zero import (
     Decision,
     Discovery,
@@ -133,7 +134,13 @@ def has_energy(motion: Motion) -> bool:
 
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
-    return is_free(motion) and motion.spec.lagrangian is not None
+    spec = motion.spec
+    return is_free(motion) and spec.lagrangian is not None and not spec.variational
+
+
+def is_variational(motion: Motion) -> bool:
+    """Whether constraints are imposed before the variation."""
+    return bool(motion.spec.variational)
 
 
 #: All that is examined, in the order of the certificate.
@@ -142,6 +149,7 @@ EXAMINATIONS = (
     Examination(about=about_bracket, applies=has_bracket),
     Examination(about=about_constraints, applies=has_frame),
     Examination(about=about_legendre, applies=has_transform, of_routes=True),
+    Examination(about=about_extremals, applies=is_variational),
     Examination(about=lambda motion: about_reduction(motion.equations)),
     Examination(about=about_equality, of_routes=True),
     Examination(about=about_hamiltonian, applies=has_bracket),

@@ -234,12 +234,11 @@ class ConstrainedRates(Motion):
     def _slope(self, solve: Solve, row: int, velocity: str) -> Element:
         """How ``(k - A x)_row`` changes with a velocity at fixed x.
 
-        A depends on velocities where a force is proportional to a reaction.
+        A depends on velocities where a force is proportional to a reaction, and where the
+        Lagrangian is not quadratic in them.
         """
         field = self.field
         slope = field.derivative(solve.known[row], velocity)
-        if solve.symmetric:
-            return slope
         entries = (field.derivative(entry, velocity) for entry in solve.matrix[row])
         pairs = zip(entries, solve.names, strict=True)
         return slope - field.sum(a * self.in_state(field[x]) for a, x in pairs if a != 0)

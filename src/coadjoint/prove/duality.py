@@ -28,7 +28,12 @@ Examined = tuple[str, str, Callable[[], Sequence[Element]]]
 def about_duality(equations: Equations) -> Iterator[Examined]:
     """That h of the route canonical gives l back; nothing where h is not quadratic in momenta."""
     spec = equations.spec
-    if equations.route != "canonical" or spec.lagrangian is None or equations.kept:
+    if (
+        equations.route != "canonical"
+        or spec.lagrangian is None
+        or equations.kept
+        or spec.variational
+    ):
         return
     if spec.poisson is not None and spec.poisson.entries:
         return  # with magnetic terms velocities are not derivatives of l by definition

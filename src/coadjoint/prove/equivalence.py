@@ -58,14 +58,16 @@ class LegendreMap:
     @staticmethod
     def applies(equations: Equations) -> bool:
         """Whether velocities are other coordinates of the state, not part of it."""
-        return equations.spec.lagrangian is not None and bool(equations.setting.momenta)
+        spec = equations.spec
+        transformed = spec.lagrangian is not None and not spec.variational
+        return transformed and bool(equations.setting.momenta)
 
     def pull_back(self, equations: Equations, element: Element) -> Element:
         """An element of one route's Equations in velocities and advected quantities alone."""
         if equations.route not in self._images:
             # what the kernel solves for is what mu = dl/dxi was solved for: its own symbol
             velocities = {
-                name: self.setting.field.substitute(value, self.momenta)
+                name: self.setting.field.substitute(equations.close(value), self.momenta)
                 for name, value in equations.exact.definitions
                 if name not in equations.kept
             }
@@ -80,6 +82,11 @@ class LegendreMap:
             (block, tuple(tuple(mass[i][j] for j in block) for i in block))
             for block in coupled_blocks(mass)
         ]
+
+    @property
+    def is_local(self) -> bool:
+        """Whether determinants tell of small changes alone: l is not quadratic in velocities."""
+        return bool(mechanics(self.setting).bending)
 
     @cached_property
     def invertible(self) -> Invertible:

@@ -144,7 +144,7 @@ def _of_positions(
     None where the conditions do not show that there is one: where they are not all, and where they
     were looked at for one value of the inputs.
     """
-    powers = measure.exponents(_factors_of_minors(motion, measure), points)
+    powers = measure.exponents(_factors_of_minors(motion, measure, measure.positions), points)
     examined = None if powers is None else _state(motion, powers)
     if examined is not None or not measure.is_affine or motion.setting.driving:
         return examined
@@ -164,9 +164,10 @@ def _of_positions(
 def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examined:
     """A density that depends on velocities: a product of powers of invariant factors."""
     short, tried = InvariantFactors(measure.motion, measure.allowed), list[Element]()
-    if short.short() or short.all():
+    others = _factors_of_minors(motion, measure, (*measure.positions, *measure.velocities))
+    turning = any(motion.field.reach(each) & {*motion.fibre} for each in others)
+    if turning or short.short() or short.all():
         whole = InvariantFactors(motion, measure_of(motion).allowed)
-        others = _factors_of_minors(motion, measure)
         for search in (whole.short, whole.all):
             tried = search()
             powers = measure.powers_along([*others, *tried], samples)
@@ -210,8 +211,8 @@ def _where(samples: Samples) -> str:
     return f" where {', '.join(lengths)}" if lengths else ""
 
 
-def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
-    """The factors of the minors of the mass matrix that depend on positions.
+def _factors_of_minors(motion: Motion, measure: Measure, names: Sequence[str]) -> list[Element]:
+    """The factors of the minors of the mass matrix that depend on some of the state alone.
 
     With numbers for the parameters it shows at once whether there are factors; the others are not
     tried, since to find that a polynomial of many symbols is irreducible may take minutes.
@@ -225,8 +226,8 @@ def _factors_of_minors(motion: Motion, measure: Measure) -> list[Element]:
     known = list[Element]()
     for element in factors:
         factor = -element if leading(element) < 0 else element
-        moving = motion.field.reach(motion.field.normal(factor)) & set(measure.positions)
-        if moving and factor not in known:
+        moving = motion.field.reach(motion.field.normal(factor)) & {*motion.setting.state}
+        if moving and moving <= {*names} and factor not in known:
             known.append(factor)
     return known
 
@@ -239,22 +240,20 @@ def _form(motion: Motion) -> str:
 
 def _write(motion: Motion, powers: Powers) -> str:
     """A density in front of a volume; a long determinant goes by its name."""
-    text, velocities = "", {*motion.fibre}
+    text = ""
     for factor, exponent in powers:
-        base = _name(motion, factor)
-        if not base:
-            turning = bool(motion.field.reach(factor) & velocities)
-            whole = element_text(motion.field, factor) if turning else ""
-            short = turning and len(whole) <= LONGEST
-            base = f"|{whole if short else describe(motion.field, factor)}|"
+        turning = bool(motion.field.reach(factor) & {*motion.fibre})
+        whole = element_text(motion.field, factor) if turning else ""
+        shown = whole if turning and len(whole) <= LONGEST else describe(motion.field, factor)
+        long = len(whole) > LONGEST if turning else len(shown) > SHOWN // 2
+        name = _name(motion, factor) if long else ""
+        base = f"|{name.strip('|') or shown}|" if turning or not name else name
         text += base + (f"^({exponent})" if exponent != 1 else "") + " "
     return text
 
 
 def _name(motion: Motion, factor: Element) -> str:
-    """The name of a determinant of the kernel's matrix that has too many terms to be shown."""
-    if len(describe(motion.field, factor)) <= SHOWN // 2:
-        return ""
+    """The name of a determinant of the kernel's matrix; "" if it is none."""
     for matrix in motion.matrices:
         whole = len(motion.fibre) + len(motion.kept)
         if len(matrix) == whole and determinant(tuple(matrix)) == factor:

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.kinematics import multiplier_name, shift_name
 from coadjoint.derive.mechanics.solver import solution_defects
@@ -30,9 +31,12 @@ def about_projection(first: Equations) -> Iterator[Examined]:
     names = ", ".join(equation.name for equation, _ in distribution.kept)
     arrives = f"the projection moves every state onto {names}, where its equations are regular"
     yield arrives, "constraint", partial(_arrival, first.projection)
+    least = "the kinetic energy of the change is stationary: the least one where kinetic energy is"
+    if mechanics(distribution.setting).bending:
+        least = "d . M d of the change d is stationary, M being d2l_c/deta2 before it: the least "
+        least += "one where M is"
     yield (
-        "the projection changes velocities alone, and the kinetic energy of the change is "
-        "stationary: the least one where kinetic energy is positive",
+        f"the projection changes velocities alone, and {least} positive",
         "constraint",
         partial(_least, first.projection),
     )

@@ -3,9 +3,8 @@ r"""Time reversal: whether the motion runs backwards when signs of the state cha
 The map :math:`(\eta, z) \mapsto (-\eta, z)` of velocities or momenta takes a motion to its reverse
 if and only if their rates are even and rates of positions odd in them, and constraints that are
 kept hold on both sides. With constraints the kernel solves :math:`\mathcal{M}\,\dot\eta = k`, so
-that it is enough that k is even, and :math:`\mathcal{M}` where forces proportional to reactions
-make it depend on velocities. Dissipation, forces linear in velocities and moving constraints break
-it. Time and the rates of inputs turn their signs as well.
+that it is enough that k and :math:`\mathcal{M}` are even. Dissipation, forces linear in
+velocities and moving constraints break it. Time and the rates of inputs turn their signs as well.
 
 Where that map does not reverse a free motion, another change of signs S may: :math:`f(Sx) = -S
 f(x)`. Its signs :math:`(-1)^{s_k}` solve linear equations modulo 2, one for each monomial
@@ -20,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from coadjoint.derive.mechanics.driving import list_time_reversed
-from coadjoint.derive.mechanics.kinematics import multiplier_name, rate_name
+from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
@@ -35,13 +34,13 @@ Parity = tuple[frozenset[str], int]
 
 def about_reversal(motion: Motion) -> Iterator[Examined]:
     """Whether the motion is time reversible."""
-    if all(solve.symmetric for solve in motion.equations.exact.solves):
+    if not _turning_entries(motion):
         values = reversal_defects(motion)
         name, decision = first_nonzero(values, motion.field, motion.where)
         if name and motion.kept:  # a force along a constraint is lost in its reaction
             values = rate_defects(motion)
             name, decision = first_nonzero(values, motion.field, motion.where)
-    else:  # normal forms of accelerations with friction take minutes
+    else:  # normal forms of accelerations with such a matrix take minutes
         values = rate_defects(motion)
         name, decision = nonzero_at_a_point(values, motion.field, motion.where)
     if name and motion.is_explicit and not isinstance(motion, ConstrainedRates):
@@ -94,20 +93,31 @@ def reversal_defects(motion: Motion) -> dict[str, Element]:
     values = {}
     for solve in motion.equations.exact.solves:
         for name, known, row in zip(solve.names, solve.known, solve.matrix, strict=True):
-            shares = dict(zip(solve.names, row, strict=True)) if not solve.symmetric else {}
-            parts = {"": known} | {
-                f", as far as it is a multiple of {motion.kept[n][0].reaction},": shares[unknown]
-                for n in range(len(motion.kept))
-                if (unknown := multiplier_name(n)) in shares
+            shares = {f"the force of {name}": known} | {
+                f"what {unknown} adds to the equation of {name}": entry
+                for unknown, entry in zip(solve.names, row, strict=True)
             }
-            for which, part in parts.items():
-                force = motion.equations.close(part)
-                defect = force - field.substitute(force, back)
-                values[f"the force of {name}{which} is not even in them"] = defect
+            for which, part in shares.items():
+                value = motion.equations.close(part)
+                defect = value - field.substitute(value, back)
+                if part is known or defect != 0:
+                    values[f"{which} is not even in them"] = defect
     for name, rate in motion.rates.items():
         if name not in motion.fibre:
             values[f"{rate_name(name)} is not odd in them"] = rate + field.substitute(rate, back)
     return values | _kept_defects(motion)
+
+
+def _turning_entries(motion: Motion) -> bool:
+    """Whether a matrix that the kernel solves with depends on what changes its sign.
+
+    It does where a force is proportional to a reaction, and where the Lagrangian is not quadratic
+    in the velocities. Then the matrix and the force need not be even if the accelerations are.
+    """
+    turning = {*_back(motion)}
+    rows = (row for solve in motion.equations.exact.solves for row in solve.matrix)
+    closed = (motion.equations.close(entry) for row in rows for entry in row)
+    return any(motion.field.reach(entry) & turning for entry in closed)
 
 
 def _kept_defects(motion: Motion) -> dict[str, Element]:

@@ -82,6 +82,7 @@ class SolverText:
         rates: Coefficients of the state at the order k + 1.
         functions: Elementary functions that are called, sqrt left out.
         products: How many sums there are.
+        operations: How many operations the rates take where parameters are fixed.
         reads: Names that the recurrences read.
         fixed_reads: Names that ``fixed`` reads.
         branches: Whether the rates call sqrt or log of what moves. A motion may be analytic where
@@ -95,6 +96,7 @@ class SolverText:
     rates: tuple[Line, ...]
     functions: tuple[str, ...]
     products: int
+    operations: int
     reads: frozenset[str]
     fixed_reads: frozenset[str]
     branches: bool
@@ -129,6 +131,7 @@ def arrange(programs: Mapping[str, Program]) -> SolverText:
         rates=rates,
         functions=tuple(sorted(calls - {"sqrt"})),
         products=jets.products,
+        operations=_count(arrange_function("rates", programs["rates"])),
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
         branches=branches,
@@ -166,6 +169,12 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
+
+
+def _count(function: FunctionText) -> int:
+    """The operations of a function."""
+    leaves = Symbol | Number
+    return sum(not isinstance(n, leaves) for line in function.lines for n in walk(line.value))
 
 
 def _reads(lines: Iterable[Line]) -> frozenset[str]:

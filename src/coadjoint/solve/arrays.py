@@ -359,6 +359,8 @@ def _assemble(
             found=missing,
         )
     ordered = [parts[component] for component in quantities.components]
+    if not any(map(np.ndim, ordered)):
+        return np.array(ordered, np.float64)
     try:
         batch = np.broadcast_shapes(*(np.shape(part) for part in ordered))
     except ValueError as error:

@@ -22,7 +22,6 @@ from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
-from coadjoint.solve.solvers import FILES
 from coadjoint.solve.starts import check_starts
 from coadjoint.solve.surroundings import Driven, Surroundings
 
@@ -48,7 +47,7 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
     """
     if "jacobian_vector" in system.functions:
         return "its rates are loops over a table, for which no solvers are generated"
-    if not all((system.folder / file).is_file() for file in FILES):
+    if not system._solvers.are_there:
         return "its folder was generated without them: run `coadjoint regenerate`"
     if reconstruct is not False and reconstruct is not None:
         return "reconstruct integrates more than the state"
@@ -71,7 +70,7 @@ def simulate(system: System, request: Request) -> Solution:
     now = _drive(system, run, request.start)
     check_starts(system, request, run, now)
     recording = _make_recording(system, request, run, driven)
-    stepper = system._solvers.get(request.choice, request.target)
+    stepper = system._solvers.get(request.choice, request.target, run.state.shape[1])
     run.begin(request.start)
     _end_undefined(system, run, now)
     checkpoint = _resume(system, request, run, stepper)
@@ -128,7 +127,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
     members = math.prod(batch)
-    parameters = pack_parameters(system, request.parameters)
+    quick = system._solvers.pack(request.parameters)
+    parameters = pack_parameters(system, request.parameters) if quick is None else np.array(quick)
     check_batch(parameters, batch, system.PARAMETERS, "parameters")
     if parameters.ndim > 1:
         parameters = parameters.reshape(-1, members)

@@ -39,9 +39,8 @@ BAR_SECONDS = 1.0
 #: Members of a slice, at the least, where threads share a batch: the last ones of a slice leave
 #: lanes idle.
 SLICE = 256
-#: Steps of a block in the first call, how much more a later call may try than the one before, and
-#: the most of a call.
-FIRST_WORK, GROWTH, MOST_WORK = 16, 4.0, 2**40
+#: How many more steps of a block a call may try than the one before, and the most of a call.
+GROWTH, MOST_WORK = 4.0, 2**40
 #: Numbers that a record of steps holds, about: 8 MB.
 RECORDED = 2**20
 
@@ -175,7 +174,7 @@ def _share(
 
 def _advance(going: _Going, first: int, last: int) -> Iterator[None]:
     """Advance a slice, one short call after the other."""
-    work, run, record = FIRST_WORK, going.run, None
+    work, run, record = going.stepper.first_work, going.run, None
     if going.watch is not None:
         n, degree = len(run.state), going.stepper.degree
         record = Record.make(n, degree, RECORDED // (n * (degree + 1)), going.watch.terms)

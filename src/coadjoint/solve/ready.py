@@ -94,18 +94,26 @@ def _overlap(out: Array, given: Any) -> bool:
 def make_pack(quantities: Quantities) -> Callable[[Any], array[float] | None]:
     """A function that packs parameters which all members share, and None for all else.
 
-    The numbers are copied: nobody can change them while a kernel reads them.
+    The numbers are copied: nobody can change them while a kernel reads them. An array of the same
+    bits as the last one gives the same copy.
     """
+    last: tuple[bytes, array[float]] = (b"", array("d"))
     size, positive = quantities.size, quantities.positive
+    single = (size,)
     defaults = [quantities.defaults.get(name) for name in quantities.components]
     places = {name: _place(quantities, name) for name in (*quantities, *quantities.components)}
 
     def pack(given: Any) -> array[float] | None:
+        nonlocal last
         kind = type(given)
         values: Sequence[Any] | None
         if kind is np.ndarray:
-            is_ready = given.dtype is _FLOAT64 and given.shape == (size,)
-            values = given.tolist() if is_ready else None
+            if given.dtype is not _FLOAT64 or given.shape != single:
+                return None
+            bits, known = given.tobytes(), last
+            if bits == known[0]:
+                return known[1]
+            values = given.tolist()
         elif kind is dict:
             values = assemble(given)
         else:
@@ -115,7 +123,10 @@ def make_pack(quantities: Quantities) -> Callable[[Any], array[float] | None]:
         for row in positive:
             if not values[row] > 0.0:
                 return None
-        return array("d", values)
+        packed = array("d", values)
+        if kind is np.ndarray:
+            last = bits, packed
+        return packed
 
     def assemble(given: dict[Any, Any]) -> list[Any] | None:
         values, known = defaults.copy(), 0

@@ -8,10 +8,8 @@ Read next: `coadjoint.solve.march`, which shares an ensemble among threads.
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from math import ceil, log
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
@@ -24,8 +22,10 @@ from coadjoint.render.targets.c.loader import FLAGS, ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
+from coadjoint.solve.calls import CStepper
 from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Limits, Record
 from coadjoint.solve.kernels import say_once
+from coadjoint.solve.ready import make_pack
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
 
 if TYPE_CHECKING:
@@ -41,6 +41,8 @@ GENERATED: Final = ("taylor", "dop853", "rk4")
 FILES: Final = ("solver.c", "solver.h", "solver.py")
 #: The least and the greatest order of the method of Taylor.
 ORDERS: Final = (4, 40)
+#: Members in the longest vectors, those of AVX-512; others have half as many.
+LANES: Final = 8
 #: Members by which a fresh object is compared with its twin: they fill no whole number of vectors.
 PROBES: Final = 11
 #: The most steps of each.
@@ -66,15 +68,18 @@ class Choice:
     Attributes:
         name: One of `GENERATED`.
         order: Of the method.
+        few: Whether it is for members that fill no more than half of the longest vectors.
     """
 
     name: str
     order: int
+    few: bool = False
 
     @property
     def defines(self) -> tuple[str, ...]:
         """What chooses it in ``solver.c``."""
-        return (f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}",)
+        method = f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}"
+        return (method, "-DFEW") if self.few else (method,)
 
     @property
     def degree(self) -> int:
@@ -95,6 +100,11 @@ class Stepper(Protocol):
     degree: int
 
     @property
+    def first_work(self) -> int:
+        """How many steps of a block a first call may make."""
+        ...
+
+    @property
     def key(self) -> str:
         """What its bits depend on beyond the files of the system."""
         ...
@@ -113,19 +123,33 @@ class Stepper(Protocol):
 
 
 class Solvers:
-    """The solvers of one System."""
+    """The solvers of one System.
+
+    Attributes:
+        system: Whose they are.
+        pack: Packs parameters that all members share; None for what has to be looked at closely.
+    """
 
     def __init__(self, system: System) -> None:
         self.system = system
+        self.pack = make_pack(system.PARAMETERS)
         self._loaded: dict[tuple[Choice, str], Stepper] = {}
 
-    def get(self, choice: Choice, target: str) -> Stepper:
+    @cached_property
+    def are_there(self) -> bool:
+        """Whether the folder of the system has the files of solvers."""
+        return all((self.system.folder / file).is_file() for file in FILES)
+
+    def get(self, choice: Choice, target: str, members: int = LANES) -> Stepper:
         """The solver of a method; its NumPy twin, which is said, where a compiler cannot make it.
 
         Args:
             choice: The method.
             target: ``"c"``, ``"c-fast"`` or ``"numpy"``.
+            members: How many it is for. Half a vector is faster where it holds them.
         """
+        if 2 * members <= LANES and target != "numpy" and "avx512f" in tell_processor():
+            choice = replace(choice, few=True)
         if (choice, target) not in self._loaded:
             self._loaded[choice, target] = self._find(choice, target)
         return self._loaded[choice, target]
@@ -163,120 +187,7 @@ def load(system: System, choice: Choice, target: str) -> CStepper:
     kind = make_source(choice)
     verify = partial(_verify, system, choice, target)
     library = load_library(system.folder, system.name, system.id, FLAGS[target], verify, kind)
-    return CStepper(library, choice)
-
-
-# -- C ------------------------------------------------------------------------------------------
-
-_SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
-
-
-class _Run(ctypes.Structure):
-    """``NAME_run`` of ``solver.h``, field by field."""
-
-    _fields_ = (
-        ("members", _SIZE),
-        ("first", _SIZE),
-        ("last", _SIZE),
-        ("state", _PLACE),
-        ("time", _PLACE),
-        ("step", _PLACE),
-        ("next", _PLACE),
-        ("steps", _PLACE),
-        ("rejected", _PLACE),
-        ("status", _PLACE),
-        ("parameters", _PLACE),
-        ("parameters_stride", _SIZE),
-        ("knots", _PLACE),
-        ("inputs", _PLACE),
-        ("slopes", _PLACE),
-        ("pieces", _SIZE),
-        ("inputs_stride", _SIZE),
-        ("samples", _PLACE),
-        ("sample_count", _SIZE),
-        ("out", _PLACE),
-        ("rtol", _DOUBLE),
-        ("atol", _DOUBLE),
-        ("size", _DOUBLE),
-        ("max_steps", _SIZE),
-        ("work", _SIZE),
-        ("record", _PLACE),
-        ("record_room", _SIZE),
-        ("recorded", _SIZE),
-        ("terms", _PLACE),
-        ("term_count", _SIZE),
-    )
-
-
-class CStepper:
-    """A solver in C.
-
-    Args:
-        library: Its object.
-        choice: The method.
-    """
-
-    def __init__(self, library: Library, choice: Choice) -> None:
-        self.source, self.key, self.degree = library.source, library.key, choice.degree
-        self._advance = library.take("advance")
-
-    def advance(
-        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
-    ) -> int:
-        """As `Stepper.advance`; other threads run meanwhile."""
-        return call(self._advance, ensemble, slice(first, last), work, record)
-
-
-def call(
-    advance: Callable[[Any], int],
-    ensemble: Ensemble,
-    members: slice,
-    work: int,
-    record: Record | None,
-) -> int:
-    """Call ``NAME_advance`` of an object.
-
-    Args:
-        advance: The function, which takes a pointer to its structure.
-        ensemble: Whose members go on.
-        members: Which of them; from one to another, without gaps.
-        work: As `Stepper.advance` takes it.
-        record: Likewise.
-    """
-    run = _describe(ensemble)
-    run.first, run.last, run.work = members.start, members.stop, work
-    if record is None:
-        return advance(ctypes.byref(run))
-    run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
-    run.recorded = record.count
-    if record.terms is not None:
-        run.terms, run.term_count = record.terms.ctypes.data, len(record.terms)
-    on = advance(ctypes.byref(run))
-    record.count = run.recorded
-    return on
-
-
-def _describe(ensemble: Ensemble) -> _Run:
-    """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
-    members, inputs = ensemble.state.shape[1], ensemble.inputs
-    names = ("state", "time", "step", "next", "steps", "rejected", "status")
-    arrays = {name: getattr(ensemble, name) for name in names}
-    arrays |= {"parameters": ensemble.parameters, "samples": ensemble.samples}
-    arrays |= {"knots": inputs.knots, "inputs": inputs.values, "slopes": inputs.slopes}
-    assert all(array.flags.c_contiguous for array in arrays.values())
-    return _Run(
-        members=members,
-        parameters_stride=0 if ensemble.parameters.ndim == 1 else members,
-        pieces=inputs.pieces,
-        inputs_stride=members if inputs.own else 0,
-        sample_count=len(ensemble.samples),
-        out=None if ensemble.out is None else ensemble.out.ctypes.data,
-        rtol=ensemble.rtol,
-        atol=ensemble.atol,
-        size=ensemble.size,
-        max_steps=ensemble.max_steps,
-        **{name: array.ctypes.data for name, array in arrays.items()},
-    )
+    return CStepper(library, system.STATE.size, choice.degree)
 
 
 # -- NumPy --------------------------------------------------------------------------------------
@@ -292,6 +203,8 @@ class NumpyStepper:
     Raises:
         OutputError: ``solver.py`` or ``kernel.py`` cannot be loaded.
     """
+
+    first_work = 16
 
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
@@ -365,21 +278,24 @@ def _verify(system: System, choice: Choice, target: str, library: Library) -> No
     """Compare a fresh object with its NumPy twin by a few steps of a few members.
 
     Steps that follow tolerances are compared where bits are promised; elsewhere a rounding may
-    decide whether a step is accepted, so that steps are fixed.
+    decide whether a step is accepted, so that steps are fixed. Where nobody records them, C makes
+    several fixed steps before it looks at them; this is compared as well.
 
     Raises:
         CrossCheckError: They differ.
         OutputError: The NumPy twin does not run.
     """
     exact = target == "c" and not system.elementary
-    fresh, twin = CStepper(library, choice), NumpyStepper(system, choice)
-    for size in (0.0, 2.0**-7) if exact and choice.name != "rk4" else (2.0**-7,):
-        found, expected = (_probe(system, size) for _ in range(2))
-        room = MOST_STEPS * PROBES + ROOM
+    fresh, twin = CStepper(library, system.STATE.size, choice.degree), NumpyStepper(system, choice)
+    adaptive = exact and choice.name != "rk4"
+    runs = [*([(0.0, MOST_STEPS, True)] if adaptive else []), (2.0**-7, MOST_STEPS, True)]
+    for size, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
+        found, expected = (_probe(system, size, most) for _ in range(2))
+        room = most * PROBES + ROOM
         one, other = (Record.make(system.STATE.size, choice.degree, room) for _ in range(2))
-        while fresh.advance(found, 0, PROBES, 2, one):
+        while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
             pass  # calls that break off now and then, so that this is compared as well
-        twin.advance(expected, 0, PROBES, 1000, other)
+        twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
         if not (_agree(found, expected, exact=exact) and _agree_steps(one, other, exact=exact)):
             raise CrossCheckError(
                 f"a wrong solver was compiled: {choice} of {system.name} for the target {target} "
@@ -392,7 +308,7 @@ def _verify(system: System, choice: Choice, target: str, library: Library) -> No
             )
 
 
-def _probe(system: System, size: float) -> Ensemble:
+def _probe(system: System, size: float, most: int) -> Ensemble:
     """A few members at the start of a few steps, driven by two lines, with four samples."""
     source = np.random.default_rng(0)
     samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
@@ -414,7 +330,7 @@ def _probe(system: System, size: float) -> Ensemble:
         rtol=1e-9,
         atol=1e-9,
         size=size,
-        max_steps=MOST_STEPS,
+        max_steps=most,
     )
     run.begin(0.0)
     return run
@@ -436,6 +352,8 @@ def _agree_steps(found: Record, expected: Record, *, exact: bool) -> bool:
     """Whether two records have the same steps, whatever the order of the members."""
     if found.count != expected.count:
         return False
+    if not found.count:
+        return True
     pair = [
         Record(each.rows[np.argsort(each.member, kind="stable")], each.degree, each.count)
         for each in (found, expected)

@@ -379,8 +379,9 @@ class DormandPrince8:
 
     def _add(self, k: list[Array], row: int) -> Array:
         """The sum of a row of the table over rates."""
-        total = np.zeros(k[0].shape)
-        for weight, column in self.table.row(row):
+        (weight, column), *rest = self.table.row(row)
+        total = weight * k[column]
+        for weight, column in rest:
             total = total + weight * k[column]
         return total
 
@@ -408,16 +409,14 @@ class DormandPrince8:
 
     def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
-        scale = self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end))
-        e5 = self._square_norm(self._add(k, FIFTH), scale)
-        e3 = self._square_norm(self._add(k, THIRD), scale)
-        total = e5 + 0.01 * e3
-        error = np.where(total == 0.0, 0.0, h * e5 / np.sqrt(total))
-        accepted = error < 1.0
-        factor = _smaller(np.full(h.shape, 10.0), 0.9 / _root(error))
-        cut = _larger(np.full(h.shape, 0.2), _smaller(np.full(h.shape, 1.0), factor))
-        wanted = h * np.where(accepted, factor, cut)
-        wanted = np.where(np.isnan(error), h * 0.1, wanted)
+        unit = 1.0 / (self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end)))
+        five, three = (_square(self._add(k, row) * unit) for row in (FIFTH, THIRD))
+        part, rest = h * five, (five + 0.01 * three) * float(len(end))
+        accepted: Mask = (part * part < rest) | (rest == 0.0)
+        octaves = (0.5 * rough_log2(rest) - rough_log2(part)) * 0.125 - 0.15200309344504997
+        limit = np.full(h.shape, 3.321928094887362), np.full(h.shape, -2.321928094887362)
+        octaves = _smaller(_larger(octaves, limit[1]), limit[0])
+        wanted = np.where(part - part == 0.0, h * rough_power(octaves), h * 0.1)
         # one that is rejected and rounds to the same would be tried for ever
         wanted = np.where(~accepted & (_free(lanes, wanted, most) >= h), h * 0.25, wanted)
         short = accepted & (h < lanes.step)
@@ -457,6 +456,14 @@ def _multiply_out(start: Array, parts: list[Array], h: Array) -> Array:
         for _ in range(order):
             path[order] = path[order] / h
     return np.stack(path, axis=1)
+
+
+def _square(rows: Array) -> Array:
+    """The sum of the squares of rows."""
+    total = np.zeros(rows.shape[1])
+    for row in rows:
+        total = total + row * row
+    return total
 
 
 def _root(a: Array) -> Array:

@@ -16,7 +16,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
-from coadjoint.spec.kinds import is_in_frame, kinds_of
+from coadjoint.spec.kinds import is_in_frame, is_variational, kinds_of
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
@@ -119,8 +119,21 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         yield _Obstacle(f"has {one_of}", energies)
     if is_in_frame(file) and not start.in_frame and kinds == ("algebra",):
         yield _Obstacle("moves momenta, and the state has velocities")
+    variational = is_variational(file)
+    if variational and start.is_hamiltonian and file.lagrangian is None:
+        yield _Obstacle("has no Lagrangian to vary within the constraints", ("lagrangian",))
+    for key in ("forces", "dissipation", "double_bracket", "metriplectic"):
+        if variational and getattr(file, key):
+            yield _Obstacle(
+                f"comes from a variation, which knows no [{key}]", cure=f"remove [{key}]"
+            )
     for table in TABLES:
-        if table.acts and getattr(file, table.key) and table.key not in start.options:
+        options = {*start.options}
+        if variational:
+            options = options - {"constraints"} | (
+                {"constraints"} if start.is_hamiltonian else set()
+            )
+        if table.acts and getattr(file, table.key) and table.key not in options:
             yield _Obstacle(f"does not accept [{table.key}]", cure=f"remove [{table.key}]")
 
 

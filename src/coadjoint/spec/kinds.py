@@ -10,6 +10,9 @@ from typing import Any
 
 from coadjoint.spec.routes import ROUTES
 
+#: The key of [constraints] that says so.
+VARIATIONAL = "variational"
+
 
 def is_in_frame(file: Any) -> bool:
     """Whether the state has velocities along a frame: what constraints bind, or their routes move.
@@ -18,7 +21,18 @@ def is_in_frame(file: Any) -> bool:
     >>> is_in_frame(SpecFile.model_construct(constraints=None, routes=["hamel"]))
     True
     """
-    return file.constraints is not None or any(ROUTES[route].in_frame for route in file.routes)
+    after = file.constraints is not None and not is_variational(file)
+    return after or any(ROUTES[route].in_frame for route in file.routes)
+
+
+def is_variational(file: Any) -> bool:
+    """Whether constraints are imposed before the variation, on the motions that are compared.
+
+    >>> from coadjoint.spec.schema import SpecFile
+    >>> is_variational(SpecFile.model_construct(constraints={"c": "v == 0", VARIATIONAL: True}))
+    True
+    """
+    return file.constraints is not None and file.constraints.get(VARIATIONAL) is True
 
 
 def kinds_of(file: Any) -> tuple[str, ...]:

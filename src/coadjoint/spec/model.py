@@ -147,6 +147,7 @@ class Spec:
         galilean: Whether Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
         constraints: Equations between velocities; empty for motions that are free.
+        variational: Equations between velocities that are imposed before the variation.
         forces: What acts in addition to the energy, by the name of the velocity that it works on,
             or of the momentum or coordinate to whose rate it is added.
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
@@ -190,6 +191,7 @@ class Spec:
     galilean: bool = False
     reduction: Reduction | None = None
     constraints: tuple[Constraint, ...] = ()
+    variational: tuple[Constraint, ...] = ()
     forces: Mapping[str, Formula] = field(default_factory=dict)
     dissipation: Formula | None = None
     domain: tuple[Condition, ...] = ()

@@ -30,6 +30,8 @@ class Route:
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
         needs_energy: Whether it must have one of its energies.
+        is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
+            before the variation give.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Route:
     emitted: bool = True
     takes_driving: bool = True
     needs_energy: bool = True
+    is_hamiltonian: bool = False
 
     @property
     def module(self) -> str:
@@ -67,7 +70,7 @@ _lax = partial(Route, energies=_EITHER, takes_driving=False)
 
 _ROUTES = (
     _on_algebra("euler-poincare"),
-    _on_algebra("lie-poisson", energies=_EITHER),
+    _on_algebra("lie-poisson", energies=_EITHER, is_hamiltonian=True),
     _on_algebra("hamilton-pontryagin"),
     _chart("clebsch", options=("clebsch",)),
     _on_algebra("poincare"),
@@ -80,7 +83,13 @@ _ROUTES = (
     _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
     Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS),
     Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS),
-    Route(name="canonical", kinds=("canonical", "configuration"), energies=_EITHER, options=_ACTS),
+    Route(
+        name="canonical",
+        kinds=("canonical", "configuration"),
+        energies=_EITHER,
+        options=_ACTS,
+        is_hamiltonian=True,
+    ),
     Route(
         name="euler-lagrange",
         kinds=("configuration", "canonical"),

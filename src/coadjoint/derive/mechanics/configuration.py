@@ -11,12 +11,13 @@ Read next: `coadjoint.derive.mechanics.legendre`, `coadjoint.derive.routes.euler
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
+from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
@@ -29,6 +30,8 @@ from coadjoint.spec.core.components import kept_places, matrix_size, unpack
 LARGEST_BLOCK = 3
 
 Matrix = tuple[tuple[Element, ...], ...]
+#: Places that are coupled.
+Block = tuple[int, ...]
 #: What cannot be inverted and which places it concerns, as an error to raise.
 Refuse = Callable[[str, Sequence[int]], DerivationError]
 
@@ -87,22 +90,32 @@ class Mechanics:
         """
         return inverse_in_blocks(self.setting.field, self.mass, self.refusal)
 
-    def check_quadratic(self, hint: str = "") -> None:
+    @cached_property
+    def bending(self) -> dict[str, list[str]]:
+        """The velocities on which rows of the mass matrix depend, by the velocity of the row.
+
+        Empty exactly where l is quadratic in the velocities.
+        """
+        names, reach = self.frame.velocities, self.setting.field.reach
+        rows = zip(names, self.mass, strict=True)
+        named = {
+            name: {*names}.intersection({x for e in row for x in reach(e)}) for name, row in rows
+        }
+        return {name: sorted(found) for name, found in named.items() if found}
+
+    def check_quadratic(self, hint: str) -> None:
         """The mass matrix may depend on anything but velocities.
 
         Raises:
             DerivationError: It depends on some, with the hint.
         """
-        names = self.frame.velocities
-        for row, name in zip(self.mass, names, strict=True):
-            named = sorted(set().union(*map(self.setting.field.reach, row)) & set(names))
-            if named:
-                message = (
-                    f"the Lagrangian is not quadratic in the velocities: its second derivative by "
-                    f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
-                    f"the velocities. {hint}"
-                )
-                raise fault(self.setting, self._formula, message.rstrip(), named[0])
+        for name, named in self.bending.items():
+            message = (
+                f"the Lagrangian is not quadratic in the velocities: its second derivative by "
+                f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
+                f"the velocities. {hint}"
+            )
+            raise fault(self.setting, self._formula, message, named[0])
 
     @property
     def _formula(self) -> Formula:
@@ -116,6 +129,8 @@ class Mechanics:
         if problem == SINGULAR:
             problem += "; expected every velocity in the kinetic energy"
             remedy = f"Add the missing kinetic term of {' and '.join(names)}."
+        elif self.bending:
+            remedy = "Take the route euler-lagrange alone, with velocities as the state."
         elif problem == UNKNOWN:
             remedy = "Write the kinetic energy in simpler functions, or its domain in [domain]."
         else:
@@ -189,9 +204,11 @@ def inverse_in_blocks(field: Field, matrix: Matrix, refuse: Refuse) -> Matrix:
 def conjugates(
     field: Field, function: Element, names: Sequence[str], values: Sequence[Element], refuse: Refuse
 ) -> tuple[Element, ...]:
-    """``x(y)`` from ``y = df/dx`` for an f quadratic in x: one half of a Legendre transform.
+    """``x(y)`` from ``y = df/dx``: one half of a Legendre transform.
 
-    The other half is the same: ``g(y) = x . y - f`` has ``x = dg/dy``, and gives f back.
+    The other half is the same: ``g(y) = x . y - f`` has ``x = dg/dy``, and gives f back. Each block
+    of coupled x is solved where f is quadratic in them, or a function of one quadratic form as
+    `coadjoint.derive.mechanics.radial` says.
 
     Args:
         field: Where everything lives.
@@ -207,17 +224,36 @@ def conjugates(
     """
     slopes = field.gradient(function, names)
     hessian = tuple(field.gradient(slope, names) for slope in slopes)
-    for place, row in enumerate(hessian):
-        named = sorted(set(names).intersection(*[set().union(*map(field.reach, row))]))
-        if named:
-            raise refuse(
-                f"depends on {', '.join(named)}: momenta and velocities are not linear in each "
-                "other; expected a function quadratic in them, which alone is solved exactly",
-                (place,),
-            )
-    rest = dict.fromkeys(names, field.zero)
-    known = [y - field.substitute(slope, rest) for y, slope in zip(values, slopes, strict=True)]
-    return apply(inverse_in_blocks(field, hessian, refuse), known)
+    solution: dict[int, Element] = {}
+    for block in coupled_blocks(hessian):
+
+        def refuse_own(text: str, places: Sequence[int], of: Block = block) -> DerivationError:
+            return refuse(text, [of[i] for i in places])
+
+        own, y = [names[i] for i in block], [values[i] for i in block]
+        curved = [slopes[i] for i in block]
+        if named := reached(field, [hessian[i] for i in block], own):
+            invert = partial(inverse_in_blocks, field, refuse=refuse_own)
+            found = radial_solution(field, curved, own, y, invert)
+            if found is None:
+                raise refuse(
+                    f"depends on {', '.join(named)}: momenta and velocities are not linear in each "
+                    "other; expected a function quadratic in them, or of one quadratic form that "
+                    "can be solved for in closed form",
+                    block,
+                )
+        else:
+            rest = dict.fromkeys(own, field.zero)
+            known = [a - field.substitute(b, rest) for a, b in zip(y, curved, strict=True)]
+            matrix = tuple(tuple(hessian[i][j] for j in block) for i in block)
+            found = apply(inverse_in_blocks(field, matrix, refuse_own), known)
+        solution |= zip(block, found, strict=True)
+    return tuple(solution[i] for i in range(len(names)))
+
+
+def reached(field: Field, matrix: Iterable[Iterable[Element]], names: Iterable[str]) -> list[str]:
+    """The names among some on which a matrix depends, in alphabetical order."""
+    return sorted({*names}.intersection({x for row in matrix for e in row for x in field.reach(e)}))
 
 
 def kept_entries(

@@ -143,10 +143,24 @@ def distribution(setting: Setting) -> Distribution:
         DerivationError: A constraint is not linear in the velocities, or the constraints depend on
             each other or contradict each other.
     """
+    return _distribution_of(setting, setting.spec.constraints)
+
+
+@once
+def variational_distribution(setting: Setting) -> Distribution:
+    """The same of the constraints that are imposed before the variation.
+
+    Raises:
+        DerivationError: As of the others.
+    """
+    return _distribution_of(setting, setting.spec.variational)
+
+
+def _distribution_of(setting: Setting, constraints: Sequence[Constraint]) -> Distribution:
     frame = frame_of(setting)
     equations = [
         equation
-        for constraint in setting.spec.constraints
+        for constraint in constraints
         for equation in _equations(setting, frame, constraint)
     ]
     whole = Distribution(frame, tuple(equations))
@@ -185,7 +199,7 @@ def _check_linear(
                 constraint.left,
                 f"the constraint {constraint.in_one_line} is not linear in the velocities: its "
                 f"derivative by {name} depends on {', '.join(bent)}; expected an equation linear "
-                "or affine in them, to which Lagrange and d'Alembert's principle applies.",
+                "or affine in them, to which the principles of mechanics apply.",
                 equation.name,
             )
     if all(field.is_zero(slope) for slope in slopes):
@@ -242,4 +256,5 @@ def _rank(distribution: Distribution, rows: Sequence[Mapping[int, Element]]) -> 
 
 def _constraint_of(distribution: Distribution, equation: Equation) -> Constraint:
     spec = distribution.setting.spec
-    return next(each for each in spec.constraints if equation.name in each.components)
+    declared = (*spec.constraints, *spec.variational)
+    return next(each for each in declared if equation.name in each.components)

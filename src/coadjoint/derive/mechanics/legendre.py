@@ -1,8 +1,9 @@
-"""The Legendre transform of a Lagrangian quadratic in the velocities, exactly.
+"""The Legendre transform of a Lagrangian, exactly.
 
-Comes in: l as an element. Goes out: the momenta dl/dxi, the velocities in terms of the momenta, and
-the energy. Of up to `LARGEST_BLOCK` coupled velocities the inverse is written out; more of them are
-solved for in the kernel, and then keep their names everywhere else.
+Comes in: l as an element, quadratic in the velocities, or a function of one quadratic form
+(`coadjoint.derive.mechanics.radial`). Goes out: the momenta dl/dxi, the velocities in terms of the
+momenta, and the energy. Of up to `LARGEST_BLOCK` coupled velocities the inverse is written out;
+more of them are solved for in the kernel, and then keep their names everywhere else.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
@@ -12,20 +13,31 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from coadjoint.derive.mechanics.configuration import (
     LARGEST_BLOCK,
     Matrix,
     Mechanics,
     coupled_blocks,
+    inverse_in_blocks,
     mechanics,
 )
-from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel, solver_names
-from coadjoint.derive.setting import Setting, fault, once, sampled_setting
+from coadjoint.derive.mechanics.radial import radial_solution
+from coadjoint.derive.mechanics.solver import (
+    Definition,
+    Solve,
+    forward_name,
+    solve_in_kernel,
+    solver_names,
+)
+from coadjoint.derive.mechanics.variational import normal_extremals
+from coadjoint.derive.setting import Setting, calls_of, fault, once, sampled_setting
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
 
@@ -38,10 +50,12 @@ class LegendreTransform:
         momenta: ``dl/dxi_i`` along the basis of the algebra, in velocities and advected quantities.
         velocities: ``xi_i`` along the basis, in momenta and advected quantities; its own symbol
             where the kernel solves for it.
-        energy: ``<mu, xi> - l`` in terms of the momenta; what the kernel solves for keeps its name.
+        energy: ``<mu, xi> - l`` in terms of the momenta; what the kernel solves for keeps its name,
+            and so do velocities that are not linear in the momenta.
         definitions: What the kernel computes to solve for velocities, and these; then the other
             velocities by name.
         solves: What the kernel solves; see `coadjoint.derive.mechanics.solver`.
+        curved: Those of the definitions that give velocities which are not linear in the momenta.
     """
 
     momenta: tuple[Element, ...]
@@ -49,6 +63,7 @@ class LegendreTransform:
     energy: Element
     definitions: tuple[Definition, ...]
     solves: tuple[Solve, ...]
+    curved: tuple[Definition, ...]
 
 
 @once
@@ -68,29 +83,49 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
     """
     if setting.spec.hamiltonian is not None:
         return setting.hamiltonian, ()
+    if setting.spec.variational:
+        return normal_extremals(setting).energy, ()
     if not setting.momenta:  # velocities are themselves state
         return mechanics(setting).energy, ()
     transform = legendre(setting)
-    return transform.energy, transform.solves
+    if not transform.curved:
+        return transform.energy, transform.solves
+    field, curved = setting.field, dict(transform.curved)
+    velocities = {name: curved.pop(name) for name in setting.velocities if name in curved}
+    pairs = zip(
+        setting.momenta, setting.weights, momenta_at_rest(setting, transform.momenta), strict=True
+    )
+    momenta = {
+        mu: (field[y] + still) * w
+        for i, (mu, w, still) in enumerate(pairs)
+        if (y := forward_name(i)) in curved
+    }
+    energy = field.substitute(field.substitute(transform.energy, momenta), velocities)
+    return field.substitute(simplify_roots(field, energy), curved), transform.solves
 
 
 def legendre_transform(of: Mechanics) -> LegendreTransform:
-    """Transform l(xi, a), quadratic in xi, block by block of coupled velocities.
+    """Transform l(xi, a), block by block of coupled velocities.
 
     Raises:
-        DerivationError: l is not quadratic in the velocities, or has no invertible transform.
+        DerivationError: l has no transform in closed form, or no invertible one.
         LimitError: l couples more velocities than docs/limits.md allows.
     """
     setting, mass = of.setting, of.mass
     field, names = setting.field, setting.velocities
-    of.check_quadratic(f"Give {_way_out(setting)} instead.")
-    known = known_side(setting, of.momenta)
+    try:
+        known = known_side(setting, of.momenta)
+    except ZeroDivisionError as error:  # a root of 0 at rest
+        raise _not_closed(of, next(iter(of.bending))) from error
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
+    radial: list[Definition] = []
     for block in coupled_blocks(mass):
         own = tuple(tuple(mass[i][j] for j in block) for i in block)
         rest = [known[i] for i in block]
-        if len(block) <= LARGEST_BLOCK:
+        if names[block[0]] in of.bending:
+            radial += _solve_radially(of, known, block)
+        elif len(block) <= LARGEST_BLOCK:
             velocities |= _invert_block(setting, own, rest, block)
         else:
             _check_pivots(setting, own, block)
@@ -102,39 +137,53 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
+    parts = dict(radial)
+    closed = velocities | {name: field.substitute(value, parts) for name, value in radial}
     return LegendreTransform(
         momenta=of.momenta,
-        velocities=tuple(velocities.get(name, field[name]) for name in names),
+        velocities=tuple(closed.get(name, field[name]) for name in names),
         energy=field.substitute(energy, velocities),
-        definitions=(*solved, *written),
+        definitions=(*solved, *radial, *written),
         solves=tuple(solves),
+        curved=tuple(radial),
     )
 
 
 def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
     """``mu - dl/dxi`` at rest: the right side of ``mass * xi = known``."""
+    still = momenta_at_rest(setting, momenta)
+    pairs = zip(setting.momenta, still, setting.weights, strict=True)
+    return [setting.field[mu] * (1 / w) - slope for mu, slope, w in pairs]
+
+
+def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
+    """``dl/dxi`` at rest."""
     rest = dict.fromkeys(setting.velocities, setting.field.zero)
-    field, pairs = setting.field, zip(setting.momenta, momenta, setting.weights, strict=True)
-    return [field[mu] * (1 / w) - field.substitute(slope, rest) for mu, slope, w in pairs]
+    return [setting.field.substitute(slope, rest) for slope in momenta]
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
-    """Names of the intermediates, if velocities of a spec must be solved for in the kernel.
+    """Names of the intermediates of velocities that are solved for in the kernel, or are curved.
 
     Which velocities are coupled shows with random numbers for everything else, before there is a
     field; unused symbols would slow down every operation in it.
     """
     count = sum(len(variable.components) for variable in spec.having_role("velocity"))
-    if spec.lagrangian is None or spec.in_frame or count <= LARGEST_BLOCK:
+    called = calls_of(spec, "velocity")
+    if spec.lagrangian is None or spec.in_frame or (count <= LARGEST_BLOCK and not called):
         return ()
     setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
     try:
         mass = mechanics(setting).mass
     except DerivationError:  # the route will say so
         return ()
-    blocks = coupled_blocks(mass)
-    coupled = (block for block in blocks if LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES)
-    return tuple(name for block in coupled for name in solver_names(block))
+    names = list[str]()
+    for block in coupled_blocks(mass):
+        if setting.velocities[block[0]] in mechanics(setting).bending:
+            names += map(forward_name, block)
+        elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
+            names += solver_names(block)
+    return tuple(names)
 
 
 def _invert_block(
@@ -147,6 +196,43 @@ def _invert_block(
     products = (zip(row, known, strict=True) for row in inverse(matrix))
     values = (sum((m * k for m, k in row), setting.field.zero) for row in products)
     return dict(zip(names, values, strict=True))
+
+
+def _solve_radially(
+    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
+) -> list[Definition]:
+    """Velocities of a block in which l is a function of one quadratic form.
+
+    They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
+
+    Raises:
+        DerivationError: It is none, or one that is not solved in closed form.
+    """
+    setting, names = of.setting, [of.setting.velocities[i] for i in block]
+    field, still = setting.field, momenta_at_rest(setting, of.momenta)
+    moving = [of.momenta[i] - still[i] for i in block]
+    parts = [(forward_name(i), known[i]) for i in block if len(field.terms(known[i])) > 1]
+    y = {forward_name(i): known[i] for i in block} | {name: field[name] for name, _ in parts}
+    invert = partial(inverse_in_blocks, field, refuse=of.refusal)
+    found = radial_solution(field, moving, names, [*y.values()], invert)
+    if found is not None:
+        return [*parts, *zip(names, found, strict=True)]
+    raise _not_closed(of, names[0])
+
+
+def _not_closed(of: Mechanics, name: str) -> DerivationError:
+    """What is wrong with a Lagrangian that is neither quadratic nor solved in closed form."""
+    spec, named = of.setting.spec, of.bending[name]
+    route = "euler-lagrange" if spec.algebra is None else "nonholonomic"
+    momenta = " and ".join(each.name for each in spec.having_role("momentum"))
+    message = (
+        f"the Lagrangian is not quadratic in the velocities: its second derivative by {name} "
+        f"depends on {', '.join(named)}; expected a kinetic energy quadratic in the velocities, or "
+        "a function of one quadratic form whose Legendre transform has a closed form. Give "
+        f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
+        "velocities are the state."
+    )
+    return _refusal(of.setting, message, named[0])
 
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:

@@ -27,6 +27,7 @@ from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.external import external_forces, metric
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
+from coadjoint.derive.mechanics.variational import normal_extremals, show_extremals
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.derive.symbols import choose_names
@@ -59,9 +60,11 @@ def derive(setting: Setting) -> Equations:
         for _, p, weight in pairs
         if p in velocities and velocities[p] not in dict(solved)
     ]
+    if setting.spec.variational:
+        written = list(normal_extremals(setting).definitions)
     named = {p: field[v] for p, v in velocities.items()}
     rates = in_state_order(setting, _hamilton(setting, pairs, slopes, named, _magnetic(setting)))
-    steps = _steps(setting.state, h, slopes, rates)
+    steps = (*show_extremals(setting), *_steps(setting.state, h, slopes, rates))
     return emit(setting, "canonical", rates, steps, h, (*solved, *written), solves)
 
 

@@ -69,7 +69,6 @@ def derive(setting: Setting) -> Equations:
             others, the Lagrangian is not quadratic, or its reduced mass matrix is singular.
     """
     motion, whole = start_motion(setting), mechanics(setting)
-    whole.check_quadratic()
     forces, named = _forces(motion)
     reduced = _project_mass(motion, whole.mass)
     known = _project_forces(motion, forces)

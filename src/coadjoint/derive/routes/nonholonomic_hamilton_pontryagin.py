@@ -53,7 +53,6 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: As on the route nonholonomic.
     """
-    mechanics(setting).check_quadratic()
     motion = start_motion(setting)
     distribution = motion.distribution
     forces, moved = _vary(setting)

@@ -14,6 +14,7 @@ from itertools import combinations
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
+from coadjoint.derive.mechanics.variational import normal_extremals, show_extremals
 from coadjoint.derive.records import bracket, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.structure import poisson_structure
@@ -65,6 +66,7 @@ def hamiltonian_equations(
         if tensor[i][j] != 0
     ]
     steps = (
+        *show_extremals(setting),
         write_step("Hamiltonian", "h(x)", lines={"h": h}),
         write_step(*law, brackets),
         write_step(
@@ -93,6 +95,8 @@ def velocities_of(
         h: The Hamiltonian, stationary in the velocities that it names.
         solves: What the kernel solves for these.
     """
+    if setting.spec.variational:
+        return normal_extremals(setting).definitions
     field = setting.field
     given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]

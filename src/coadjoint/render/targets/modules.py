@@ -43,6 +43,7 @@ class KernelModule(Kernel):
                 found=identity,
                 expected=system.id,
             )
+        self.text = content.decode()
         self.source = hashlib.sha256(content).hexdigest()
         self._module = module
 

@@ -7,15 +7,21 @@ Read next: `coadjoint.derive.mechanics.distribution`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from coadjoint.spec.core.components import Shape, component_names
 from coadjoint.spec.core.definitions import define, shapes_of, signature
 from coadjoint.spec.core.formulas import DRIVING, Declared, Formula, Scope, make_scope
+from coadjoint.spec.core.parts import name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.relations import EQUATION, read_relation
+from coadjoint.spec.core.source import show_value
+from coadjoint.spec.kinds import VARIATIONAL, is_variational
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.solved import (
@@ -72,19 +78,34 @@ class Constraint:
         return self.left.in_one_line
 
 
-def reaction_shapes(constraints: Sequence[Constraint]) -> dict[str, Shape]:
-    """Shapes of the multipliers, whole and by component."""
+@dataclass(frozen=True)
+class Constraints:
+    """The record of the table.
+
+    Attributes:
+        constraints: Those that are imposed after the variation, by Lagrange and d'Alembert.
+        variational: Those that are imposed before it, on the motions that are compared.
+    """
+
+    constraints: tuple[Constraint, ...] = ()
+    variational: tuple[Constraint, ...] = ()
+
+
+def list_reactions(reading: Reading) -> dict[str, Shape]:
+    """Shapes of the multipliers that formulas may name, whole and by component."""
+    constraints = CONSTRAINTS.of(reading).constraints
     names = {each.reaction: each.shape for each in constraints}
     return {name: () for each in constraints for name in each.reactions} | names
 
 
-def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constraint, ...]:
+def read_constraints(reading: Reading, given: Mapping[str, str | bool]) -> Constraints:
     """The constraints in declared order.
 
     Raises:
         SpecError: One is not an equation between velocities, or rests on a reaction.
     """
     source, file = reading.source, reading.file
+    texts = _check_kinds(reading, given)
     solved = {
         name: (velocity, sign)
         for velocity, (name, sign) in (find_solved_velocities(file) or {}).items()
@@ -95,7 +116,25 @@ def read_constraints(reading: Reading, texts: Mapping[str, str]) -> tuple[Constr
         left, _, right = read_relation(source, ("constraints", name), text, EQUATION, scope)
         solves, sign = solved.get(name, ("", 1))
         constraints.append(Constraint(name=name, left=left, right=right, solves=solves, sign=sign))
-    return tuple(constraints)
+    if is_variational(file):
+        return Constraints(variational=tuple(constraints))
+    return Constraints(constraints=tuple(constraints))
+
+
+def _check_kinds(reading: Reading, given: Mapping[str, str | bool]) -> dict[str, str]:
+    """The equations by name: texts, at least one; `VARIATIONAL` alone is true or false."""
+    texts = {name: text for name, text in given.items() if isinstance(text, str)}
+    for name, value in given.items():
+        if (name in texts) is (name == VARIATIONAL):
+            expected = "an equation such as 'Y == cross(Omega, s)'"
+            expected = "true or false" if name == VARIATIONAL else expected
+            key: KeyPath = ("constraints", name)
+            raise reading.fault(key, f"found {show_value(value)}", value, expected)
+    if not texts:
+        expected = "at least one equation between velocities"
+        problem = "[constraints] has no constraint"
+        raise reading.fault(("constraints",), problem, "constraints", expected)
+    return texts
 
 
 def _scope(reading: Reading) -> Scope:
@@ -126,9 +165,11 @@ def _check_names_no_reaction(reading: Reading, key: KeyPath, text: str) -> None:
             raise reading.fault(key, problem, name, expected, hint)
 
 
-def _name_all(table: str, constraints: Sequence[Constraint]) -> Iterator[Naming]:
-    """The names of constraints and of their multipliers."""
-    for each in constraints:
+def _name_all(table: str, record: Constraints) -> Iterator[Naming]:
+    """The names of constraints, and of the multipliers that are reactions."""
+    for each in record.variational:
+        yield Naming(key=(table, each.name), name=each.name, components=each.components)
+    for each in record.constraints:
         key: KeyPath = (table, each.name)
         why = (
             f"The multiplier of the constraint {each.name} is {each.reaction}: rename one of them."
@@ -137,13 +178,25 @@ def _name_all(table: str, constraints: Sequence[Constraint]) -> Iterator[Naming]
         yield Naming(key=key, name=each.reaction, components=each.reactions, why=why)
 
 
-CONSTRAINTS = Table[tuple[Constraint, ...]](
+_ABOUT = (
+    "equations between velocities, as rolling = 'Y == cross(Omega, s)'; variational = true imposes "
+    "them before the variation, on the motions that are compared, and not after it"
+)
+_KINDS: dict[str, Any] = {
+    "properties": {VARIATIONAL: {"type": "boolean"}},
+}
+CONSTRAINTS = Table[Constraints](
     "constraints",
     str,
-    "equations between velocities, as rolling = 'Y == cross(Omega, s)'",
+    _ABOUT,
     read_constraints,
     many=True,
-    least=1,
+    field=(
+        Annotated[dict[str, str | bool], Field(min_length=1)] | None,
+        Field(None, description=_ABOUT, json_schema_extra={**name_pattern(), **_KINDS}),
+    ),
+    absent=Constraints(),
+    attribute=None,
     names=_name_all,
     acts=True,
 )

@@ -16,7 +16,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import DEFINITION_PATTERN
-from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
+from coadjoint.spec.sections.constraints import list_reactions
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.solved import find_definitions_with_reactions
@@ -38,7 +38,7 @@ def read_definitions(reading: Reading, texts: Mapping[str, str]) -> tuple[Defini
     given: list[Declared] = [*VARIABLES.of(reading), *PARAMETERS.of(reading), *INPUTS.of(reading)]
     shapes = shapes_of([*given, *filter(None, [TIME.of(reading)])])
     if find_definitions_with_reactions(reading.file):
-        shapes |= reaction_shapes(CONSTRAINTS.of(reading))
+        shapes |= list_reactions(reading)
     return define(reading.source, texts, shapes)
 
 

@@ -15,7 +15,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.relations import INEQUALITIES, read_relation
 from coadjoint.spec.core.shapes import words
-from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
+from coadjoint.spec.sections.constraints import list_reactions
 from coadjoint.spec.sections.variables import motion_roles
 
 
@@ -47,7 +47,7 @@ def read_domain(reading: Reading, texts: Mapping[str, str]) -> tuple[Condition, 
     Raises:
         SpecError: One is not an inequality between scalars, or has a reserved name.
     """
-    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    reactions = list_reactions(reading)
     scope = reading.scope("a condition", motion_roles(reading), reactions)
     conditions = []
     for name, text in texts.items():

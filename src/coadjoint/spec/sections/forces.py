@@ -18,7 +18,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
-from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
+from coadjoint.spec.sections.constraints import list_reactions
 from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
 
 
@@ -29,7 +29,7 @@ def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula
         SpecError: There is no such variable, a momentum is named whose velocity has a Lagrangian,
             or the force has another shape.
     """
-    reactions = reaction_shapes(CONSTRAINTS.of(reading))  # which friction is proportional to
+    reactions = list_reactions(reading)  # which friction is proportional to
     scope = reading.scope("a force", motion_roles(reading), reactions)
     forced = _find_forced(reading)
     return {
@@ -153,7 +153,7 @@ def read_dissipation(reading: Reading, part: DissipationPart) -> Formula:
         SpecError: It is not a formula of velocities.
     """
     key: KeyPath = ("dissipation", "R")
-    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    reactions = list_reactions(reading)
     scope = reading.scope("a dissipation", motion_roles(reading), reactions)
     formula = reading.formula(key, part.R, scope)
     velocities = _list_moving(reading)

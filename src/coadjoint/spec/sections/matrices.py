@@ -12,7 +12,11 @@ from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
-from coadjoint.algebra.catalogue import REPRESENTATIONS, representation_by_name
+from coadjoint.algebra.catalogue import (
+    REPRESENTATIONS,
+    representation_by_name,
+    representation_on_block,
+)
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import AlgebraError, LimitError
@@ -156,8 +160,11 @@ def representation_of(
     name: str,
     declared: Mapping[str, Representation] | None = None,
     invariance: str = "left",
+    places: Sequence[int] = (),
 ) -> Representation:
     """The representation of a name: a declared one, or one that every algebra has.
+
+    By that of a block, at some places, the rest of the algebra acts as zero.
 
     Raises:
         AlgebraError: The algebra has none of that name, since it has no matrices.
@@ -172,4 +179,6 @@ def representation_of(
     if name in declared:
         return declared[name]
     with point_at_faults(source, key):
+        if places:
+            return representation_on_block(algebra, places, name, invariance)
         return representation_by_name(algebra, name, invariance)

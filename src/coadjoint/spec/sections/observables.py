@@ -16,7 +16,7 @@ from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.values import Prose, Unit
-from coadjoint.spec.sections.constraints import CONSTRAINTS, reaction_shapes
+from coadjoint.spec.sections.constraints import list_reactions
 from coadjoint.spec.sections.variables import motion_roles
 
 
@@ -54,7 +54,7 @@ def read_observables(
     reading: Reading, parts: Mapping[str, ObservablePart]
 ) -> tuple[Observable, ...]:
     """The observables, which may name the multipliers of constraints."""
-    reactions = reaction_shapes(CONSTRAINTS.of(reading))
+    reactions = list_reactions(reading)
     scope = reading.scope("an observable", motion_roles(reading), reactions)
     observables = []
     for name, part in parts.items():

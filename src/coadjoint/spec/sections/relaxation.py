@@ -103,7 +103,7 @@ def _check_bracket(reading: Reading, table: str) -> None:
     """
     file, key = reading.file, (table,)
     moving = [v for v in state_of(VARIABLES.of(reading)) if v.role == "velocity"]
-    if file.constraints:
+    if file.constraints is not None:
         raise reading.fault(
             key,
             f"there are [{table}] and [constraints]: G may move positions otherwise than the "

@@ -14,6 +14,7 @@ from pydantic import Field
 
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import without_zero_places
 from coadjoint.algebra.representation import Representation, two_sided
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.names import NAME
@@ -105,17 +106,13 @@ def _own_matrices(
     if block is None:
         return ()
     places = block_places(source, key, block, algebra)
-    used = {n for i in places if algebra.matrices for at in algebra.matrices[i] for n in at}
-    if not used:
+    acting = [m if i in places else {} for i, m in enumerate(algebra.matrices)]
+    if not any(acting):
         named = list_names(algebra.basis[i] for i in places)
         problem = f"{algebra.name} has no matrices for {named}"
         expected = "a block of an algebra that is given by matrices, such as so(3)"
         raise source.fault(key, problem, named, expected)
-    number = {old: new for new, old in enumerate(sorted(used))}
-    return tuple(
-        {(number[r], number[c]): x for (r, c), x in matrix.items()} if i in places else {}
-        for i, matrix in enumerate(algebra.matrices)
-    )
+    return without_zero_places(acting)
 
 
 REPRESENTATIONS = Table[dict[str, Representation]](

@@ -19,6 +19,7 @@ from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.constraints import CONSTRAINTS
 from coadjoint.spec.sections.variables import VARIABLES, position_roles
 
 #: What a rolling body has followed: its attitude, and the point of contact on the plane.
@@ -59,7 +60,7 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
             taken that its attitude and point of contact have.
     """
     key = ("rolling",)
-    if not reading.file.constraints:
+    if not CONSTRAINTS.of(reading).constraints:
         problem = "there are no constraints"
         expected = '[constraints] with [rolling], as rolling = "Y == cross(Omega, s)"'
         raise reading.fault(key, problem, "constraints", expected)

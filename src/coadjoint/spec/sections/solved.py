@@ -13,7 +13,7 @@ from typing import Any
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.tree import Index, Name, Node, walk
-from coadjoint.spec.kinds import is_in_frame
+from coadjoint.spec.kinds import VARIATIONAL, is_in_frame
 
 _COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
 _SIDES = 2
@@ -40,7 +40,7 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     reached: dict[str, set[str]] = {}
     acting = [*file.forces.values(), *([file.dissipation.R] if file.dissipation else [])]
     pressing = find_constraints_named(file, acting)
-    for constraint, text in (file.constraints or {}).items():
+    for constraint, text in constraint_texts(file).items():
         sides = [_parse(side, file) for side in text.split("==")]
         if len(sides) != _SIDES or constraint in pressing:
             continue
@@ -62,6 +62,11 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     return solved
 
 
+def constraint_texts(file: Any) -> dict[str, str]:
+    """The equations of [constraints] by name, without the key that says when they are imposed."""
+    return {name: text for name, text in (file.constraints or {}).items() if name != VARIATIONAL}
+
+
 def reaction_name(constraint: str) -> str:
     """Name of the multiplier of a constraint.
 
@@ -74,7 +79,7 @@ def reaction_name(constraint: str) -> str:
 def find_constraints_named(file: Any, texts: Iterable[str]) -> set[str]:
     """The constraints whose reactions some texts name, also through definitions."""
     names = find_names(file, texts)
-    return {name for name in file.constraints or {} if reaction_name(name) in names}
+    return {name for name in constraint_texts(file) if reaction_name(name) in names}
 
 
 def find_definitions_with_reactions(file: Any) -> set[str]:

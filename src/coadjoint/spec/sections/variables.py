@@ -44,7 +44,7 @@ from coadjoint.spec.sections.solved import find_solved_velocities
 
 #: Keys that say how large a variable is, and the variables that each is for.
 _OWN_KEYS = {
-    "block": "velocities and momenta",
+    "block": "velocities, momenta and advected quantities",
     "representation": "advected quantities",
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
@@ -53,7 +53,7 @@ _OWN_KEYS = {
 _KEYS_OF = {
     "velocity": ("block", "of", "default"),
     "momentum": ("block", "of", "default"),
-    "advected": ("representation", "default"),
+    "advected": ("representation", "block", "default"),
     "coordinate": ("shape", "default"),
 }
 
@@ -66,7 +66,9 @@ class VariablePart(Part):
         "with a 'velocity' or 'momentum' of it"
     )
     block: Block | None = Field(
-        None, description="the block of the algebra that it spans; by default all of it"
+        None,
+        description="the block of the algebra that it spans or, of an advected quantity, that "
+        "acts on it by its own representation; by default all of it",
     )
     representation: str | None = Field(
         None,
@@ -192,7 +194,7 @@ def _read_variable(
         if part.block is not None:
             block = block_places(source, (*key, "block"), part.block, algebra)
         count, flat = len(block), len(block) > 1
-    form = part.form or _own_form(representation)
+    form = part.form or _own_form(part.representation, count)
     if form in FORMS and matrix_size(count, form) is None:
         raise misfit_form(source, (*key, "form"), count, form)
     elements: tuple[SparseMatrix, ...] = ()
@@ -352,18 +354,23 @@ def _representation(
         expected = f"representation = one of {list_names((*KNOWN, *declared))}"
         hint = f'Write representation = "{"vector" if algebra.matrices else "coadjoint"}".'
         raise source.fault(key, problem, str(key[-1]), expected, hint)
-    inner = (*key, "representation")
-    name = part.representation
-    return representation_of(source, inner, algebra, name, declared, invariance)
+    inner, name, places = (*key, "representation"), part.representation, tuple[int, ...]()
+    if part.block is not None:
+        if name in declared:
+            problem = f"{key[-1]!r} has a block, and {name!r} is declared for the whole algebra"
+            expected = f"a representation that every algebra has: {list_names(KNOWN)}"
+            raise source.fault((*key, "block"), problem, part.block, expected, "Remove block.")
+        places = block_places(source, (*key, "block"), part.block, algebra)
+        inner = (*key, "block")
+    return representation_of(source, inner, algebra, name, declared, invariance, places)
 
 
-def _own_form(representation: Representation | None) -> str:
+def _own_form(representation: str | None, count: int) -> str:
     """The form that an attitude has by itself: a unit quaternion, or a square matrix."""
-    if representation is None or representation.name not in ATTITUDES:
+    if representation not in ATTITUDES:
         return ""
-    if representation.name == "quaternion":
+    if representation == "quaternion":
         return "quaternion"
-    count = representation.dimension
     return "matrix" if count > 1 and matrix_size(count, "matrix") else ""
 
 

@@ -20,9 +20,9 @@ _FUNCTIONS = {
     "find_fixed": "INLINE void find_fixed(Block *restrict _block)",
     "expand": "APART void expand(const Block *restrict _block, V _path[restrict STATE][ORDER + 1])",
     **{
-        f"find_{name}": f"static void find_{name}(\n    const Block *restrict _block, V _after, "
+        f"find_{name}": f"{kind} void find_{name}(\n    const Block *restrict _block, V _after, "
         "const V *restrict _state, V *restrict _rows)"
-        for name in ("rates", "domain", "projection")
+        for name, kind in {"rates": "LINKAGE", "domain": "static", "projection": "static"}.items()
     },
 }
 _TABLE = re.compile(

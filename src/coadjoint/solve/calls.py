@@ -1,0 +1,151 @@
+"""Calls of generated solvers in C: the structure that they take, filled from an ensemble.
+
+Comes in: an `Ensemble` and the object of a solver. Goes out: the ensemble further on. Read next:
+`coadjoint.solve.solvers`, which loads objects, and ``templates/c/solver.h.j2``.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from coadjoint.solve.ensemble import Ensemble, Record
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.build.library import Library
+
+#: What a first call may add up, by the numbers of a path and their orders.
+FIRST_SUMS = 2**22
+
+_SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
+
+
+class _Run(ctypes.Structure):
+    """``NAME_run`` of ``solver.h``, field by field."""
+
+    _fields_ = (
+        ("members", _SIZE),
+        ("first", _SIZE),
+        ("last", _SIZE),
+        ("state", _PLACE),
+        ("time", _PLACE),
+        ("step", _PLACE),
+        ("next", _PLACE),
+        ("steps", _PLACE),
+        ("rejected", _PLACE),
+        ("status", _PLACE),
+        ("parameters", _PLACE),
+        ("parameters_stride", _SIZE),
+        ("knots", _PLACE),
+        ("inputs", _PLACE),
+        ("slopes", _PLACE),
+        ("pieces", _SIZE),
+        ("inputs_stride", _SIZE),
+        ("samples", _PLACE),
+        ("sample_count", _SIZE),
+        ("out", _PLACE),
+        ("rtol", _DOUBLE),
+        ("atol", _DOUBLE),
+        ("size", _DOUBLE),
+        ("max_steps", _SIZE),
+        ("work", _SIZE),
+        ("record", _PLACE),
+        ("record_room", _SIZE),
+        ("recorded", _SIZE),
+        ("terms", _PLACE),
+        ("term_count", _SIZE),
+    )
+
+
+class CStepper:
+    """A solver in C.
+
+    Args:
+        library: Its object.
+        rows: Components of the state.
+        degree: Of the polynomials that are recorded.
+    """
+
+    def __init__(self, library: Library, rows: int, degree: int) -> None:
+        self.source, self.key, self.degree = library.source, library.key, degree
+        self._rows = rows
+        self._advance = library.take("advance")
+
+    @property
+    def first_work(self) -> int:
+        """Steps of a first call, which are to take some hundredths of a second at the most."""
+        return max(1, FIRST_SUMS // (self._rows * (self.degree + 1) ** 2))
+
+    def advance(
+        self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
+    ) -> int:
+        """As `Stepper.advance`; other threads run meanwhile."""
+        return call(self._advance, ensemble, slice(first, last), work, record)
+
+
+def call(
+    advance: Callable[[Any], int],
+    ensemble: Ensemble,
+    members: slice,
+    work: int,
+    record: Record | None,
+) -> int:
+    """Call ``NAME_advance`` of an object.
+
+    Args:
+        advance: The function, which takes a pointer to its structure.
+        ensemble: Whose members go on.
+        members: Which of them; from one to another, without gaps.
+        work: As `Stepper.advance` takes it.
+        record: Likewise.
+    """
+    run = _describe(ensemble)
+    run.first, run.last, run.work = members.start, members.stop, work
+    if record is None:
+        return advance(ctypes.byref(run))
+    run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+    run.recorded = record.count
+    if record.terms is not None:
+        run.terms, run.term_count = _place(record.terms), len(record.terms)
+    on = advance(ctypes.byref(run))
+    record.count = run.recorded
+    return on
+
+
+def _describe(ensemble: Ensemble) -> _Run:
+    """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
+    members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
+    return _Run(
+        members=members,
+        state=_place(ensemble.state),
+        time=_place(ensemble.time),
+        step=_place(ensemble.step),
+        next=_place(ensemble.next),
+        steps=_place(ensemble.steps),
+        rejected=_place(ensemble.rejected),
+        status=_place(ensemble.status),
+        parameters=_place(parameters),
+        parameters_stride=0 if parameters.ndim == 1 else members,
+        knots=_place(inputs.knots),
+        inputs=_place(inputs.values),
+        slopes=_place(inputs.slopes),
+        pieces=inputs.pieces,
+        inputs_stride=members if inputs.own else 0,
+        samples=_place(ensemble.samples),
+        sample_count=len(ensemble.samples),
+        out=None if ensemble.out is None else _place(ensemble.out),
+        rtol=ensemble.rtol,
+        atol=ensemble.atol,
+        size=ensemble.size,
+        max_steps=ensemble.max_steps,
+    )
+
+
+def _place(array: NDArray[Any]) -> int:
+    """Where an array begins; `ctypes.data` takes three times as long."""
+    assert array.flags.c_contiguous
+    place: int = array.__array_interface__["data"][0]
+    return place
