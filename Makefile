@@ -41,7 +41,7 @@ test-all: setup  ## run all tests
 bench: setup  ## measure every figure; a peer that is not installed is a line that says so
 	$(BIN)/python benchmarks/run.py
 
-docs: regenerate  ## redraw docs/pictures; write schema and derivations to build/docs
+docs: regenerate  ## write docs/specs.md, docs/pictures, and build/docs with schema and derivations
 	$(BIN)/python -P docs/make.py
 
 clean:  ## remove what was built; .venv, and whatever git ignores below it, go too

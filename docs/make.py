@@ -1,4 +1,4 @@
-"""Draw docs/pictures, and write the schema and all derivations to build/docs.
+"""Draw docs/pictures, write docs/specs.md, and the schema and all derivations to build/docs.
 
     python docs/make.py        (or `make docs`)
 
@@ -17,6 +17,7 @@ from coadjoint.cli import main
 from coadjoint.cli.arguments import shipped_names, spec_path
 from coadjoint.cli.output import write_text
 from coadjoint.spec import read_spec
+from coadjoint.spec.page import write_page
 from coadjoint.spec.schema import json_schema
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -45,6 +46,12 @@ def draw() -> None:
         run([*words.split(), f"docs/pictures/{name}"])
 
 
+def write_specs() -> None:
+    """The page of all keys of a spec, from its prose and what the readers say."""
+    prose = Path("docs/specs.in.md").read_text(encoding="utf-8")
+    write_text(Path("docs/specs.md"), write_page(prose))
+
+
 def write_derivations(folder: Path) -> None:
     """Each derivation of each shipped system as a page and as a LaTeX file."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -58,6 +65,7 @@ def write_derivations(folder: Path) -> None:
 
 if __name__ == "__main__":
     os.chdir(ROOT)
+    write_specs()
     draw()
     write_derivations(Path("build/docs"))
     write_text(Path("build/docs/spec.schema.json"), json.dumps(json_schema(), indent=2) + "\n")

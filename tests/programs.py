@@ -6,6 +6,7 @@ Not lowered from equations: a comparison earns trust when its two sides come by 
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from fractions import Fraction
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -21,6 +22,7 @@ from coadjoint.lower.program import (
     Program,
     Statement,
     Symbol,
+    Table,
     walk,
 )
 
@@ -185,4 +187,47 @@ BOUNDED = KernelContext(
         Bound("one", "condition", True, ("q", "p", "r")),
         Bound("two", "condition", False, ("p", "r")),
     ),
+)
+
+#: Entries of a table over x, y, z, u = p x and v = 3 z/2: a product that two rates have, one that
+#: three entries have, squares, and products of two values that are scaled.
+ENTRIES = """
+0 1 2 1     0 3 1 1/2   0 4 1 -2
+1 0 2 -1    1 3 4 3/4   1 1 1 1/8
+2 0 1 1/2   2 1 2 -1/4  2 3 3 -1/8
+"""
+_numbers = ENTRIES.split()
+TABLE = Table(
+    entries=tuple(
+        (int(i), int(j), int(k), Fraction(c))
+        for i, j, k, c in zip(*(_numbers[place::4] for place in range(4)), strict=True)
+    ),
+    vectors=(("x", "y", "z", "u", "v"),),
+    scaled=(0, 2),
+    scales=(Symbol("_p1"), Number(Fraction(3, 2))),
+    passes=((0, 0),),
+)
+_RATES = program("rhs", "x y z", "p q", "_p1 = p/q; u = _p1*x; v = 1.5*z", "0; 0; 0", (3,))
+
+#: Rates that loop over this table, in a domain.
+LOOPED = KernelContext(
+    name="looped",
+    spec="derivations/looped.toml",
+    license="",
+    routes=("Route: typed by hand.",),
+    equations=("dx/dt = y*z + u*y/2 - 2*v*y", "dy/dt = ...", "dz/dt = ..."),
+    state=(Quantity("X", (3,), "1", ("x", "y", "z")),),
+    parameters=(Quantity("p", (), "1", ("p",), (0.75,)), Quantity("q", (), "1", ("q",), (1.5,))),
+    observables=(Quantity("sum", (), "1", ("sum",)),),
+    programs=(
+        replace(
+            _RATES,
+            outputs=tuple(map(Output, ("dx/dt", "dy/dt", "dz/dt"), TABLE.sums())),
+            table=TABLE,
+        ),
+        program("energy", "x y z", "p q", "", "(x*x + y*y + z*z)/2", (), "energy"),
+        program("observables", "x y z", "p q", "", "x + y + z", (1,), "sum"),
+        program("domain", "x y z", "p q", "", "8 - x", (1,), "one"),
+    ),
+    domain=(Bound("one", "condition", True, ("x",)),),
 )

@@ -6,6 +6,7 @@ that changes the engine derives for itself.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
@@ -110,3 +111,9 @@ def spec(text: str = RIGID_BODY, *changes: tuple[str, str], name: str = "sample"
         assert old in text, old
         text = text.replace(old, new)
     return read_spec_text(text, Path(f"{name}.toml"))
+
+
+def unitless(text: str) -> str:
+    """A spec without its units, for changes of formulas whose units would not fit."""
+    text = re.sub(r',\s*unit\s*= "[^"]*"', "", text)
+    return re.sub(r'^unit\s*= "[^"]*"\n', "", text, flags=re.MULTILINE)

@@ -128,6 +128,7 @@ class KernelContext:
             where there is none.
         inputs: Quantities of the inputs, in order; empty where there are none.
         time: The time, if the functions take it.
+        unit_of_time: The unit of the time, also where they do not.
     """
 
     name: str
@@ -144,3 +145,4 @@ class KernelContext:
     reconstructed: tuple[Quantity, ...] = ()
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
+    unit_of_time: str = "s"

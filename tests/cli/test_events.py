@@ -56,8 +56,9 @@ def test_an_event_ends_the_run(run):
 def test_a_table_and_a_picture_of_events_are_written(run, folder):
     """All events, also those beyond the rows on screen."""
     pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
-    words = ("--events", "sin(9*t) = 0", "--events-csv", "e.csv", "--section", "s.png")
-    result = run(*BODY, *words, "--section-axes", "Pi1,Omega2")
+    words = ("--events", "sin(9*t*Omega3) = 0", "--events-csv", "e.csv", "--section", "s.png")
+    turning = [word.replace("0.5,0,1", "0,0,3") for word in BODY]  # Omega3 = 1 throughout
+    result = run(*turning, *words, "--section-axes", "Pi1,Omega2")
     assert result.exit_code == 0, result.stderr
     with (folder / "e.csv").open() as file:
         rows = list(csv.DictReader(file))

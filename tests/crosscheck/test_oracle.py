@@ -78,6 +78,20 @@ def test_relative_errors_of_factors_add():
     assert float(bounded.envelope) == 0.25 * 2.5 + 0.5 * 2.25
 
 
+def test_the_product_of_two_rounding_errors_is_one():
+    """Both factors are 0 exactly and 1e-16 in doubles: an error of 1e-16 in their product shows."""
+    turn = "(sin({0})*sin({0}) + cos({0})*cos({0}) - 1)"
+    bounded = one_output(f"{turn.format('x')}*{turn.format('y')}", "xy", x=FIRST, y=SECOND)
+    one, two = (math.sin(x) ** 2 + math.cos(x) ** 2 - 1 for x in (FIRST, SECOND))
+    assert one * two != 0
+    assert error_in_envelopes(one * two, bounded) < 4
+    assert error_in_envelopes(one, bounded) > 1e14
+
+
+#: Where a sine and a cosine in doubles miss the unit circle.
+FIRST, SECOND = 0.125, 0.25
+
+
 @pytest.mark.parametrize(
     ("text", "x"),
     [

@@ -39,10 +39,10 @@ from coadjoint.render.kernels import render_system
 from coadjoint.render.solvers import Line, arrange, select_programs
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
 from tests.kernels import COMPILER, ProgramReference
-from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM, program
+from tests.programs import BOUNDED, HEAVY_TOP, LOOPED, PENDULUM, program
 
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
-CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED}
+CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED, "looped": LOOPED}
 #: Rates with statements that are named as those of kinematics are.
 NAMED = replace(
     PENDULUM,
@@ -367,7 +367,7 @@ def test_another_choice_of_the_step_is_caught(monkeypatch):
 
 
 @needs_compiler
-@pytest.mark.parametrize(("context", "least"), [(HEAVY_TOP, 500), (BOUNDED, 100)])
+@pytest.mark.parametrize(("context", "least"), [(HEAVY_TOP, 500), (BOUNDED, 100), (LOOPED, 100)])
 def test_c_and_numpy_have_the_same_bits(tmp_path, context, least):
     """Runs of each method, and the count of numbers."""
     made = solvers(context, ("taylor", "dop853", "rk4"), tmp_path)

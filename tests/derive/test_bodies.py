@@ -8,9 +8,9 @@ from coadjoint.derive import derive
 from coadjoint.errors import DerivationError, SpecError
 from tests.sources.test_complex import TEXT
 from tests.sources.test_tops import BODY, on
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec, unitless
 
-TOP = shipped("heavy_top").path.read_text(encoding="utf-8")
+TOP = unitless(shipped("heavy_top").path.read_text(encoding="utf-8"))
 SO4 = shipped("so4_body").path.read_text(encoding="utf-8")
 TWO = '"euler-poincare", "lie-poisson"'
 

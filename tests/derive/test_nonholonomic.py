@@ -255,22 +255,22 @@ def test_too_many_coupled_accelerations_are_refused():
 title = "Many"
 routes = ["nonholonomic"]
 [variables]
-x = { role = "coordinate", shape = [12] }
+x = { role = "coordinate", shape = [16] }
 v = { role = "velocity", of = "x" }
 [parameters]
-a = { shape = [12], default = 1 }
+a = { shape = [16], default = 1 }
 [lagrangian]
 l = "dot(v, v)/2"
 [constraints]
 plane = "dot(a, v) == 0"
 """
     with pytest.raises(
-        LimitError, match=r"couple 13 .*at most 12 \(COUPLED_VELOCITIES\)"
+        LimitError, match=r"couple 17 .*at most 16 \(COUPLED_VELOCITIES\)"
     ) as caught:
         motion(text)
-    assert caught.value.found == 13
+    assert caught.value.found == 17
     assert "Write constraints as Y == ..." in str(caught.value)
-    motion(text.replace("12", "2"))
+    motion(text.replace("16", "2"))
 
 
 def test_a_derivation_reads_like_a_book():

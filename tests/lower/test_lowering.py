@@ -194,6 +194,29 @@ BY_HAND = {
     "double_bracket_body": 3 + 2 * 9 + 3 + 3,  # velocities, two cross products, alpha, sums
     "landau_lifshitz_gilbert": 3 + 2 * 9 + 3 + 3,  # K m3 + B3 and its sign; as above
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
+    "three_wave": 6 * 3 + 2,  # two products and their sum for each rate, two signs
+    "steklov": 2 * 9 + 3 * 9 + 3,  # a Pi + b P, b Pi + c P; three cross products, a sum
+    "hess_appelrot": 7
+    + 2 * 9
+    + 4,  # three velocities, one of one product; torque of two components
+    "maxwell_bloch": 3,  # x1 x3, -x1 x2
+    "magnetic_bottle": 10 + 9 + 3,  # z/L^2 and B with B0; a cross product; q/m
+    # B, |B|, b and grad |B|; b . grad b, as (dB b - b (b . grad |B|))/|B|; both b x .. of these
+    # drifts u, mu/(q |B|) and m u^2/(q |B|) along three vectors; du/dt
+    "guiding_centre": 10 + 6 + 3 + 14 + 8 + 5 + 9 + 18 + 5 + 15 + 12,
+    # row by row: k_j w_j w_i; the squares of the others times k_i; their difference over K_i + j
+    "suslov_so5": 4 * (8 + 3 + 1 + 1) + 4,
+    # functions, B, the rate of phi; entries of B^T M B; rates of momenta at fixed velocities, ad*,
+    # the slope by phi; dB/dt, M dB/dt and B^T; L D L^T of 2 x 2 and solves
+    "roller_racer": 2 + 3 + 3 + 2 + 22 + 14 + 8 + 6 + 6 + 5 + 4 + 11,
+    # v; dv/dt = nu e3 x v; torques
+    "ball_on_turntable": 6 + 3 + 3,
+    # r n, n'; I + m r^2 (n^2 - n n^T) and its signs; n' x w, weight, their moment; L D L^T, solves
+    "ball_in_sphere": 3 + 9 + 18 + 9 + 3 + 4 + 9 + 3 + 15 + 15,
+    # the columns of L that both constraints have; pivots and the entry between, known sides; both
+    # multipliers; accelerations
+    "double_spherical_pendulum": 15 + 10 + 6 + 8 + 3 + 8 + 8 + 3 + 12 + 12 + 2,
+    "appell_machine": 2 + 3 + 3 + 2 + 3,  # the weight; K rho w^2, K b w phi'; both accelerations
 }
 
 

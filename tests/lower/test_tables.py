@@ -22,7 +22,7 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError, LimitError
 from coadjoint.lower import check, lowering
 from coadjoint.lower.program import Program, run
 from coadjoint.prove.declaration import kernel_context
-from coadjoint.render.kernels import SOLVER_FILES, render_system
+from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
 from coadjoint.solve.system import load_folder
 from coadjoint.spec import read_spec_text
@@ -113,6 +113,31 @@ def test_rates_are_loops_from_so9_on():
     assert list(programs(9)) == ["rhs", "jacobian_vector", "energy", "observables"]
 
 
+def test_energy_and_observables_are_loops_over_the_same_values():
+    """M Omega/2 for each plane, and velocities times 1; the shipped body has its Casimir, too."""
+    own = programs(9)
+    values = own["rhs"].table.vectors
+    assert own["energy"].table.vectors == own["observables"].table.vectors == values
+    assert own["energy"].table.entries == tuple((0, 36 + k, k, Fraction(1, 2)) for k in range(36))
+    assert (1, 36, len(values[0]), 1) in own["observables"].table.entries
+    body = lowering.lower(derive(shipped("so9_body")))
+    assert body["rhs"].table.entries == own["rhs"].table.entries
+    rows = {row for row, j, k, c in body["observables"].table.entries if j == k < 36 and c == 1}
+    assert [body["observables"].outputs[row].label for row in rows] == ["casimir1"]
+
+
+def test_an_observable_of_another_form_is_written_out():
+    """A power of four is no product of two values; the energy is a loop all the same."""
+    text = SPEC.format(n=4, default=[1, 2, 3, 4]) + '\n[observables]\nfour = "M12^4"\n'
+    other = derive(read_spec_text(text, Path("four.toml")))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lowering, "UNROLLED_PRODUCTS", 0)
+        found = lowering.lower(other)
+    assert found["energy"].table
+    assert found["observables"].table is None
+    check.check_programs(other, found)
+
+
 @pytest.mark.parametrize("name", ["heavy_top", "so8_body", "kirchhoff", "n_particles"])
 def test_other_rates_are_written_out(name):
     """Terms with other factors, and few products, stay formulas."""
@@ -184,16 +209,22 @@ def test_kernels_compute_the_bracket(nine, target):
     slopes = np.stack([rates(x + 1j * step * v, p).imag / step for x, v, p in pairs], axis=1)
     found = nine.jacobian_vector(state, vector, a, target=target)
     np.testing.assert_allclose(found, slopes, atol=1e-13)
+    i, j = np.triu_indices(9, 1)
+    omega = state / (a[i] + a[j])
+    energy = (state * omega).sum(axis=0) / 2
+    np.testing.assert_allclose(nine.energy(state, a, target=target), energy, rtol=1e-14)
+    found = nine.observables(state, a, target=target)
+    np.testing.assert_allclose(found, [energy, *omega], rtol=1e-14)
 
 
 def test_the_ladder_holds_loops(tmp_path):
-    """Rungs 3 to 5 run and pass for so(5) by loops, and there are no solvers to check."""
+    """Rungs 2 to 5 run and pass for so(5) by loops, its solvers among them."""
     system, reference = load(5, 0, tmp_path), Reference(equations(5))
     report = crosscheck(programs(5, 0), texts(5, 0), reference, system, bit_points=300)
     assert report.passed
     assert report.lines["jacobian_vector"]
-    assert report.solvers.lines == 0
-    assert not set(SOLVER_FILES) & set(texts(5, 0))
+    assert report.solvers.coefficients
+    assert set(report.solvers.equal) == {"taylor", "dop853", "rk4"}
 
 
 # -- what is caught -------------------------------------------------------------------------------
@@ -207,8 +238,11 @@ def spoil(program: Program, **changes):
     return replace(program, outputs=values, table=table)
 
 
-@pytest.mark.parametrize("function", ["rhs", "jacobian_vector"])
-@pytest.mark.parametrize("change", ["sign", "factor", "row"])
+WRONG = [(each, change) for each in ("rhs", "jacobian_vector") for change in ("sign", "row")]
+WRONG += [(each, "factor") for each in ("rhs", "jacobian_vector", "energy", "observables")]
+
+
+@pytest.mark.parametrize(("function", "change"), [*WRONG, ("energy", "sign")])
 def test_a_wrong_entry_is_caught(function, change):
     """One coefficient, one factor or one row in the table of so(5)."""
     program = programs(5, 0)[function]
@@ -259,7 +293,9 @@ def test_a_text_with_another_table_is_caught(target):
         ("kernel.c", "scales[place][n] *", "scales[place][0] *"),
         ("kernel.c", "{_vector0, _vector0},", "{_vector0, _vector1},"),
         ("kernel.c", "state + 0 * ROWS", "state + 1 * ROWS"),
-        ("kernel.c", "add_products(1, _passes", "add_products(0, _passes"),
+        ("kernel.c", "add_products(0, 10, 1, _passes", "add_products(0, 10, 0, _passes"),
+        ("kernel.c", "add_products(0, 10, 1, _passes", "add_products(1, 10, 1, _passes"),
+        ("kernel.c", "vector[VALUES][n] = 1.0", "vector[VALUES][n] = 2.0"),
         ("kernel.c", "_scales[1][_n] = _p", "_scales[1][_n] = 2.0 * _p"),
         ("kernel.c", "ROWS = 10", "ROWS = 9"),
         ("kernel.py", "entries = starts[rows] + place", "entries = starts[rows]"),
@@ -314,14 +350,27 @@ def test_integrators_of_others_get_a_matrix(nine):
     assert run.drift["energy"] < 1e-7
 
 
-def test_simulations_take_methods_of_scipy(nine):
-    """No solver is generated for loops: `auto` is DOP853 of SciPy, and the others are refused."""
-    state, _, a = (part[:, 0].copy() for part in points(9, 1))
-    run = nine.simulate(state, (0, 1), a, samples=3)
-    assert run.method == "scipy:DOP853"
-    assert run.drift["energy"] < 1e-9
-    with pytest.raises(KernelArgumentError, match="its rates are loops over a table"):
-        nine.simulate(state, (0, 1), a, method="taylor")
+def test_generated_solvers_follow_the_motion(nine):
+    """`auto` is the generated Taylor method, for one and for many; SciPy and matrices agree."""
+    state, _, a = points(9, 19)
+    alone = nine.simulate(state[:, 0], (0, 1), a[:, 0], samples=3, rtol=1e-12)
+    assert alone.method == "taylor"
+    assert alone.drift["energy"] < 1e-12
+    many = nine.simulate(state, (0, 1), a, samples=3, rtol=1e-12, target="numpy")
+    np.testing.assert_array_equal(many.state[:, 0], alone.state)
+    for method in ("dop853", "scipy:DOP853"):
+        run = nine.simulate(state[:, 0], (0, 1), a[:, 0], samples=3, rtol=1e-11, method=method)
+        np.testing.assert_allclose(run.state, alone.state, atol=1e-8)
+    known = np.linalg.eigvalsh(1j * _matrix(state[:, 0], 9))  # the motion is isospectral
+    found = np.linalg.eigvalsh(1j * _matrix(alone.state[:, -1], 9))
+    np.testing.assert_allclose(found, known, atol=1e-11)
+
+
+def _matrix(state, n):
+    """An antisymmetric matrix from what is above its diagonal."""
+    M = np.zeros((n, n))
+    M[np.triu_indices(n, 1)] = state
+    return M - M.T
 
 
 def test_rows_name_the_vector():

@@ -6,12 +6,12 @@ from pathlib import Path
 from coadjoint.derive import derive, make_setting
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.resources import derivations_folder
-from tests.specs import spec
+from tests.specs import spec, unitless
 
 
 @cache
 def motion(name, *changes):
     """The rates of a shipped system by its first route."""
-    text = (Path(derivations_folder()) / f"{name}.toml").read_text()
+    text = unitless((Path(derivations_folder()) / f"{name}.toml").read_text())
     declared = spec(text, *changes, name=name)
     return ConstrainedRates(derive(declared, declared.routes[0], setting=make_setting(declared)))

@@ -152,6 +152,19 @@ def test_combinations_of_rows_give_what_determinants_give(monkeypatch):
     assert not of.field.is_zero(of.value(weighted(of, functions[0])) - short[0])
 
 
+def test_the_rate_of_the_energy_needs_no_determinant_where_a_constraint_is_kept(monkeypatch):
+    """On the constraint it is that by determinants; beyond, where no motion is, it need not be."""
+    of = motion(PENDULUM)
+    energy = of.equations.exact.energy
+    short = of.value(weighted(of, energy))
+    (written,) = of.field.quotients(short)
+    assert not written.divisors
+    monkeypatch.setattr(ConstrainedRates, "_weights", lambda *_: iter(()))
+    whole = of.value(weighted(of, energy))
+    assert decide_zero([whole - short], of.field, of.where).verdict is Verdict.PROVED
+    assert not of.field.is_zero(whole - short)
+
+
 def weighted(of, function):
     """The part of a rate that the accelerations have."""
     names = of.distribution.independent

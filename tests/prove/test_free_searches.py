@@ -131,6 +131,39 @@ def test_the_volume_of_phase_space_in_velocities():
     }
 
 
+BRACKET = """
+title = "A bracket that is no canonical one"
+routes = ["poisson"]
+[variables]
+x = { role = "coordinate", shape = [4] }
+[poisson.brackets]
+"{x1, x2}" = "ONE"
+"{x3, x4}" = "1 + x3^2"
+"{x2, x4}" = "TWO"
+[hamiltonian]
+h = "x1^2/2 + x2*x3 + x4^3"
+"""
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "density"),
+    [
+        ("2", "0", "|2*x3^2 + 2|^(-1)"),
+        ("1/(2 + x1)", "-2*x1/(2 + x1)", "|(x1 + 2)/(x3^2 + 1)|"),
+    ],
+)
+def test_a_bracket_that_is_not_degenerate_has_liouvilles_measure(one, two, density):
+    """One over the Pfaffian ``{x1, x2} {x3, x4}``, by hand: ``{x1, x3} = {x1, x4} = 0``."""
+    declared = spec(BRACKET, ("ONE", one), ("TWO", two))
+    (statement,) = found(declared, "measure")
+    assert density in statement
+    forced = spec(BRACKET, ("ONE", one), ("TWO", two), ("[hamiltonian]", FORCE))
+    assert not any(density in each for each in found(forced, "measure"))
+
+
+FORCE = '[forces]\nx = "vector(0, -x2^3, 0, 0)"\n[hamiltonian]'
+
+
 @pytest.mark.parametrize(
     ("name", "value"), [("lorenz_gyrostat", "-sigma - b - 1"), ("bloch", "-2/T2 - 1/T1")]
 )

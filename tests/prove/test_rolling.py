@@ -12,7 +12,7 @@ from tests.rolling import BALL, DISK, FOLLOWED_SLEIGH, derived
 #: s = u Gamma + v e3 of a spheroid with semi-axes 2, 2, 1: h u = 4, h v = -3 Gamma3.
 SPHEROID = (
     "r*Gamma + chi",
-    "(4*Gamma + vector(0, 0, -3*Gamma3))/sqrt(4*(1 - Gamma3^2) + Gamma3^2)",
+    "r*(4*Gamma + vector(0, 0, -3*Gamma3))/sqrt(4*(1 - Gamma3^2) + Gamma3^2)",
 )
 #: u' + Gamma3 v' = Gamma3 r, not 0.
 WRONG = ("r*Gamma + chi", "r*Gamma + vector(0, 0, r*Gamma3)")

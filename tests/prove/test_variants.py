@@ -14,7 +14,7 @@ from coadjoint.prove.zero import decide_zero
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec_text
 from coadjoint.spec.routes import ROUTES
-from tests.specs import prove_claims
+from tests.specs import prove_claims, unitless
 
 FOLDER = Path(derivations_folder())
 #: Tables that a changed motion need not satisfy, or that only routes without forces read.
@@ -49,7 +49,7 @@ def text_of(tables):
 
 def variant(name, *drives):
     """A shipped free system with friction, with inputs and time, or with a force of its own."""
-    tables = tomllib.loads((FOLDER / f"{name}.toml").read_text())
+    tables = tomllib.loads(unitless((FOLDER / f"{name}.toml").read_text()))
     plain = read_spec_text((FOLDER / f"{name}.toml").read_text(), Path(f"{name}.toml"))
     tables = {key: table for key, table in tables.items() if key not in DROPPED}
     tables.get("claims", {}).pop("conserved", None)

@@ -228,7 +228,7 @@ def test_observables_are_shown():
     assert words == (
         ("casimir1", "= dot(Pi, Pi)"),
         ("spin", "= Pi3 (kg m^2/s)"),
-        ("t2", "= dot(Pi, Pi)"),
+        ("t2", "= dot(Pi, Pi) (kg^2 m^4/s^2)"),
     )
     lines, words = sections(PARTICLE + '[momenta]\nalong = { section = { u = "1" } }\n')[
         "Observables"

@@ -74,7 +74,7 @@ def check_same_steps(found, solution):
 def turn_bodies(batch=()):
     """A body, or some, with events: some that occur, one that never does, one undefined later."""
     state = np.random.default_rng(6).normal(size=(3, *batch))
-    asked = ["Pi2", Event("sqrt(Pi1 + 1) == 1", terminal=3, name="third"), "Pi1 == 99"]
+    asked = ["Pi2", Event("sqrt(Pi1/norm(Pi) + 1) == 1", terminal=3, name="third"), "Pi1 == 99"]
     return rigid_body.simulate(state, (0, 30), samples=4, target="numpy", events=asked)
 
 

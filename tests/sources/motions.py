@@ -74,11 +74,16 @@ def sl2_r2_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def sl2_r2_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """Energy, and the cubic Casimir ``p . eps mu p`` with eps the quarter turn."""
+    """Energy, the cubic Casimir ``p . eps mu p`` with eps the quarter turn, and velocities."""
     (h, x, y, p1, p2), (i1, i2, i3, m) = state, parameters
     return {
         "energy": (h**2 / i1 + (x + y) ** 2 / i2 + (x - y) ** 2 / i3 + (p1**2 + p2**2) / m) / 2,
         "casimir1": p2 * (h * p1 + x * p2) - p1 * (y * p1),
+        "a": h / i1,
+        "b": (x + y) / i2 + (x - y) / i3,
+        "c": (x + y) / i2 - (x - y) / i3,
+        "v1": p1 / m,
+        "v2": p2 / m,
     }
 
 
@@ -119,12 +124,14 @@ def bargmann_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def galilei_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """Energy and the Casimirs ``P . P`` and ``|K x P|^2``."""
-    moment = cross(state[3:6], state[6:9])
+    """Energy, the Casimirs ``P . P`` and ``|K x P|^2``, and velocities."""
+    moment, velocity = cross(state[3:6], state[6:9]), over(state, parameters)
+    names = [f"{name}{n}" for name in ("Omega", "a", "v") for n in (1, 2, 3)]
     return {
-        "energy": sum(p * v for p, v in zip(state, over(state, parameters), strict=True)) / 2,
+        "energy": sum(p * v for p, v in zip(state, velocity, strict=True)) / 2,
         "casimir1": dot(state[6:9], state[6:9]),
         "casimir2": dot(moment, moment),
+        **dict(zip((*names, "tau"), velocity, strict=True)),
     }
 
 

@@ -63,9 +63,14 @@ def monopole_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def kepler_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """E, L = r x v and A = v x L - mu r/|r|."""
+    """E, L = r x v and A = v x L - mu r/|r|; |A|/mu, L^2/mu, L x A/L^2."""
     found = monopole_observables(state, [*parameters, 0])
-    return {name: value for name, value in found.items() if name[0] != "P"}
+    L, A = ([found[f"{name}{n}"] for n in (1, 2, 3)] for name in "LA")
+    return {name: value for name, value in found.items() if name[0] != "P"} | {
+        "e": length(dot(A, A)) / parameters[0],
+        "p": dot(L, L) / parameters[0],
+        **named("u", times(1 / Fraction(dot(L, L)), cross(L, A))),
+    }
 
 
 def monopole_observables(state: Vector, parameters: Vector) -> dict[str, Any]:

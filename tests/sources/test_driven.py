@@ -23,7 +23,7 @@ from tests.sources.driven import (
     wheels_rates,
 )
 from tests.sources.textbook import GIVEN, STATES
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, unitless
 
 
 def system(name):
@@ -170,7 +170,7 @@ def test_motors_keep_the_angular_momentum_in_space():
 )
 def test_what_acts_inside_keeps_the_momentum_in_space(acting, kept):
     """Friction in the bearings does; a torque from outside does not, and nothing says it did."""
-    text = (derivations_folder() / "spacecraft_wheels.toml").read_text(encoding="utf-8")
+    text = unitless((derivations_folder() / "spacecraft_wheels.toml").read_text(encoding="utf-8"))
     claimed = 'conserved = ["dot(q, q)", "dot(Pi, Pi)"]'
     declared = spec(text, ('[forces]\nw = "u"', acting), (claimed, 'conserved = ["dot(q, q)"]'))
     found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}

@@ -16,9 +16,9 @@ from tests.sources.components import cross, dot, plus, times
 from tests.sources.sliding import TippeTop
 from tests.sources.sliding import tippe_top as typed
 from tests.sources.test_equations import emitted, points, same, solved, values
-from tests.specs import spec
+from tests.specs import spec, unitless
 
-TEXT = (derivations_folder() / "tippe_top.toml").read_text(encoding="utf-8")
+TEXT = unitless((derivations_folder() / "tippe_top.toml").read_text(encoding="utf-8"))
 START = {"Omega": [0.0, 0.0, 20.0], "Y": [0.0, 0.0, 0.0], "Gamma": [0.0, 40 / 401, 399 / 401]}
 
 

@@ -12,7 +12,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven, extremals
+from tests.sources import classical, driven, extremals, fields, machines
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -182,6 +182,8 @@ CONFIGURATIONS = (
     "rocking_disk",
     *classical.CONFIGURATIONS,
     *extremals.CONFIGURATIONS,
+    *fields.CONFIGURATIONS,
+    *machines.CONFIGURATIONS,
     *ROLLING,
     "tippe_top",
 )
@@ -193,9 +195,10 @@ QUOTIENTS = (
     *BALLS,
     *CONFIGURATIONS,
     *classical.QUOTIENTS,
+    *machines.QUOTIENTS,
 )
 #: Constrained motions: their bracket moves momenta, and Jacobi's identity fails.
-CONSTRAINED = (*BALLS, *ROLLING, *classical.TENSORS)
+CONSTRAINED = (*BALLS, *ROLLING, *classical.TENSORS, *machines.TENSORS)
 BODIES = {f"so{n}_body": n for n in (5, 6, 8)}
 #: Parameters of integrable tops as those of the heavy top.
 TOPS = {
@@ -239,6 +242,8 @@ RATES = {
     **classical.RATES,
     **driven.RATES,
     **extremals.RATES,
+    **fields.RATES,
+    **machines.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
     "tippe_top": tippe_rates,
@@ -280,6 +285,8 @@ OBSERVABLES = {
     **classical.OBSERVABLES,
     **driven.OBSERVABLES,
     **extremals.OBSERVABLES,
+    **fields.OBSERVABLES,
+    **machines.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
     "tippe_top": tippe_observables,
@@ -319,6 +326,8 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     **classical.TENSORS,
     **driven.TENSORS,
     **extremals.TENSORS,
+    **fields.TENSORS,
+    **machines.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -360,6 +369,8 @@ STATES = {
     **classical.STATES,
     **driven.STATES,
     **extremals.STATES,
+    **fields.STATES,
+    **machines.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
     "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
@@ -401,6 +412,8 @@ PARAMETERS = {
     **classical.PARAMETERS,
     **driven.PARAMETERS,
     **extremals.PARAMETERS,
+    **fields.PARAMETERS,
+    **machines.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),

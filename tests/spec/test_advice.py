@@ -67,8 +67,33 @@ def before_claims(lines):
     return write(END, f"{lines}\n{END}")
 
 
+MOMENTUM = '"momentum"'
+
+
+def of_unit(text):
+    """The momentum with a unit."""
+    return write(MOMENTUM, f'{MOMENTUM}, unit = "{text}"')
+
+
 #: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    # -- units
+    (
+        RIGID_BODY,
+        of_unit("J/kg K"),
+        "Write K before the sign /, or what is below it in parentheses.",
+        write("J/kg K", "J K/kg"),
+    ),
+    (RIGID_BODY, of_unit("10 m"), "Numbers belong to formulas.", write("10 m", "m")),
+    (RIGID_BODY, of_unit("kgg"), "Did you mean 'kg'?", write("kgg", "kg")),
+    (RIGID_BODY, of_unit("Nm s"), "Write 'N m'.", write("Nm", "N m")),
+    (RIGID_BODY, of_unit("joule sec"), "Write 'J'.", write("joule sec", "J s")),
+    (
+        RIGID_BODY,
+        [*of_unit("kg m^2/s"), ('"velocity"', '"velocity", unit = "m/s"')],
+        'Write unit = "1/s".',
+        write("m/s", "1/s"),
+    ),
     # -- blocks
     (
         TOP.replace("[parameters]", '[representations.turn]\nright = "rotation"\n[parameters]'),

@@ -73,12 +73,12 @@ def test_forces_sections_and_dissipation_are_read():
         PARTICLE,
         ("[claims]", '[forces]\nu = "-k*u"\nw = "k"\n[claims]'),
         ("[claims]", '[dissipation]\nR = "k*dot(vector(u, w), vector(u, w))"\n[claims]'),
-        ("[claims]", '[momenta.J]\nsection = { u = "y", v = "k" }\nunit = "kg"\n[claims]'),
+        ("[claims]", '[momenta.J]\nsection = { u = "y", v = "k" }\nunit = "1"\n[claims]'),
     )
     assert {name: f.text for name, f in declared.forces.items()} == {"u": "-k*u", "w": "k"}
     assert declared.dissipation is not None
     (section,) = declared.sections
-    assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "kg")
+    assert (section.name, list(section.section), section.unit) == ("J", ["u", "v"], "1")
 
 
 ROUTES = 'routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]'

@@ -8,10 +8,11 @@ Read next: `coadjoint.algebra.families`, where the bases are.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cache
+from types import MappingProxyType
 
 from coadjoint.algebra import families
 from coadjoint.algebra.attitudes import attitude, quaternion
@@ -200,6 +201,26 @@ ATTITUDES: dict[str, Callable[[LieAlgebra, str], Representation]] = {
     "quaternion": quaternion,
 }
 REPRESENTATIONS = (*_REPRESENTATIONS, *ATTITUDES)
+#: What each of them is, for documents.
+MEANINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "vector": "rotations of vectors on so(n), se(n), g(3) and bargmann, where all else acts as "
+        "zero; on other algebras the same as `defining`",
+        "dual": "the dual of `vector`",
+        "defining": "the algebra's own matrices on columns",
+        "adjoint": "of the algebra on itself",
+        "coadjoint": "of the algebra on its dual",
+        "symmetric": "`S -> X S + S X^T` on symmetric matrices; the entries with the diagonal, row "
+        "by row",
+        "columns": "`A -> X A` on square matrices, row by row",
+        "rows": "`A -> -A X` on square matrices, row by row",
+        "trivial": "zero, on one number",
+        "attitude": "the group element itself, a matrix row by row: `dg/dt = g xi`, or `xi g` if "
+        "the motion is right invariant",
+        "quaternion": "the group element as a unit quaternion q0 to q3, for so(3), su(2), and "
+        "algebras that contain the rotations apart from the rest",
+    }
+)
 
 
 def representation_by_name(

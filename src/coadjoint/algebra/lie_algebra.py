@@ -24,6 +24,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
 )
 from coadjoint.errors import AlgebraError, LimitError
+from coadjoint.exact.bilinear import sum_products
 from coadjoint.exact.dense import total
 from coadjoint.exact.linear import Span, exact
 from coadjoint.limits import GENERATORS
@@ -54,6 +55,12 @@ def multiply_constant(value: Any, factor: Any) -> Any:
     if not isinstance(factor, Fraction) or isinstance(value, int):
         return value * factor
     return value * factor.numerator / factor.denominator
+
+
+def _sum(terms: Sequence[tuple[Any, Any, Any]]) -> Any:
+    """The sum of ``c x y`` over terms ``(c, x, y)``, for values of any kind."""
+    found = sum_products(terms)
+    return total([multiply_constant(x * y, c) for c, x, y in terms]) if found is None else found
 
 
 @dataclass(frozen=True)
@@ -100,6 +107,10 @@ class LieAlgebra(Invariants):
 
         It moves parameters into another field, or puts numbers for them.
         """
+        rows: list[Mapping[Any, Any]]
+        rows = [*self.constants.values(), *self.matrices, *self.elements]
+        if all(isinstance(value, int | Fraction) for row in rows for value in row.values()):
+            return self
         constants = {pair: convert_entries(row, convert) for pair, row in self.constants.items()}
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         elements = tuple(convert_entries(matrix, convert) for matrix in self.elements)
@@ -124,10 +135,10 @@ class LieAlgebra(Invariants):
 
         On so(3) this is ``mu x xi`` (Holm 2011, section 5.1.3).
         """
-        addends: list[list[Any]] = [[0] for _ in self.basis]
+        rows: list[list[tuple[Any, Any, Any]]] = [[] for _ in self.basis]
         for i, j, k, c in self.structure():
-            addends[j].append(multiply_constant(xi[i] * mu[k], c))
-        return tuple(map(total, addends))
+            rows[j].append((c, xi[i], mu[k]))
+        return tuple(map(_sum, rows))
 
     # -- checks ---------------------------------------------------------------------------
 

@@ -55,7 +55,6 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive import derive
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
-    from coadjoint.render.kernels import SOLVER_FILES
     from coadjoint.render.targets import TARGETS
     from coadjoint.sandbox import report_progress
     from coadjoint.solve.system import load_folder
@@ -65,8 +64,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     report_progress("derive", 0, 2)
     equations = derive(read_spec(Path(argument["path"])))
     programs = lower(equations)
-    missing = SOLVER_FILES if programs["rhs"].table else ()
-    files = [file for target in TARGETS.values() for file in target.files if file not in missing]
+    files = [file for target in TARGETS.values() for file in target.files]
     texts = {file: _text(folder / file) for file in files}
     report_progress("compile and cross-check", 1, 2)
     report = crosscheck(
@@ -117,9 +115,6 @@ def _print(report: Mapping[str, Any]) -> None:
 
 def _print_solvers(figures: Mapping[str, Any]) -> None:
     """What was compared of the solvers."""
-    if not figures["lines"]:
-        say("solvers: none, since the rates are loops over a table")
-        return
     say(
         f"solvers: {figures['coefficients']} coefficients and {figures['lines']} lines compared, "
         f"{figures['choices']} lengths of steps"

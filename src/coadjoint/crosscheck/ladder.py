@@ -28,7 +28,7 @@ from coadjoint.crosscheck.bits import compare_chunks, equal_bits
 from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
-from coadjoint.crosscheck.solvers import NONE, SolverFigures, check_solvers, start_compiling
+from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Program
@@ -126,8 +126,7 @@ def crosscheck(
     subject = Subject(programs, reference, system, chosen)
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
-        looped = programs["rhs"].table is not None  # then there are no solvers
-        compiling = {} if looped else start_compiling(pool, texts, folder, chosen)
+        compiling = start_compiling(pool, texts, folder, chosen)
         loading = pool.submit(system.load_kernels, chosen)
         lines = {
             name: sum(
@@ -138,7 +137,7 @@ def crosscheck(
         }
         exact = [exact_points(subject, name, _share(share, p)) for name, p in programs.items()]
         _check_texts(loading.result(), chosen, texts, system.name)
-        solvers = NONE if looped else check_solvers(subject, texts, compiling)
+        solvers = check_solvers(subject, texts, compiling)
     agreements = {points.function: against_oracle(subject, points) for points in exact}
     figures = {name: agreement.figures for name, agreement in agreements.items()}
     together = {name: agreement.together for name, agreement in agreements.items()}

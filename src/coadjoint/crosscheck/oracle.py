@@ -77,7 +77,8 @@ class Bounded:
 
     def __mul__(self, other: Bounded) -> Bounded:
         mine, theirs = abs(self.value) * other.envelope, abs(other.value) * self.envelope
-        return Bounded(self.value * other.value, mine + theirs)
+        both = _UNIT * self.envelope * other.envelope  # where both factors cancel to nothing
+        return Bounded(self.value * other.value, max(mine + theirs, both))
 
     def __truediv__(self, other: Bounded) -> Bounded:
         size = abs(other.value)

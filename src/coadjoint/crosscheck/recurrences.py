@@ -75,6 +75,7 @@ class _Running:
             if len(values) == 1:
                 self.known[name] = values[0]
             self.known |= {f"{name}[{k}]": value for k, value in enumerate(values)}
+        self._read: dict[int, frozenset[str]] = {}  # lines live as long as this
         self._driving = [name for name, values in given.items() if len(values) > 1]
 
     def coefficients(self, state: tuple[str, ...], order: int) -> dict[str, list[Any]]:
@@ -98,10 +99,16 @@ class _Running:
     def _run(self, lines: Iterable[Line], k: int = 0, m: int = 0) -> None:
         """Some lines, at one order and one term."""
         for line in lines:
-            names = {n.name for n in walk(line.value) if isinstance(n, Symbol)}
-            values = {name: self.known[_placed(name, k, m)] for name in names}
+            values = {name: self.known[_placed(name, k, m)] for name in self._names_in(line)}
             value = evaluate(line.value, values, self.number, self.apply)
             self.known[_placed(line.name, k, m)] = value
+
+    def _names_in(self, line: Line) -> frozenset[str]:
+        """The names that a line reads."""
+        if id(line) not in self._read:
+            nodes = walk(line.value)
+            self._read[id(line)] = frozenset(n.name for n in nodes if isinstance(n, Symbol))
+        return self._read[id(line)]
 
 
 def _placed(name: str, k: int, m: int) -> str:

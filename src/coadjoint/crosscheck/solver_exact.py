@@ -7,6 +7,7 @@ Read next: `coadjoint.crosscheck.solver_steps`, which compares steps with them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
@@ -140,7 +141,8 @@ def list_exact_steps(
                     step = _project(solvers, point, step, after, length)
         except (OutsideDomain, ArithmeticError):
             continue
-        yield member, step
+        if all(math.isfinite(float(each.value)) for each in (*step.within, *step.end)):
+            yield member, step  # beyond the largest double there is nothing to compare
 
 
 def find_point(solvers: Solvers, batch: Batch, member: int) -> dict[str, float]:

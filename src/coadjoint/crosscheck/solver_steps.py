@@ -44,12 +44,15 @@ from coadjoint.crosscheck.solver_exact import (
     find_steps,
 )
 from coadjoint.crosscheck.solver_objects import CHOICES, ORDER
+from coadjoint.crosscheck.subject import work
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
 MEMBERS: Final = 13
-#: Members that are compared with 60 digits.
+#: Members that are compared with 60 digits, and what their rates may take together: so(20) has
+#: 20 000 operations, and one member alone.
 ORACLE_MEMBERS: Final = 3
+ORACLE_OPERATIONS: Final = 20_000
 #: How far a run may go that takes one step as long as it likes.
 FAR: Final = 2.0**30
 MOST_STEPS: Final = 12
@@ -79,7 +82,7 @@ def check_steps(solvers: Solvers, batch: Batch, size: float) -> dict[str, dict[s
     Raises:
         CrossCheckError: A step is wrong, or none was compared.
     """
-    few = batch.take(slice(ORACLE_MEMBERS))
+    few = _take_few(solvers, batch)
     figures = {}
     for method, targets in solvers.advance.items():
         samples, known = find_steps(solvers, method, few, size)
@@ -92,6 +95,12 @@ def check_steps(solvers: Solvers, batch: Batch, size: float) -> dict[str, dict[s
             for target, ensemble in found.items()
         }
     return figures
+
+
+def _take_few(solvers: Solvers, batch: Batch) -> Batch:
+    """The members that are compared with 60 digits."""
+    most = ORACLE_OPERATIONS // work(solvers.subject.programs["rhs"])
+    return batch.take(slice(min(ORACLE_MEMBERS, max(1, most))))
 
 
 def _measure(
@@ -134,7 +143,7 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
     Raises:
         CrossCheckError: One is another.
     """
-    few, compared = batch.take(slice(ORACLE_MEMBERS)), 0
+    few, compared = _take_few(solvers, batch), 0
     for target, advance in solvers.advance["taylor"].items():
         ensemble = solvers.begin(few, np.array([START + FAR]), size=0.0, steps=1)
         advance(ensemble, 1)
@@ -198,11 +207,11 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     for method, given, fixed, keeps in _runs(batch, size):
         targets = solvers.advance[method]
         found, rows = {}, len(solvers.subject.programs["rhs"].state)
-        for target, work in (("numpy", MOST_STEPS), ("c", 3 if keeps else 5)):
+        for target, most in (("numpy", MOST_STEPS), ("c", 3 if keeps else 5)):
             ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS)
             record = Record.make(rows, CHOICES[method].degree, given.size * MOST_STEPS + ROOM)
             for _ in range(2 * MOST_STEPS):
-                if not targets[target](ensemble, work, record if keeps else None):
+                if not targets[target](ensemble, most, record if keeps else None):
                     break
             found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in _KEPT}
             order = np.argsort(record.member, kind="stable")
@@ -255,7 +264,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
     Raises:
         CrossCheckError: Two are further apart.
     """
-    few, together = batch.take(slice(ORACLE_MEMBERS)), dict.fromkeys(CHOICES, 0)
+    few, together = _take_few(solvers, batch), dict.fromkeys(CHOICES, 0)
     for method in CHOICES:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)

@@ -21,6 +21,7 @@ from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import Row
 from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
+from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets import TARGETS
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c import solver_reader as c_reader
@@ -61,11 +62,16 @@ def check_solver_texts(texts: SolverTexts) -> int:
     """
     c, numpy = texts.files["solver.c"], texts.files["solver.py"]
     check_rest(texts)
-    compared = _check_tables(c_reader.read_tables(c), dop853())
+    loops, table = texts.recurrences.loops, dop853()
+    looped = loops.numbers if loops else {}
+    tableau = {each.name: tuple(map(float, getattr(table, each.name))) for each in fields(table)}
+    compared = _check_tables(c_reader.read_tables(c), {**looped, **tableau}, "solver.c")
+    compared += _check_tables(numpy_reader.read_tables(numpy), looped, "solver.py")
     for function in ("find_fixed", "expand", *(f"find_{name}" for name in texts.programs)):
-        body = c_reader.read_function(c, function)
-        compared += _check_body(body, _expected(texts, function), "solver.c", function)
-    body = numpy_reader.read_expand(numpy)
+        if not loops or function not in c_reader.LOOPED:
+            body = c_reader.read_function(c, function)
+            compared += _check_body(body, _expected(texts, function), "solver.c", function)
+    body = numpy_reader.read_expand(numpy, is_looped=loops is not None)
     return compared + _check_body(body, _expected(texts, "solver.py"), "solver.py", "expand")
 
 
@@ -85,6 +91,10 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
         found = arrange_function(name, texts.programs[name])
         arrays = ("state", "parameters", "driving", *(["fixed"] if name == "rates" else []))
         return _body(rows, arrays, found.reads, found.lines)
+    if solver.loops:
+        body = _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
+        body.scales = list(solver.loops.scales)
+        return body
     is_c = function == "expand"
     reads = solver.reads.union(program.state, (frozenset() if is_c else solver.fixed_reads))
     arrays = ("state", "parameters", "driving", *(["fixed"] if is_c else []))
@@ -129,6 +139,7 @@ def _check_body(found: SolverBody, expected: SolverBody, file: str, function: st
     lines = [
         *zip_longest(sorted(found.inputs.items()), sorted(expected.inputs.items())),
         *zip_longest(found.kept, expected.kept),
+        *zip_longest(found.scales, expected.scales),
         *zip_longest(found.lines, expected.lines),
         *zip_longest(found.orders, expected.orders),
     ]
@@ -145,22 +156,22 @@ def _check_body(found: SolverBody, expected: SolverBody, file: str, function: st
     return sum(1 + (len(one.lines) if isinstance(one, Loop) else 0) for one, _ in lines)
 
 
-def _check_tables(found: Mapping[str, tuple[float, ...]], table: Tableau) -> int:
-    """The tables are the tableau, number by number."""
-    compared = 0
-    for field in fields(table):
-        entries = tuple(map(float, getattr(table, field.name)))
-        for place, (one, other) in enumerate(zip_longest(found.get(field.name, ()), entries)):
+def _check_tables(
+    found: Mapping[str, Sequence[float]], expected: Mapping[str, Sequence[float]], file: str
+) -> int:
+    """The tables are what they are to be, number by number."""
+    for name in {**expected, **found}:
+        pairs = zip_longest(found.get(name, ()), expected.get(name, ()))
+        for place, (one, other) in enumerate(pairs):
             if one != other:
                 raise failure(
-                    f"solver.c: entry {place} of {field.name} is {one!r}; expected {other!r}",
-                    field.name,
-                    file="solver.c",
+                    f"{file}: entry {place} of {name} is {one!r}; expected {other!r}",
+                    name,
+                    file=file,
                     found=repr(one),
                     expected=repr(other),
                 )
-        compared += len(entries)
-    return compared
+    return sum(map(len, expected.values()))
 
 
 # -- the rest of the text -------------------------------------------------------------------------
@@ -174,8 +185,8 @@ def check_rest(texts: SolverTexts) -> None:
     """
     expected = _render_without_lines(texts)
     for file, text in texts.files.items():
-        cut = {"solver.c": c_reader.rest, "solver.py": numpy_reader.rest}.get(file, str)
-        pairs = zip_longest(cut(text).splitlines(), cut(expected[file]).splitlines())
+        cut = (_cut(texts, file, each) for each in (text, expected[file]))
+        pairs = zip_longest(*map(str.splitlines, cut))
         for number, (one, other) in enumerate(pairs, 1):
             if one != other:
                 raise failure(
@@ -186,6 +197,17 @@ def check_rest(texts: SolverTexts) -> None:
                     found=str(one),
                     expected=str(other),
                 )
+
+
+def _cut(texts: SolverTexts, file: str, text: str) -> str:
+    """A text without what belongs to the system."""
+    looped = texts.recurrences.loops is not None
+    match file:
+        case "solver.c":
+            return c_reader.rest(text, is_looped=looped)
+        case "solver.py":
+            return numpy_reader.rest(text, is_looped=looped)
+    return text
 
 
 def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
@@ -221,6 +243,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
             "solver": bare,
+            "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},

@@ -75,10 +75,6 @@ class SolverFigures:
     together: Mapping[str, int]
 
 
-#: Of a system without solvers.
-NONE: Final = SolverFigures(coefficients=0, lines=0, steps={}, choices=0, equal={}, together={})
-
-
 def start_compiling(
     pool: Executor, texts: Mapping[str, str], folder: Path, targets: Iterable[str]
 ) -> Compiling:

@@ -15,9 +15,10 @@ from sympy.printing.mathml import mathml
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.records import Left, Step, is_of_kernel, symbol
+from coadjoint.derive.records import Emitted, Left, Step, is_of_kernel, symbol
+from coadjoint.derive.setting import Declared
 from coadjoint.exact import Element, Field, element_text
-from coadjoint.spec.model import Definition
+from coadjoint.spec.model import Definition, Reconstructed
 
 #: Addends on one line of LaTeX; nine fill a landscape page.
 ADDENDS = 9
@@ -76,7 +77,7 @@ def document(equations: Equations) -> Document:
     sections = [_section(equations, step) for step in equations.steps]
     if spec.definitions:
         sections.insert(0, _definitions(spec.definitions))
-    sections += _observables(equations)
+    sections += [*_observables(equations), *_units(equations)]
     if equations.chart is None and equations.route == spec.routes[0]:
         sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
     about = f"System {spec.name}, route {equations.route}."
@@ -110,6 +111,22 @@ def _observables(equations: Equations) -> Iterator[Section]:
             law_latex="",
             lines=tuple(lines),
             words=tuple(words),
+        )
+
+
+def _units(equations: Equations) -> Iterator[Section]:
+    """The units of all that a kernel takes and gives, where the spec has any."""
+    spec = equations.spec
+    named: list[Declared | Emitted | Reconstructed] = [*spec.state, *spec.parameters, *spec.inputs]
+    named += [*equations.exact.emitted, *spec.reconstruction]
+    words = [(each.name, each.unit or "not told by the spec") for each in named]
+    if {unit for _, unit in words} - {"1"}:
+        yield Section(
+            title="Units",
+            law="1 for a pure number; those that are not declared are inferred",
+            law_latex="",
+            lines=(),
+            words=(*words, ("time", spec.units.time)),
         )
 
 

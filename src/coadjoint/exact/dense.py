@@ -210,6 +210,24 @@ def determinant(a: Sequence[Sequence[Entry]]) -> Entry:
     return minor(a, range(len(a)), range(len(a)))
 
 
+def pfaffian(a: Sequence[Sequence[Any]]) -> Any:
+    """The root of the determinant of an antisymmetric matrix, by expansion along the first row.
+
+    >>> pfaffian(((0, 1, 2, 3), (-1, 0, 4, 5), (-2, -4, 0, 6), (-3, -5, -6, 0)))
+    8
+    """
+    if len(a) % 2:
+        return 0 * a[0][0]
+    result: Any = 1
+    if a:
+        places = range(1, len(a))
+        rests = ([k for k in places if k != j] for j in places)
+        inner = ([[a[i][k] for k in rest] for i in rest] for rest in rests)
+        signed = zip(places, inner, strict=True)
+        result = total([(-1) ** (j - 1) * a[0][j] * pfaffian(m) for j, m in signed if a[0][j] != 0])
+    return result
+
+
 def _expand(
     a: Sequence[Sequence[Any]], rows: tuple[int, ...], columns: tuple[int, ...], known: _Minors
 ) -> Any:

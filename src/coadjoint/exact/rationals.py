@@ -336,6 +336,8 @@ class Rationals:
 
         ``(I2 - I3)/(I2*I3)`` is ``1/I3 - 1/I2``.
         """
+        if len(element.parts) == 1 and not element.parts[0].powers:
+            return [element]  # a polynomial
         groups: dict[tuple[tuple[int, int], ...], list[Element]] = {}
         for term in self.terms(element):
             key = tuple(sorted(term.parts[0].powers.items()))

@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from coadjoint.lower.motion import ONE, Function, Meaning, Plan, Quotient, find_plan
+from coadjoint.lower.motion import Function, Meaning, Plan, Quotient, find_plan
 from coadjoint.lower.polynomials import (
     Constant,
     Polynomial,
@@ -34,6 +34,7 @@ from coadjoint.lower.polynomials import (
     sum_of,
 )
 from coadjoint.lower.program import (
+    ONE,
     Call,
     Divide,
     Multiply,

@@ -34,6 +34,7 @@ from coadjoint.lower.tables import (
     differentiate_along,
     find_products,
     loop_over,
+    loop_rows,
 )
 from coadjoint.lower.vanishing import find_hidden_zeros
 
@@ -307,10 +308,9 @@ def lower(equations: Equations) -> dict[str, Program]:
         rows = rows_of(equations, name)
         if rows is None:
             continue
-        if looped is not None and name == "rhs":
-            programs[name] = looped
-        elif looped is not None and rows.along:
-            programs[name] = differentiate_along(looped, rows)
+        own = None if looped is None else _lower_by_table(name, rows, looped)
+        if own is not None:
+            programs[name] = own
         elif rows.by:
             programs[name] = _jacobian(name, rows, programs["rhs"])
         else:
@@ -318,6 +318,15 @@ def lower(equations: Equations) -> dict[str, Program]:
     if looped is None:
         programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
     return programs
+
+
+def _lower_by_table(name: str, rows: Rows, looped: Program) -> Program | None:
+    """A function of a system whose rates are loops as a loop; None where it is none."""
+    if name == "rhs":
+        return looped
+    if rows.along:
+        return differentiate_along(looped, rows)
+    return loop_rows(rows, name, looped) if name in ("energy", "observables") else None
 
 
 def _loop(equations: Equations) -> Program | None:

@@ -30,6 +30,7 @@ from coadjoint.lower.polynomials import (
 )
 from coadjoint.lower.products import Pair, share_pairs
 from coadjoint.lower.program import (
+    ONE,
     Add,
     Call,
     Divide,
@@ -45,7 +46,6 @@ from coadjoint.lower.program import (
     with_children,
 )
 
-ONE = Number(Fraction(1))
 #: What a term of a linear combination costs, where a product costs 1.
 TERM = 0.02
 #: Plans are tried while their number times the size of the Program is below.

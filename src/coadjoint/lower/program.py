@@ -8,9 +8,11 @@ Read next: `coadjoint.lower.lowering`, which makes Programs of Equations.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import accumulate
 from typing import Literal, TypeVar
 
 Value = TypeVar("Value")
@@ -84,6 +86,7 @@ OPERATIONS: Mapping[str, type[Add | Multiply | Divide | Negate]] = {
     "negate": Negate,
 }
 ZERO = Number(Fraction(0))
+ONE = Number(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,8 @@ class Table:
     right: over all entries with the first pair of vectors, then with the next pair.
 
     Attributes:
-        entries: i, j, k and c, by rows, of which each has at least one entry.
+        entries: i, j, k and c, by rows, of which each has at least one entry. The place after the
+            last value of a vector stands for the number 1.
         vectors: Names of the values, and of what else products are of, in the same order: those of
             rows of the first argument, then those of member statements ``scale * row``.
         scaled: Of each of these statements, the place of its row in a vector.
@@ -143,15 +147,35 @@ class Table:
         """Names of all factors."""
         return frozenset(name for names in self.vectors for name in names)
 
+    def columns(self) -> dict[str, tuple[float, ...]]:
+        """The table as texts have it, by name.
+
+        These are where the entries of each row begin and where those of the last one end, places of
+        left and right factors, coefficients, and rows that are scaled.
+        """
+        counts = Counter(i for i, *_ in self.entries)
+        return {
+            "table_starts": tuple(accumulate((counts[i] for i in range(len(counts))), initial=0)),
+            "table_left": tuple(j for _, j, _, _ in self.entries),
+            "table_right": tuple(k for _, _, k, _ in self.entries),
+            "table_coefficients": tuple(float(c) for *_, c in self.entries),
+            "table_scaled": self.scaled,
+        }
+
     def sums(self) -> list[Node]:
         """The rows, written out."""
         rows: dict[int, Node] = {}
         for left, right in self.passes:
-            a, b = (tuple(map(Symbol, self.vectors[place])) for place in (left, right))
+            a, b = (self._factors(place) for place in (left, right))
+            lefts = {(c, j): Multiply(Number(c), a[j]) for _, j, _, c in self.entries}
             for i, j, k, c in self.entries:
-                term = Multiply(Multiply(Number(c), a[j]), b[k])
+                term = Multiply(lefts[c, j], b[k])
                 rows[i] = Add(rows[i], term) if i in rows else term
         return list(rows.values())
+
+    def _factors(self, vector: int) -> tuple[Node, ...]:
+        """The values of a vector, and the number 1."""
+        return (*map(Symbol, self.vectors[vector]), ONE)
 
     def products(self) -> list[tuple[str, Node]]:
         """The statements ``scale * row`` by name, vector by vector."""

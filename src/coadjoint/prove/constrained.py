@@ -147,18 +147,30 @@ class ConstrainedRates(Motion):
         """``c . x`` where x solves a block.
 
         No determinant is needed where ``c = w M``: for the energy w is eta, for the momentum along
-        a section of the distribution it is that section, and a unit vector for its basis.
+        a section of the distribution it is that section, and a unit vector for its basis. Residuals
+        of kept constraints are zero: with these the columns of A are ``A eta``.
         """
         field = self.field
         for weights in self._weights(block, direction):
             turned = (dot(weights, column) for column in zip(*block.matrix, strict=True))
-            if all(field.is_zero(x - y) for x, y in zip(turned, c, strict=True)):
+            if all(map(self._vanishes, (x - y for x, y in zip(turned, c, strict=True)))):
                 return dot(weights, block.known)
         bordered = (
             *((*row, k) for row, k in zip(block.matrix, block.known, strict=True)),
             (*c, field.zero),
         )
         return -determinant(bordered) / self._determinants[block.names[0]]
+
+    def _vanishes(self, element: Element) -> bool:
+        """Whether an element is zero, or a residual of a kept constraint up to its sign."""
+        zero = self.field.zero
+        spared = (zero, *(sign * each for each in self._residuals for sign in (1, -1)))
+        return any(self.field.is_zero(element - each) for each in spared)
+
+    @cached_property
+    def _residuals(self) -> list[Element]:
+        """The residuals of the kept constraints, in the state."""
+        return [self.close(residual) for _, residual in self.kept]
 
     @cached_property
     def _determinants(self) -> dict[str, Element]:

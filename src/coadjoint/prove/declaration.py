@@ -51,6 +51,7 @@ def kernel_context(
         reconstructed=tuple(_declare_followed(spec, each) for each in spec.reconstruction),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
+        unit_of_time=spec.units.time,
         domain=tuple(bound for bound, _ in bounds(equations)),
     )
 

@@ -8,17 +8,20 @@ solves with, and of their factors (Chaplygin 1903: the ball; Veselov and Veselov
 Jovanovic 2004; Borisov and Mamaev 2002: bodies of revolution). Kozlov (1987) shows that most
 systems with constraints have none.
 A Hamiltonian motion has the divergence of its bracket: zero where pairs are canonical (Liouville),
-and on the dual of a unimodular algebra.
+and on the dual of a unimodular algebra. Where a bracket is not degenerate, one over its Pfaffian is
+the density of Liouville's measure in any coordinates.
 Comes in: a motion. Goes out: a claim. Read next: `coadjoint.prove.densities`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import islice
 
+from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
-from coadjoint.exact.dense import determinant
+from coadjoint.exact.dense import determinant, pfaffian
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove.certificate import Verdict
@@ -60,6 +63,10 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
         statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
         yield statement, "measure", lambda: [divergence]
         return
+    examined = _of_bracket(motion)
+    if examined is not None:
+        yield examined
+        return
     numbers = random_numbers(motion)
     measure, samples = Measure(motion.at(numbers)), Samples(motion, numbers)
     coupled = max(map(len, motion.matrices), default=0)
@@ -79,6 +86,28 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
         yield refusal
     examined = _of_positions(motion, measure, samples, points) if refusal is None else None
     yield examined or _of_velocities(motion, measure, samples)
+
+
+def _of_bracket(motion: Motion) -> Examined | None:
+    """Liouville's measure; None where the motion does not keep it, as where forces act."""
+    powers = _liouville(motion)
+    return _state(motion, powers) if powers else None
+
+
+@once
+def _liouville(motion: Motion) -> Powers:
+    """One over the Pfaffian of the bracket; nothing where this is constant, or long."""
+    tensor = motion.equations.exact.poisson_tensor
+    if tensor is None or motion.equations.distribution is not None or len(tensor) > SIZE:
+        return []
+    field = motion.field
+    root = field.normal(pfaffian(tensor))
+    if not set(motion.setting.state) & field.reach(root):
+        return []
+    root = -root if leading(root) < 0 else root
+    (written,) = field.quotients(root)
+    density, exponent = (field.normal(1 / root), 1) if written.divisors else (root, -1)
+    return [(density, Fraction(exponent))] if len(field.terms(density)) <= TERMS else []
 
 
 def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -> Examined | None:
@@ -253,7 +282,9 @@ def _write(motion: Motion, powers: Powers) -> str:
 
 
 def _name(motion: Motion, factor: Element) -> str:
-    """The name of a determinant of the kernel's matrix; "" if it is none."""
+    """The name of a long density: Liouville's, or a determinant of the kernel; "" if none."""
+    if any(factor == density for density, _ in _liouville(motion)):
+        return "|1/Pf {x, x}|"
     for matrix in motion.matrices:
         whole = len(motion.fibre) + len(motion.kept)
         if len(matrix) == whole and determinant(tuple(matrix)) == factor:

@@ -10,10 +10,8 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from itertools import accumulate
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -24,23 +22,20 @@ from coadjoint.lower.program import (
     Output,
     Program,
     Statement,
-    Table,
     operation,
     walk,
 )
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.printers import WIDTH, Printer, number_text
+from coadjoint.render.printers import WIDTH, Printer
 from coadjoint.render.solvers import arrange, arrange_function, select_programs
+from coadjoint.render.tables import arrange_table, fill, tell_loops
 from coadjoint.render.targets import TARGETS
 
 #: Template of each rendered file.
 TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
     file: template for target in TARGETS.values() for file, template in target.files.items()
 }
-
-#: The files of solvers, which systems whose rates are loops do not have.
-SOLVER_FILES: Final = ("solver.c", "solver.h", "solver.py")
 
 #: Where the id is to stand; no name, unit or number has these marks.
 PLACE: Final = "<the 16 letters>"
@@ -81,7 +76,10 @@ class Function:
         outputs: Row and value of the results, those left out that are zero everywhere.
         zeros: Their rows, as lines of numbers with commas. Large Jacobians and Poisson tensors are
             mostly zero, and compilers take twice the time where each zero is a statement.
-        table: The table that it loops over, if it does; `of_member` and `outputs` are empty then.
+        passes: The vectors of each pass over the table, if it loops over one; `of_member` and
+            `outputs` are empty then.
+        vectors: How many vectors there are.
+        first: Its first row in the table of the kernel.
         scales: What the scaled values are times, in order, where it does.
     """
 
@@ -100,49 +98,10 @@ class Function:
     of_member: tuple[Statement, ...]
     outputs: tuple[tuple[int, Output], ...]
     zeros: tuple[str, ...]
-    table: Table | None
+    passes: tuple[tuple[int, int], ...]
+    vectors: int
+    first: int
     scales: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class TableText:
-    """The table of coefficients of a system as lines of numbers, each number with a comma.
-
-    Attributes:
-        starts: Where the entries of each row begin, and where those of the last one end.
-        left: Places of the left factors.
-        right: Places of the right factors.
-        coefficients: The numbers that multiply both.
-        scaled: Rows that are multiplied by scales.
-        rows: How many rows a vector has.
-        size: How many values follow from these, with the rows themselves.
-    """
-
-    starts: list[str]
-    left: list[str]
-    right: list[str]
-    coefficients: list[str]
-    scaled: list[str]
-    rows: int
-    size: int
-
-
-def arrange_table(programs: Iterable[Program]) -> TableText | None:
-    """The table that functions loop over, which is one; None where there is none."""
-    table = next((each.table for each in programs if each.table), None)
-    if table is None:
-        return None
-    counts = Counter(i for i, *_ in table.entries)
-    size = len(table.vectors[0])
-    return TableText(
-        starts=_fill(map(str, accumulate((counts[i] for i in range(len(counts))), initial=0))),
-        left=_fill(str(j) for _, j, _, _ in table.entries),
-        right=_fill(str(k) for _, _, k, _ in table.entries),
-        coefficients=_fill(number_text(c) for *_, c in table.entries),
-        scaled=_fill(map(str, table.scaled)),
-        rows=size - len(table.scaled),
-        size=size,
-    )
 
 
 def render_system(context: KernelContext) -> dict[str, str]:
@@ -178,12 +137,11 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
-    rhs = next(program for program in context.programs if program.name == "rhs")
-    templates = {f: t for f, t in TEMPLATES.items() if not (rhs.table and f in SOLVER_FILES)}
+    table, firsts = arrange_table(context.programs)
     rendered = render_templates(
-        tuple(templates.values()),
+        tuple(TEMPLATES.values()),
         {
-            **({} if rhs.table else _solver(context)),
+            **_solver(context),
             "name": context.name,
             "spec": context.spec,
             "licence": _licence(context.license),
@@ -200,9 +158,10 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 if array != "reconstructed"
             },
             "functions": [
-                _function(program, _summary(context, program)) for program in context.programs
+                _function(program, _summary(context, program), firsts.get(program.name, 0))
+                for program in context.programs
             ],
-            "table": arrange_table(context.programs),
+            "table": table,
             "called": _list_called(context.programs),
             "elementary": tuple_text(map(quote, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
@@ -214,30 +173,20 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "domain": list(map(declaration, context.domain)),
         },
     )
-    return {file: rendered[template] for file, template in templates.items()}
+    return {file: rendered[template] for file, template in TEMPLATES.items()}
 
 
 def _solver(context: KernelContext) -> dict[str, Any]:
     """What the templates of solvers read alone."""
     solved, table = select_programs(context.programs), dop853()
+    solver = arrange(solved, is_written_out=False)
     return {
-        "solver": arrange(solved),
+        "solver": replace(solver, loops=None),
+        "loops": solver.loops and tell_loops(solver.loops),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "strict": [bound.strict for bound in context.domain],
-        "dop853": {
-            each.name: _fill(map(repr, getattr(table, each.name))) for each in fields(table)
-        },
+        "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
     }
-
-
-def _fill(entries: Iterable[str]) -> list[str]:
-    """Entries of a table as lines, each with its comma; `textwrap` would take half a second."""
-    lines = [""]
-    for entry in entries:
-        if len(lines[-1]) + len(entry) + 2 > WIDTH - 8:
-            lines.append("")
-        lines[-1] += f" {entry}," if lines[-1] else f"{entry},"
-    return lines
 
 
 def _note_unproved(number: int) -> list[str]:
@@ -252,6 +201,8 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
     present = [f"{name}={name.upper()}" for name in _optional(context)]
+    if context.unit_of_time != "s":
+        present.append(f"unit_of_time={quote(context.unit_of_time)}")
     return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 
@@ -296,8 +247,8 @@ def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
     return [Row(index, name, unit) for index, (name, unit) in enumerate(named, first)]
 
 
-def _function(program: Program, summary: str) -> Function:
-    """A Program as the templates read it."""
+def _function(program: Program, summary: str, first: int) -> Function:
+    """A Program as the templates read it, with its first row in the table of the kernel."""
     names_used, table = program.names_used(), program.table
     rows = [] if table else list(enumerate(program.outputs))
     return Function(
@@ -322,7 +273,9 @@ def _function(program: Program, summary: str) -> Function:
         of_member=() if table else program.statements_at("member"),
         outputs=tuple((row, output) for row, output in rows if output.value != ZERO),
         zeros=_zeros(row for row, output in rows if output.value == ZERO),
-        table=table,
+        passes=table.passes if table else (),
+        vectors=len(table.vectors) if table else 0,
+        first=first,
         scales=tuple(map(Printer("").text, table.scales)) if table else (),
     )
 

@@ -8,14 +8,14 @@ Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.taylor`, its twin.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from itertools import islice
+from itertools import islice, pairwise
 
 from coadjoint.lower.jets import Cell, Jets, make_jets
-from coadjoint.lower.motion import ONE
 from coadjoint.lower.polynomials import product_of
 from coadjoint.lower.program import (
+    ONE,
     ZERO,
     Add,
     Call,
@@ -26,8 +26,10 @@ from coadjoint.lower.program import (
     Number,
     Program,
     Symbol,
+    Table,
     walk,
 )
+from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
 SUMS = 16
@@ -71,6 +73,42 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class LoopText:
+    """What recurrences loop over where the rates do.
+
+    Attributes:
+        table: The table of the rates.
+        stars: The products of its components.
+        scales: Names of what scaled values are times.
+    """
+
+    table: Table
+    stars: Stars
+    scales: tuple[str, ...]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """How many there are of what loops run over."""
+        return {
+            "VALUES": len(self.table.vectors[0]),
+            "ENTRIES": len(self.table.entries),
+            "STARS": len(self.stars.left),
+            "TERMS": len(self.stars.rows),
+        }
+
+    @property
+    def star_sizes(self) -> list[int]:
+        """How many products stars have."""
+        return sorted({end - start for start, end in pairwise(self.stars.starts)})
+
+    @property
+    def numbers(self) -> dict[str, tuple[float, ...]]:
+        """The tables by name."""
+        stars = {f"star_{each.name}": getattr(self.stars, each.name) for each in fields(Stars)}
+        return {**self.table.columns(), **stars}
+
+
+@dataclass(frozen=True)
 class SolverText:
     """The recurrences of a system as templates print them.
 
@@ -87,6 +125,7 @@ class SolverText:
         fixed_reads: Names that ``fixed`` reads.
         branches: Whether the rates call sqrt or log of what moves. A motion may be analytic where
             these have branch points.
+        loops: What `first`, `stages` and `rates` are printed as, where these are loops.
     """
 
     fixed: tuple[Line, ...]
@@ -100,21 +139,35 @@ class SolverText:
     reads: frozenset[str]
     fixed_reads: frozenset[str]
     branches: bool
+    loops: LoopText | None = None
 
 
-def arrange(programs: Mapping[str, Program]) -> SolverText:
+def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
     """The recurrences of the rates of a system as its templates print them.
 
     Args:
         programs: As `select_programs` has them.
+        is_written_out: Whether to write out what is printed as loops.
     """
-    jets = make_jets(programs["rates"])
+    rates = programs["rates"]
+    if rates.table is None:
+        return _arrange(programs, make_jets(rates), ())
+    stars = find_stars(rates.table)
+    jets, weights = make_looped_jets(rates, stars, is_written_out=is_written_out)
+    names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
+    lines = tuple(Line(statement.name, statement.value) for statement in weights)
+    loops = LoopText(table=rates.table, stars=stars, scales=names)
+    return replace(_arrange(programs, jets, lines), loops=loops)
+
+
+def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, ...]) -> SolverText:
+    """The lines of recurrences; weights come before them."""
     arrays = jets.kept.union(jets.state, jets.driving)
-    first = list(_first(jets, arrays))
-    stages = tuple(_stages(jets, arrays))
+    first = [*weights, *_first(jets, arrays)]
+    stages = tuple(_stages(jets, arrays, is_one_loop=bool(weights)))
     rates = tuple(
         Line(f"{name}[_k + 1]", _next(tail, arrays))
-        for name, (_, tail) in zip(jets.state, jets.rates, strict=True)
+        for name, (_, tail) in zip(jets.state, jets.rates, strict=bool(jets.rates))
     )
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
@@ -165,6 +218,8 @@ def arrange_function(name: str, program: Program) -> FunctionText:
         name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
         program: What to arrange.
     """
+    if program.table is not None:  # the template has the loops
+        return FunctionText((), frozenset())
     statements = program.statements_at("member") if name == "rates" else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
@@ -213,7 +268,7 @@ def _first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:
         divisor = _divisor(cell)
         if divisor is not None:
             yield Line(f"{cell.name}_r", Divide(ONE, _at(divisor, "0", arrays)))
-    for name, (whole, _) in zip(jets.state, jets.rates, strict=True):
+    for name, (whole, _) in zip(jets.state, jets.rates, strict=bool(jets.rates)):
         yield Line(f"{name}[1]", _at(whole, "0", arrays))
 
 
@@ -234,7 +289,7 @@ def _line(name: str, order: str, value: Node, arrays: frozenset[str]) -> Line:
     return Line(f"{name}[{order}]" if name in arrays else name, value)
 
 
-def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
+def _stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterator[Stage]:
     """The loops of an order k > 0, and the coefficients that follow from their sums.
 
     The terms of a loop are known when the order begins, whatever depends on what.
@@ -247,7 +302,7 @@ def _stages(jets: Jets, arrays: frozenset[str]) -> Iterator[Stage]:
         else:
             value = _at(cell.tail, "_k", arrays)
         lines.append(_line(cell.name, "_k", value, arrays))
-    for loop in _loops(terms):
+    for loop in [list(terms.items())] if is_one_loop else _loops(terms):
         sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
         yield Stage(tuple(Line(name, ZERO) for name, _ in loop), sums, ())
     yield Stage((), (), tuple(lines))

@@ -57,7 +57,7 @@ def to_xarray(solution: Solution) -> Any:
         axis: (axis, np.arange(size), {"units": "1"})
         for axis, size in zip(axes, batch, strict=True)
     }
-    coordinates["time"] = ("time", solution.time, {"units": "s"})
+    coordinates["time"] = ("time", solution.time, {"units": solution.unit("time")})
     variables: dict[str, Any] = {}
     for name, quantity in quantities.items():
         lead = _add_components(coordinates, name, quantity)
@@ -94,7 +94,7 @@ def _add_events(solution: Solution, variables: dict[str, Any]) -> None:
     """The table of events for readers, along an axis of its own; read back is the attribute."""
     if not solution.events:
         return
-    units = {"time": "s"} | {name: solution.unit(name) for name in list_components(solution)}
+    units = {name: solution.unit(name) for name in ("time", *list_components(solution))}
     for name, values in list_columns(solution.events).items():
         kind = np.dtype(np.str_) if name == "event" else None
         attributes = {"units": units[name]} if name in units else {}

@@ -146,9 +146,11 @@ def _read(system: System, given: Any, *, followed: bool) -> Sought:
             found=event.formula,
         )
     from coadjoint.solve.formulas import Formula  # the reader of specs, for events alone
+    from coadjoint.solve.units import check_units
 
     formula = Formula(text, list_names_of(system, followed=followed), label)
     _check_moves(system, formula, label)
+    check_units(formula, list_named(system, followed=followed), system.unit_of_time, label)
     return Sought(event, formula)
 
 
@@ -200,11 +202,16 @@ def _subtract(text: str, label: str) -> tuple[str, bool]:
     return f"{sides[0]} - ({sides[1]})", True
 
 
-def list_names_of(system: System, *, followed: bool) -> dict[str, tuple[int, ...]]:
-    """The shape of each name that an event of a System may use."""
+def list_named(system: System, *, followed: bool) -> list[Any]:
+    """The quantities that an event of a System may name."""
     tables = [system.STATE, *([system.RECONSTRUCTED] if followed else []), system.OBSERVABLES]
     tables += [system.PARAMETERS, system.INPUTS, system.TIME]
-    scope = list_scope(quantity for table in tables for quantity in table.values())
+    return [quantity for table in tables for quantity in table.values()]
+
+
+def list_names_of(system: System, *, followed: bool) -> dict[str, tuple[int, ...]]:
+    """The shape of each name that an event of a System may use."""
+    scope = list_scope(list_named(system, followed=followed))
     return scope | {name: () for name in TIME if name not in scope}
 
 

@@ -38,6 +38,7 @@ class Formula:
     Attributes:
         text: As given.
         names: The names that occur.
+        terms: The terms of the sum that it is.
 
     Raises:
         KernelArgumentError: A syntax error, an unknown name, or a value that is no scalar.
@@ -58,7 +59,7 @@ class Formula:
         self.text = text
         parts = tree.walk(self._tree)
         self.names = frozenset(p.name for p in parts if isinstance(p, tree.Name | tree.Index))
-        self._terms = tuple(_list_terms(self._tree))
+        self.terms = tuple(_list_terms(self._tree))
 
     def evaluate(self, values: Mapping[str, Array]) -> tuple[Array, Array]:
         """The value at points, and its size: the sum of the magnitudes of its terms.
@@ -71,7 +72,7 @@ class Formula:
             Two arrays, ``(P,)`` or ``(1,)`` where nothing depends on the point.
         """
         known = tree.evaluate_nodes(self._tree, lambda node, below: _value(node, below, values))
-        size = reduce(np.add, (np.abs(known[id(term)]) for term in self._terms))
+        size = reduce(np.add, (np.abs(known[id(term)]) for term in self.terms))
         return known[id(self._tree)], size
 
 

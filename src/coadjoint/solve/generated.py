@@ -45,8 +45,6 @@ def find_obstacle(system: System, inputs: Any, target: str, reconstruct: Any) ->
         target: Likewise.
         reconstruct: Likewise.
     """
-    if "jacobian_vector" in system.functions:
-        return "its rates are loops over a table, for which no solvers are generated"
     if not system._solvers.are_there:
         return "its folder was generated without them: run `coadjoint regenerate`"
     if reconstruct is not False and reconstruct is not None:

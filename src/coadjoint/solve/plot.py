@@ -221,7 +221,7 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
         axes.plot(solution.time, change, linewidth=width, label=label, **stroke)
     axes.set_yscale("log")
     _limit_time(axes, solution)
-    axes.set_xlabel("time [s]", fontsize=9)
+    axes.set_xlabel(f"time {unit_label(solution.unit('time'))}", fontsize=9)
     axes.set_ylabel("relative change", fontsize=9)
     axes.set_title("Invariants: change since the start (in parentheses: the largest)", fontsize=10)
     axes.tick_params(labelsize=8)

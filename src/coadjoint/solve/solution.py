@@ -190,7 +190,12 @@ class Solution:
         )
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity or component; ``"1"`` if dimensionless, ``""`` if not stated."""
+        """The unit of a quantity or component, or of the time.
+
+        ``"1"`` if it is dimensionless, ``""`` if the spec does not tell.
+        """
+        if name in ("t", "time"):
+            return self.system.unit_of_time
         return next(
             str(quantities.of_component(name).unit_of(name))
             for quantities, _ in self._tables

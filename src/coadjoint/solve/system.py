@@ -62,6 +62,7 @@ class System(Functions):
         RECONSTRUCTED: What follows from the motion without acting on it, in order.
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
+        unit_of_time: The unit of the time, also where the system does not depend on it.
     """
 
     def __init__(
@@ -78,6 +79,7 @@ class System(Functions):
         reconstructed: Quantities | None = None,
         inputs: Quantities | None = None,
         time: Quantities | None = None,
+        unit_of_time: str = "s",
     ) -> None:
         self.name = name
         self.folder = Path(file).parent
@@ -91,6 +93,7 @@ class System(Functions):
         self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
         self.INPUTS = Quantities() if inputs is None else inputs
         self.TIME = Quantities() if time is None else time
+        self.unit_of_time = unit_of_time
 
     # -- functions --------------------------------------------------------------------------------
 
@@ -217,9 +220,9 @@ class System(Functions):
             method: ``"taylor"``, of an order that follows from ``rtol``, ``"dop853"`` or ``"rk4"``,
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
                 `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
-                ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: where
-                rates are loops over a table, with ``reconstruct``, inputs that are a function, or
-                the target ``"python"``. `Solution.method` says which it was.
+                ``"dop853"``. Where generated solvers do not apply it is ``"scipy:DOP853"``: with
+                ``reconstruct``, inputs that are a function, or the target ``"python"``.
+                `Solution.method` says which it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of

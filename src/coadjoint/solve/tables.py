@@ -110,7 +110,7 @@ def _describe(solution: Solution) -> dict[str, Any]:
     names = solution.system.PARAMETERS.components
     return describe_run(solution) | {
         "parameters": dict(zip(names, solution.parameters.tolist(), strict=True)),
-        "units": {"time": "s", **list_components(solution)},
+        "units": {"time": solution.unit("time"), **list_components(solution)},
         "batch": list(list_batch(solution)),
         "samples": len(solution.time),
         "form": describe_form(solution),

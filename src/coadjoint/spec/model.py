@@ -25,6 +25,7 @@ from coadjoint.spec.core.components import (
     unpack,
 )
 from coadjoint.spec.core.definitions import Definition
+from coadjoint.spec.core.dimensions import KnownUnits
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
 from coadjoint.spec.sections.constraints import Constraint
@@ -161,6 +162,7 @@ class Spec:
         inputs: What drives the system from outside, in declared order.
         time: The time, if formulas name it.
         records: What tables gave that have no attribute here, by their keys.
+        units: The units of all names, as far as the spec tells them.
     """
 
     name: str
@@ -203,6 +205,7 @@ class Spec:
     inputs: tuple[Input, ...] = ()
     time: Time | None = None
     records: Mapping[str, Any] = field(default_factory=dict)
+    units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""

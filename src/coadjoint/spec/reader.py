@@ -14,6 +14,7 @@ import os
 import stat
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,8 @@ from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, scan
 from coadjoint.spec.core.reading import Naming, Reading
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.dimensions import infer_units
+from coadjoint.spec.laws import demand_laws
 from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.spatial import spatial_momenta
@@ -114,6 +117,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)
     submanifold = REDUCTION.of(reading)
+    spec = infer_units(source, spec, partial(demand_laws, submanifold=submanifold))
     return spec if submanifold is None else spec.restricted_to(submanifold)
 
 

@@ -49,6 +49,7 @@ class SolverBody:
         lines: Name and value, in order.
         orders: What is done at each order from 1 on.
         starts: Names that are made at an order and added to.
+        scales: Names of what scaled values are times, where recurrences are loops.
     """
 
     inputs: dict[str, tuple[str, int]] = field(default_factory=dict)
@@ -56,6 +57,7 @@ class SolverBody:
     lines: list[tuple[str, Node]] = field(default_factory=list)
     orders: list[tuple[str, Node] | Loop] = field(default_factory=list)
     starts: set[str] = field(default_factory=set)
+    scales: list[str] = field(default_factory=list)
 
 
 def join(left: Node, sign: str, right: Node) -> Node:

@@ -34,6 +34,7 @@ class Loops:
         tables: The parts of the table, by name.
         vectors: The first row of the state that each vector holds.
         passes: The vectors of each pass over the table.
+        first: The first row of the table that the function computes.
         body: The parameters that it takes, and statements of them.
         scales: What the scaled values are times.
     """
@@ -41,6 +42,7 @@ class Loops:
     tables: Mapping[str, Sequence[float]]
     vectors: list[int] = field(default_factory=list)
     passes: list[tuple[int, int]] = field(default_factory=list)
+    first: int = 0
     body: Body = field(default_factory=Body)
     scales: list[Node] = field(default_factory=list)
 
@@ -60,7 +62,7 @@ def unroll(loops: Loops, program: Program) -> Body:
     body.inputs |= {name: ("state", row) for row, name in enumerate(program.state)}
     try:
         vectors = [_name(loops, program, vector, body) for vector in range(len(loops.vectors))]
-        body.outputs = list(enumerate(_sums(loops, vectors)))
+        body.outputs = list(enumerate(_sums(loops, vectors, len(program.outputs))))
     except (IndexError, ValueError, TypeError) as error:
         raise failure(
             f"{program.name}: a loop reads what is not there: {error}", program.name
@@ -80,19 +82,23 @@ def _name(loops: Loops, program: Program, vector: int, body: Body) -> list[str]:
     return [*names, *known[size:]]
 
 
-def _sums(loops: Loops, vectors: Sequence[Sequence[str]]) -> list[Node]:
-    """The sums of products, row by row."""
+def _sums(loops: Loops, vectors: Sequence[Sequence[str]], count: int) -> list[Node]:
+    """The sums of products of so many rows; what follows the values of a vector is 1."""
     starts, left, right, coefficients = (
         loops.tables[name] for name in ("starts", "left", "right", "coefficients")
     )
     if not len(left) == len(right) == len(coefficients) == starts[-1] or starts[0]:
         raise ValueError(f"{len(left)}, {len(right)} and {len(coefficients)} entries")
+    if len(starts) <= loops.first + count:
+        raise ValueError(f"{count} rows from {loops.first} on")
+    values: list[tuple[Node, ...]]
+    values = [(*map(Symbol, names), Number(Fraction(1))) for names in vectors]
     rows = list[Node]()
-    for start, end in pairwise(starts):
+    for start, end in pairwise(starts[loops.first : loops.first + count + 1]):
         terms: list[Node] = [
             Multiply(
-                Multiply(_number(coefficients[entry]), Symbol(vectors[a][int(left[entry])])),
-                Symbol(vectors[b][int(right[entry])]),
+                Multiply(_number(coefficients[entry]), values[a][int(left[entry])]),
+                values[b][int(right[entry])],
             )
             for a, b in loops.passes
             for entry in range(int(start), int(end))

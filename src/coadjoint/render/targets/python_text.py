@@ -161,7 +161,7 @@ class LoopReader:
         """Whether a line is one of a function that loops."""
         shown = ast.unparse(line)
         filled = re.fullmatch(r"vector(\d+) = _fill_vector\(state\[(\d+):(\d+)\], scales\)", shown)
-        added = re.fullmatch(r"_add_products\(out, \[(.*)\]\)", shown)
+        added = re.fullmatch(r"_add_products\(out, \[(.*)\], (\d+)\)", shown)
         match line:
             case ast.Assign([ast.Name("scales")], ast.Tuple(elts=scales)):
                 self.loops.scales = list(map(self.reader.node, scales))
@@ -171,6 +171,7 @@ class LoopReader:
         elif added:
             passes = re.findall(r"\(vector(\d+), vector(\d+)\)", added[1])
             self.loops.passes = [(int(a), int(b)) for a, b in passes]
+            self.loops.first = int(added[2])
         return bool(filled or added)
 
 

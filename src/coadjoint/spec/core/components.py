@@ -140,7 +140,7 @@ class Argument(Components):
         name: As declared, e.g. ``chi``.
         shape: ``()``, ``(n,)`` or ``(n, m)``; with a form ``(n,)`` for the n entries that it keeps.
         default: One exact value per component, row by row; None if the user must give it.
-        unit: Unit text, ``"1"`` if dimensionless.
+        unit: Unit text, ``"1"`` if dimensionless; inferred where none is declared.
         doc: Free text for documents.
         form: ``"antisymmetric"`` or ``"symmetric"`` if it is such a matrix in formulas, else "".
     """
@@ -148,6 +148,6 @@ class Argument(Components):
     name: str
     shape: Shape
     default: tuple[Fraction, ...] | None = None
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
     form: str = ""

@@ -42,15 +42,20 @@ class Formula:
         text: As typed, ASCII; used in messages, JSON and documents only.
         tree: The parsed, shape-checked tree.
         shape: Shape of its value.
-        key: Dotted key in the spec, e.g. ``lagrangian.l``.
+        path: Its key in the spec, e.g. ``("lagrangian", "l")``.
         line: Line of the text in the file, counted from 1.
     """
 
     text: str
     tree: Node
     shape: Shape
-    key: str
+    path: KeyPath
     line: int
+
+    @property
+    def key(self) -> str:
+        """Its dotted key, e.g. ``lagrangian.l``."""
+        return write_key(self.path)
 
     @property
     def in_one_line(self) -> str:
@@ -170,7 +175,7 @@ def read_formula(
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
-    return Formula(text=text, tree=tree, shape=shape, key=write_key(key), line=line)
+    return Formula(text=text, tree=tree, shape=shape, path=key, line=line)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

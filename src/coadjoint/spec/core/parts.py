@@ -78,7 +78,7 @@ class ArgumentPart(Part):
     default: Numbers | None = Field(
         None, description="exact default: a number for all components, or nested lists of them"
     )
-    unit: Unit = Field("1", description="unit, such as 'kg m^2'; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 

@@ -114,7 +114,13 @@ Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LIS
 Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
 Matrix = list[list[Entry]]
 Prose = Annotated[str, AfterValidator(_is_prose)]
-Unit = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_unit)]
+_ABOUT_UNIT = (
+    "unit, such as 'kg m^2/s', or '1, m' for components with units of their own; '1' if it has "
+    "none; inferred if left out"
+)
+Unit = Annotated[
+    str, Field(max_length=UNIT_CHARACTERS, description=_ABOUT_UNIT), AfterValidator(_is_unit)
+]
 Names = Annotated[list[str], Field(min_length=1), AfterValidator(is_unique)]
 Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
 Title = Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)]

@@ -29,7 +29,7 @@ class SectionPart(Part):
         "that no constraint gives; those left out are zero",
         json_schema_extra=name_pattern(),
     )
-    unit: Unit = Field("1", description="unit of the momentum; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 
@@ -47,7 +47,7 @@ class Section:
 
     name: str
     section: Mapping[str, Formula]
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
 
     @property

@@ -26,7 +26,7 @@ class ObservablePart(TextPart):
     alone = "expression"
 
     expression: str = Field(description="a scalar, vector or matrix of variables and parameters")
-    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 
@@ -36,7 +36,7 @@ class Observable:
 
     name: str
     formula: Formula
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
 
     @property

@@ -16,16 +16,14 @@ from pydantic import Field, model_validator
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.formulas import Formula, Scope
 from coadjoint.spec.core.names import derived_names
 from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
-from coadjoint.spec.core.units import parse_unit, unit_of, unit_text
 from coadjoint.spec.core.values import Numbers, Prose, Unit, read_default
 from coadjoint.spec.sections.algebras import ALGEBRA
-from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT, ROLLING, Rolling
+from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT, ROLLING
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles
 
 
@@ -39,7 +37,7 @@ class ReconstructedPart(TextPart):
         None, description="'quaternion' for the attitude that the angular velocity turns"
     )
     default: Numbers | None = Field(None, description="where it begins; by default at zero")
-    unit: Unit = Field("1", description="unit, such as 'm'; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
     @model_validator(mode="after")
@@ -69,7 +67,7 @@ class Reconstructed:
     attitude: str = ""
     shape: Shape = ()
     default: tuple[Fraction, ...] | None = None
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
     of_rolling: bool = False
 
@@ -88,7 +86,7 @@ def read_reconstruction(
         SpecError: A default has another shape, or an attitude has nothing that turns it.
     """
     rolling = ROLLING.of(reading)
-    first = () if rolling is None else _follow_rolling(reading, rolling)
+    first = () if rolling is None else _follow_rolling()
     blank = [
         Reconstructed(name=name, rate=None, attitude=part.attitude or "", shape=_shape(part))
         for name, part in parts.items()
@@ -100,15 +98,8 @@ def read_reconstruction(
     return (*first, *(_read_one(reading, name, part, scope) for name, part in parts.items()))
 
 
-def _follow_rolling(reading: Reading, rolling: Rolling) -> tuple[Reconstructed, ...]:
+def _follow_rolling() -> tuple[Reconstructed, ...]:
     """Attitude and point of contact of a rolling body."""
-    declared = (q for q in reading.quantities if not isinstance(q, Definition))
-    units = {
-        name: parse_unit(getattr(each, "unit", ""))
-        for each in declared
-        for name in (each.name, *each.components)
-    }
-    unit = unit_text(unit_of(rolling.arm.tree, units))
     attitude = Reconstructed(
         name=ATTITUDE,
         rate=None,
@@ -118,9 +109,7 @@ def _follow_rolling(reading: Reading, rolling: Rolling) -> tuple[Reconstructed, 
         of_rolling=True,
     )
     doc = "of the point of contact on the plane"
-    contact = (
-        Reconstructed(name=name, rate=None, unit=unit, doc=doc, of_rolling=True) for name in CONTACT
-    )
+    contact = (Reconstructed(name=name, rate=None, doc=doc, of_rolling=True) for name in CONTACT)
     return (attitude, *contact)
 
 

@@ -61,7 +61,7 @@ class SymmetryPart(Part):
         None, description="the matrix whose entries are the components of the momentum map"
     )
     accept: Accept = None
-    unit: Unit = Field("1", description="unit of the momentum map; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
     @model_validator(mode="after")
@@ -103,7 +103,7 @@ class Symmetry:
     map: Formula | None = None
     side: str = "left"
     form: str = ""
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
 
     @property

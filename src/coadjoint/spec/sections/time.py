@@ -21,7 +21,7 @@ class TimePart(Part):
     """The time, for formulas that name it."""
 
     name: str = Field("t", description="its name in formulas")
-    unit: Unit = Field("s", description="unit; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 
@@ -41,7 +41,7 @@ class Time:
     default: ClassVar[None] = None
 
     name: str
-    unit: str = "s"
+    unit: str = ""
     doc: str = ""
 
     @property

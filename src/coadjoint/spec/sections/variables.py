@@ -16,7 +16,7 @@ from pydantic import Field
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
-from coadjoint.algebra.families import so_indefinite
+from coadjoint.algebra.families import so, so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
 from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
@@ -93,7 +93,7 @@ class VariablePart(Part):
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
         "components, or a list of them",
     )
-    unit: Unit = Field("1", description="unit, such as 'kg m^2/s'; '1' if dimensionless")
+    unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
 
@@ -107,7 +107,7 @@ class Variable(Components):
         shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
         block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
-        unit: Unit text of the restricted unit alphabet, ``"1"`` if dimensionless.
+        unit: Unit text, ``"1"`` if dimensionless; inferred where none is declared.
         doc: Free text for documents.
         form: One of `FORMS` if the components are the entries of a matrix, else "".
         of: The coordinate whose velocity or momentum it is; "" over an algebra.
@@ -122,7 +122,7 @@ class Variable(Components):
     shape: Shape
     block: tuple[int, ...] = ()
     representation: Representation | None = None
-    unit: str = "1"
+    unit: str = ""
     doc: str = ""
     form: str = ""
     of: str = ""
@@ -327,7 +327,8 @@ def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple
             a, b = place[i], place[j]
             sign = 1 if a < b else -1
             constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    if size > 2 and constants != dict(so_indefinite(size, 0).constants):
+    planes = so_indefinite(3, 0) if size == 3 else so(size)  # so(3) has other axes
+    if size > 2 and constants != dict(planes.constants):
         names = list_names(algebra.basis[b] for b in block)
         raise source.fault(
             key,

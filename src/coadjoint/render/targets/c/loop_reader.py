@@ -15,17 +15,19 @@ from coadjoint.render.targets.c.reader import read_expression
 from coadjoint.render.targets.loops import TABLES, Loops, unroll
 
 _HELPERS = (
-    "static inline void fill_vector( double vector[restrict VALUES][MEMBERS], "
+    "static inline void fill_vector( double vector[restrict VALUES + 1][MEMBERS], "
     "double scales[restrict VALUES - ROWS][MEMBERS], "
     "const double *restrict rows, size_t stride, size_t count) { "
     "for (size_t row = 0; row < ROWS; ++row) for (size_t n = 0; n < count; ++n) "
     "vector[row][n] = rows[row * stride + n]; "
     "for (size_t place = 0; place < VALUES - ROWS; ++place) "
     "for (size_t n = 0; n < MEMBERS; ++n) "
-    "vector[ROWS + place][n] = scales[place][n] * vector[table_scaled[place]][n]; }",
-    "static inline void add_products( size_t passes, double (*const vectors[][2])[MEMBERS], "
+    "vector[ROWS + place][n] = scales[place][n] * vector[table_scaled[place]][n]; "
+    "for (size_t n = 0; n < MEMBERS; ++n) vector[VALUES][n] = 1.0; }",
+    "static inline void add_products( size_t first, size_t rows, size_t passes, "
+    "double (*const vectors[][2])[MEMBERS], "
     "double *restrict out, size_t stride, size_t count) { "
-    "for (size_t row = 0; row < sizeof table_starts / sizeof *table_starts - 1; ++row) { "
+    "for (size_t row = first; row < first + rows; ++row) { "
     "double sum[MEMBERS]; for (size_t n = 0; n < MEMBERS; ++n) sum[n] = -0.0; "
     "for (size_t pass = 0; pass < passes; ++pass) "
     "for (size_t entry = table_starts[row]; entry < table_starts[row + 1]; ++entry) { "
@@ -33,14 +35,14 @@ _HELPERS = (
     "const double *right = vectors[pass][1][table_right[entry]]; "
     "for (size_t n = 0; n < MEMBERS; ++n) "
     "sum[n] += table_coefficients[entry] * left[n] * right[n]; } "
-    "for (size_t n = 0; n < count; ++n) out[row * stride + n] = sum[n]; } }",
+    "for (size_t n = 0; n < count; ++n) out[(row - first) * stride + n] = sum[n]; } }",
 )
 _SIZES = re.compile(r"enum \{ MEMBERS = 8, ROWS = (\d+), VALUES = (\d+) \};")
 _FUNCTION = re.compile(
     r"const size_t _row = parameters_stride \? parameters_stride : 1; "
     r"const size_t _member = parameters_stride != 0; "
     r"double _scales\[VALUES - ROWS\]\[MEMBERS\] = \{\{0\.0\}\}; "
-    r"(?P<vectors>(?:double _vector\d+\[VALUES\]\[MEMBERS\] = \{\{0\.0\}\}; )+)"
+    r"(?P<vectors>(?:double _vector\d+\[VALUES \+ 1\]\[MEMBERS\] = \{\{0\.0\}\}; )+)"
     r"double \(\*const _passes\[\]\[2\]\)\[MEMBERS\] = "
     r"\{ (?P<passes>(?:\{_vector\d+, _vector\d+\}, )+)\}; "
     r"for \(size_t _first = 0; _first < count; _first \+= MEMBERS\) \{ "
@@ -48,7 +50,8 @@ _FUNCTION = re.compile(
     r"if \(_first == 0 \|\| parameters_stride != 0\) \{ COADJOINT_INDEPENDENT "
     r"for \(size_t _n = 0; _n < _count; \+\+_n\) \{ (?P<lines>[^{}]*)\} \} "
     r"(?P<fills>(?:fill_vector\([^;]*\); )+)"
-    r"add_products\((?P<count>\d+), _passes, out \+ _first, out_stride, _count\); \}"
+    r"add_products\((?P<first>\d+), (?P<rows>\d+), (?P<count>\d+), _passes, "
+    r"out \+ _first, out_stride, _count\); \}"
 )
 _FILL = re.compile(
     r"fill_vector\(_vector(\d+), _scales, state \+ (\d+) \* ROWS \* state_stride \+ _first, "
@@ -78,11 +81,12 @@ def read_loops(text: str, function: str, program: Program) -> Body:
         raise failure(f"kernel.c: {name} fills {len(fills)} of {count} vectors", name)
     loops.vectors = [int(place) * rows for _, place in fills]
     passes = re.findall(r"_vector(\d+), _vector(\d+)", parts["passes"])
-    loops.passes = [(int(a), int(b)) for a, b in passes]
+    loops.passes, loops.first = [(int(a), int(b)) for a, b in passes], int(parts["first"])
     for line in filter(None, map(str.strip, parts["lines"].split(";"))):
         _read_line(line, loops, name)
-    if int(parts["count"]) != len(passes) or values - rows != len(loops.scales):
-        raise failure(f"kernel.c: {name} counts passes or scales wrongly", name)
+    counts = int(parts["rows"]), int(parts["count"]), values - rows
+    if counts != (len(program.outputs), len(passes), len(loops.scales)):
+        raise failure(f"kernel.c: {name} counts rows, passes or scales wrongly", name)
     return unroll(loops, program)
 
 

@@ -25,8 +25,11 @@ _FUNCTIONS = {
         for name, kind in {"rates": "LINKAGE", "domain": "static", "projection": "static"}.items()
     },
 }
+#: The functions that are loops where the rates are, which belong to the template then.
+LOOPED = ("expand", "find_rates")
 _TABLE = re.compile(
-    r"^static const (?:double|unsigned char) (nodes|starts|columns|weights)\[\] = \{\n(.*?)^\};$",
+    r"^static const (?:double|unsigned char|unsigned short) "
+    r"(nodes|starts|columns|weights|(?:table|star)_\w+)\[\] = \{\n(.*?)^\};$",
     re.DOTALL | re.MULTILINE,
 )
 _STATEMENT = re.compile(
@@ -90,7 +93,7 @@ def read_function(text: str, function: str) -> SolverBody:
 
 
 def read_tables(text: str) -> dict[str, tuple[float, ...]]:
-    """The tables of the method of order 8, by name."""
+    """The tables by name: those of the method of order 8, and what recurrences loop over."""
     tables = dict[str, tuple[float, ...]]()
     for name, inside in _TABLE.findall(text):
         if name in tables:
@@ -102,11 +105,12 @@ def read_tables(text: str) -> dict[str, tuple[float, ...]]:
     return tables
 
 
-def rest(text: str) -> str:
+def rest(text: str, *, is_looped: bool) -> str:
     """The text without what belongs to the system: bodies of its functions, and tables."""
     for function in _FUNCTIONS:
-        text = re.sub(_pattern(function), f"{function} {{}}", text, count=1, flags=re.S | re.M)
-    return _TABLE.sub(r"\1 {}", text, count=4)
+        if not (is_looped and function in LOOPED):
+            text = re.sub(_pattern(function), f"{function} {{}}", text, count=1, flags=re.S | re.M)
+    return _TABLE.sub(r"\1 {}", text)
 
 
 def _pattern(function: str) -> str:

@@ -19,11 +19,12 @@ from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, 
 HELPERS = """
 def _fill_vector(rows, scales):
     scaled = [scale * rows[place] for scale, place in zip(scales, TABLE_SCALED, strict=True)]
-    return np.array([*rows, *scaled])
+    return np.array([*rows, *scaled, np.ones_like(rows[0])])
 
-def _add_products(out, passes):
+def _add_products(out, passes, first):
     out[...] = -0.0
-    starts, coefficients = np.array(TABLE_STARTS), np.array(TABLE_COEFFICIENTS)
+    starts = np.array(TABLE_STARTS[first : first + len(out) + 1])
+    coefficients = np.array(TABLE_COEFFICIENTS)
     lefts, rights = np.array(TABLE_LEFT), np.array(TABLE_RIGHT)
     for left, right in passes:
         for place in range(np.diff(starts).max()):

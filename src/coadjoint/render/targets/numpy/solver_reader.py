@@ -12,12 +12,18 @@ import re
 from collections.abc import Iterator
 
 from coadjoint.lower.program import Node, Symbol
-from coadjoint.render.targets.body import Loop, SolverBody
+from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.python_text import Reader
 
 FILE = "solver.py"
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
 _BODY = re.compile(r"^    _parts = .*?^    return path$", re.DOTALL | re.MULTILINE)
+#: What names the scales of a table and hands them to loops, and what stands before it.
+_LOOPED = re.compile(
+    r"^    # of the parameters alone\n.*?^    _scales = \([^()]*\)$",
+    re.DOTALL | re.MULTILINE,
+)
+_TABLE = re.compile(r"^((?:TABLE|STAR)_\w+) = \(\n(.*?)^\)$", re.DOTALL | re.MULTILINE)
 _INDEX = re.compile(r"\d+|_k|_m|_k \+ 1|_k - _m")
 #: Lines that are the same in all systems; those about the path say what a row of the state is.
 _FIXED = (
@@ -36,8 +42,8 @@ _ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
 _TERMS = "range(1, _k)"
 
 
-def read_expand(text: str) -> SolverBody:
-    """What ``expand`` does.
+def read_expand(text: str, *, is_looped: bool = False) -> SolverBody:
+    """What ``expand`` does, before it calls loops if it does.
 
     Raises:
         CrossCheckError: It has a line that no template prints.
@@ -47,13 +53,28 @@ def read_expand(text: str) -> SolverBody:
     function = functions.get("expand")
     if function is None or [each.arg for each in function.args.args] != _ARGUMENTS:
         raise reading.refusal(f"there is no function expand of {', '.join(_ARGUMENTS)}")
-    reading.read_body(function.body)
+    if is_looped:
+        reading.read_scales(function.body)
+    else:
+        reading.read_body(function.body)
     return reading.body
 
 
-def rest(text: str) -> str:
-    """The text without the lines of ``expand``."""
-    return _BODY.sub("", text, count=1)
+def read_tables(text: str) -> dict[str, tuple[float, ...]]:
+    """What recurrences loop over, by name in small letters."""
+    tables = dict[str, tuple[float, ...]]()
+    for name, inside in _TABLE.findall(text):
+        try:
+            tables[name.lower()] = ast.literal_eval(f"({inside})")
+        except (SyntaxError, ValueError) as error:
+            raise failure(f"{FILE}: the table {name}: {error}", name) from error
+    return tables
+
+
+def rest(text: str, *, is_looped: bool) -> str:
+    """The text without the lines of ``expand``, and without tables."""
+    body = _LOOPED if is_looped else _BODY
+    return _TABLE.sub(r"\1 = ()", body.sub("", text, count=1))
 
 
 def _is_allowed(item: ast.stmt) -> bool:
@@ -61,8 +82,10 @@ def _is_allowed(item: ast.stmt) -> bool:
     match item:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
-        case ast.Assign(targets=[ast.Name(id="ID" | "BRANCHES")], value=ast.Constant()):
+        case ast.Assign(targets=[ast.Name(id="ID" | "BRANCHES" | "MEMBERS")], value=ast.Constant()):
             return True
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
+            return name.startswith(("TABLE_", "STAR_"))
     return False
 
 
@@ -105,6 +128,21 @@ class _Reading(Reader):
                 self.body.orders += self._read_orders(body)
             case _:
                 raise self.refusal("is no loop over orders", last)
+
+    def read_scales(self, lines: list[ast.stmt]) -> None:
+        """Lines of the parameters, and the scales that loops begin with."""
+        docs, *inside, scales, returned = lines
+        wanted = "return _expand_products(state, _scales, order)"
+        if not isinstance(docs, ast.Expr) or ast.unparse(returned) != wanted:
+            raise self.refusal("does not hand scales to the loops", returned)
+        for line in inside:
+            if not self._read_setup(ast.unparse(line), line):
+                self.body.lines.append(self._assignment(line))
+        match scales:
+            case ast.Assign([ast.Name("_scales")], ast.Tuple(elts=names)):
+                self.body.scales = [ast.unparse(name) for name in names]
+            case _:
+                raise self.refusal("does not name scales", scales)
 
     def _read_setup(self, text: str, line: ast.stmt) -> bool:
         """Whether a line names something that is read."""

@@ -19,13 +19,13 @@ from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, 
 HELPERS = """
 def _fill_vector(rows, scales):
     scaled = [scale * rows[place] for scale, place in zip(scales, TABLE_SCALED, strict=True)]
-    return [*rows, *scaled]
+    return [*rows, *scaled, 1.0]
 
-def _add_products(out, passes):
+def _add_products(out, passes, first):
     for row in range(len(out)):
         total = -0.0
         for left, right in passes:
-            for entry in range(TABLE_STARTS[row], TABLE_STARTS[row + 1]):
+            for entry in range(TABLE_STARTS[first + row], TABLE_STARTS[first + row + 1]):
                 factors = left[TABLE_LEFT[entry]], right[TABLE_RIGHT[entry]]
                 total += TABLE_COEFFICIENTS[entry] * factors[0] * factors[1]
         out[row] = total
