@@ -83,8 +83,16 @@ class Surroundings:
 
     def list_rows(self, formula: Formula) -> Places:
         """The rows of the state that a formula depends on."""
+        if not self.is_plain(formula):
+            return np.arange(self.total)
         found, size = formula.evaluate(self.find_values(formula.names, self.name_all()))
         return np.array(sorted(list_components(found[0]) | list_components(size[0])), np.intp)
+
+    def is_plain(self, formula: Formula) -> bool:
+        """Whether no observable that a formula names is computed by loops over a table."""
+        observed = self.system.OBSERVABLES
+        names = {*observed, *observed.components}
+        return "jacobian_vector" not in self.system.functions or not names & formula.names
 
     def name_all(self) -> Columns:
         """A term for all that a formula may read."""
@@ -286,7 +294,8 @@ def make_function(sought: Sought, around: Surroundings, steps: Steps) -> Functio
 
 def enclose(sought: Sought, around: Surroundings, steps: Steps) -> Enclosed | None:
     """The left side of an event minus the right side over steps; None where nothing is known."""
-    if around.driven is not None and not around.driven.are_lines:
+    curved = around.driven is not None and not around.driven.are_lines
+    if curved or not around.is_plain(sought.formula):
         return None
     states: dict[int, Enclosure] = {}
     for row in around.list_rows(sought.formula).tolist():

@@ -127,6 +127,7 @@ def write_terms(sought: Sequence[Sought], around: Surroundings) -> NDArray[np.vo
     """
     moved = "projection" in around.system.functions
     curved = around.driven is not None and not around.driven.are_lines
+    curved |= not all(around.is_plain(each.formula) for each in sought)
     if not sought or len(sought) > SOUGHT_MOST or moved or curved or around.followed:
         return None
     listed: dict[int, tuple[int, Term]] = {}
