@@ -139,3 +139,49 @@ def test_smooth_roots_cost_no_step(tmp_path):
     assert (a.status == "OK").all()
     assert a.rejected.max() == 0
     assert np.abs(a.state[0, 0] - np.sin(a.time)).max() < 1e-8
+
+
+RUNGE_KUTTA = [
+    {"method": "dop853"},
+    {"method": "dop853", "rtol": 1e-3, "atol": 1e-5},
+    {"method": "dop853", "step": 0.5},
+    {"method": "dop853", "step": 0.03},
+    {"method": "rk4", "step": 0.3},
+]
+
+
+@pytest.fixture(scope="module")
+def tank(tmp_path_factory):
+    """``dy/dt = -sqrt(y)``: it is empty at 2 sqrt(y(0))."""
+    return build(EMPTYING, tmp_path_factory.mktemp("tank"))
+
+
+def empty(tank, **options):
+    """The runs of tanks of many depths: some steps end where the rates are not real."""
+    start = np.linspace(0.05, 2.2, 431)[np.newaxis] ** 2
+    return tank.simulate(start, (0, 5), samples=6, **options), 2 * np.sqrt(start[0])
+
+
+@pytest.mark.parametrize("options", RUNGE_KUTTA, ids=str)
+def test_no_step_ends_beyond_a_branch_point(tank, options):
+    """The last good state has rates, is in time, and is the same for both targets to the bit."""
+    found, ends = empty(tank, **options)
+    assert {*found.status} <= {"NONFINITE", "STEP_UNDERFLOW"}
+    assert (found.course.last >= 0).all()
+    # an error of the depth moves the end by its root
+    late = 0.1 * options["step"] if "step" in options else 3 * options.get("rtol", 1e-10) ** 0.5
+    assert (found.time_reached - ends).max() < late
+    early = 2 * options["step"] if "step" in options else late
+    assert (found.time_reached > ends - early - 1e-9).all()
+    other, _ = empty(tank, target="numpy", **options)
+    for name in ("state", "time_reached", "steps", "rejected"):
+        assert getattr(found, name).tobytes() == getattr(other, name).tobytes()
+    assert found.course.last.tobytes() == other.course.last.tobytes()
+
+
+@pytest.mark.parametrize("options", RUNGE_KUTTA[1:4], ids=str)
+def test_without_a_look_at_the_end_they_go_beyond(tank, monkeypatch, options):
+    """Spoiled: a step may end where the rates are not finite, with a depth below zero."""
+    monkeypatch.setattr("coadjoint.solve.steps._check_end", lambda rates, lanes, h, state: state)
+    found, _ = empty(tank, target="numpy", **options)
+    assert (found.course.last < 0).any()

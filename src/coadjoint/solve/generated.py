@@ -16,15 +16,14 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense_output import make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
-from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.starts import check_starts
+from coadjoint.solve.surroundings import Driven, Surroundings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,8 +77,7 @@ def simulate(system: System, request: Request) -> Solution:
         if request.progress is True:
             told = stack.enter_context(progress_bar())
         threads = request.threads or count_threads()
-        watch = None if recording is None else recording.look
-        march(stepper, run, request.start, threads, told, checkpoint, watch)
+        march(stepper, run, request.start, threads, told, checkpoint, recording)
     if recording is not None:
         recording.finish()
     course = Course(
@@ -116,7 +114,7 @@ def _make_recording(
             "steps. Expected one or the other.",
             found=str(request.checkpoint),
         )
-    surroundings = Surroundings(system, run.parameters, make_driving(signal))
+    surroundings = Surroundings(system, run.parameters, None if signal is None else Driven(signal))
     return Recording(run, request.events, surroundings, keeps=request.dense)
 
 

@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from coadjoint.solve.crossings import Crossings, Watch, join
-from coadjoint.solve.events import Sought, Surroundings, find_bounds, make_function
+from coadjoint.solve.crossings import EPS, Crossings, Watch, join
 from coadjoint.solve.occurrences import Events, Occurrences
+from coadjoint.solve.surroundings import enclose, make_function
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
+    from coadjoint.solve.surroundings import Surroundings
     from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
@@ -84,8 +86,8 @@ class Lookout:
         endings: list[Ending] = []
         for place, (sought, watch) in enumerate(zip(self.sought, self._watches, strict=True)):
             function = make_function(sought, self.surroundings, steps)
-            bounds = find_bounds(sought, self.surroundings, steps)
-            endings += self._add(place, watch.scan(function, steps, bounds))
+            known = enclose(sought, self.surroundings, steps)
+            endings += self._add(place, watch.scan(function, steps, known))
         return self._end(endings)
 
     def finish(self, members: Iterable[int]) -> list[Ending]:
@@ -143,7 +145,10 @@ class Lookout:
         """The crossings of an event up to the ends of trajectories, and where it is undefined."""
         size = self.surroundings.system.STATE.size + self.surroundings.followed
         whole = join(self._lots[place], size)
-        kept = whole.take(whole.time <= self.ends[whole.member])
+        ends = self.ends[whole.member]
+        # of two at one time either may end a trajectory: the other is not lost by its last digit
+        kept = whole.take(whole.time <= ends + 8 * EPS * np.abs(whole.time))
+        kept.time = np.minimum(kept.time, self.ends[kept.member])
         return kept, self._watches[place].undefined
 
 
@@ -160,8 +165,8 @@ def list_occurrences(lookout: Lookout, batch: tuple[int, ...]) -> Events:
         whole, undefined = lookout.collect(place)
         shared = around.parameters.ndim == 1
         inputs = None
-        if around.driving is not None:
-            inputs = around.driving(whole.member, whole.time, whole.time)
+        if around.driven is not None:
+            inputs = around.driven(whole.member, whole.time, whole.time)
         found[sought.event.name] = Occurrences(
             event=sought.event,
             system=around.system,

@@ -18,10 +18,10 @@ from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.costs import SHARE, find_rounding
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense_output import Trail, make_driving
+from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
-from coadjoint.solve.events import Surroundings, read_events
+from coadjoint.solve.events import read_events
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.occurrences import Events
@@ -42,6 +42,7 @@ from coadjoint.solve.request import (
     prefers_dop853,
 )
 from coadjoint.solve.solution import Solution
+from coadjoint.solve.surroundings import Driven, Surroundings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -188,7 +189,8 @@ def _make_trail(
     system: System, parameters: Array, driving: Driving, request: Request, followed: int
 ) -> Trail:
     """Who looks at the steps."""
-    surroundings = Surroundings(system, parameters, make_driving(driving.signal), followed)
+    driven = None if driving.signal is None else Driven(driving.signal)
+    surroundings = Surroundings(system, parameters, driven, followed)
     lookout = None
     if request.events:
         lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 1)

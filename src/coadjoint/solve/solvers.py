@@ -201,10 +201,9 @@ class NumpyStepper:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
         self._rates = partial(self._evaluate, "rhs", system.STATE.size)
-        if choice.name == "taylor":
-            module = KernelModule(system, "solver.py")
-            self._expansion = module.function("expand")
-            self._branches = bool(module.value("BRANCHES"))
+        module = KernelModule(system, "solver.py")
+        self._expansion = module.function("expand")
+        self._branches = bool(module.value("BRANCHES"))
         self._limits = Limits(
             domain=partial(self._evaluate, "domain", len(system.DOMAIN)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
@@ -238,8 +237,10 @@ class NumpyStepper:
                 branches=self._branches,
             )
         if self._choice.name == "dop853":
-            return DormandPrince8(self._rates, run.rtol, run.atol, run.size)
-        return RungeKutta4(self._rates, run.size)
+            return DormandPrince8(
+                self._rates, run.rtol, run.atol, run.size, branches=self._branches
+            )
+        return RungeKutta4(self._rates, run.size, branches=self._branches)
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
