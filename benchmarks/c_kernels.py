@@ -341,7 +341,9 @@ def measure(names: Sequence[str] = tuple(SYSTEMS)) -> list[Figure]:
             figures += compare(name, taken[name])
             for each in figures[-8:]:
                 print(f"{each.what}: {each.measured} (target {each.target})", file=sys.stderr)
-    setting = {"what": f"rates of {MEMBERS} members", "rounds": ROUNDS, "options": list(FUSED)}
+    options = {f"hand {n}": " ".join(flags) for n, flags in enumerate(FUSED)}
+    options |= {f"unfused {n}": " ".join(flags) for n, flags in enumerate(UNFUSED)}
+    setting = {"what": f"rates of {MEMBERS} members", "rounds": ROUNDS, **options}
     write("c_kernels", setting, (), figures, [spread_table(taken)])
     return figures
 

@@ -28,7 +28,8 @@ from results import Point, write
 
 from coadjoint.cli.arguments import load_system
 from coadjoint.errors import CoadjointError
-from coadjoint.solve.choices import Choice, choose_order
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.costs import choose_order
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.solvers import Stepper, load
 
@@ -55,7 +56,7 @@ TARGETS: Mapping[str, Sequence[float]] = {
 OTHERS = {"heyoka's ensemble": 10, "SciPy, stacked": 65, "SciPy, a loop": 3000}
 TOLERANCES = {
     "taylor": (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16),
-    "dop853": (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11),
+    "dop853": (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15),
 }
 MEMBERS, SLOW_MEMBERS, ROUNDS = 512, 32, 5
 
@@ -274,6 +275,7 @@ def measure(names: Sequence[str] = tuple(SYSTEMS)) -> list[Figure]:
         figures = compare(name, points)
         end, parameters = SYSTEMS[name]
         setting = {"members": MEMBERS, "rounds": ROUNDS, "end": end, "parameters": parameters}
+        setting |= {"build": "c-fast"}
         write(f"ensembles_{name}", {**setting, "reference": note}, points, figures)
         found += figures
     return found

@@ -117,6 +117,7 @@ def measure(names: Sequence[str] = NAMES) -> list[Figure]:
         figures = compare(name, points)
         end, parameters = SYSTEMS[name]
         setting = {"members": MEMBERS, "rounds": ROUNDS, "end": end, "parameters": parameters}
+        setting |= {"build": "c-fast"}
         write(f"ensembles_jax_{name}", {**setting, "reference": note}, points, figures)
         found += figures
     return found

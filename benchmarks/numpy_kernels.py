@@ -83,14 +83,14 @@ def measure() -> list[Figure]:
     for name in FEW_SYSTEMS:
         for members in (1, 1000):
             taken = contest_of_few(name, members)
-            rows.append([f"{name}, N = {members}", *_cells(taken)])
+            rows.append([f"{name}, N = {members}", *_cells(taken, 1e-6, "us")])
             ratio = taken["lambdify"].median / taken["generated"].median
             measured = f"{ratio:.2f} ({taken['generated'].median * 1e6:.1f} us)"
             what = f"{name}: NumPy rhs, N = {members}, speed against lambdify(cse) with numbers"
             figures.append(Figure(what, ">= 1", measured, ratio >= 1.0))
     for name in SYSTEMS:
         taken = contest(name)
-        rows.append([f"{name}, N = 1e6", *_cells(taken)])
+        rows.append([f"{name}, N = 1e6", *_cells(taken, 1e-3, "ms")])
         ours = taken["generated"].median
         ratio = taken["lambdify"].median / ours
         what = f"{name}: NumPy rhs, N = 1e6, speed against lambdify(cse=True)"
@@ -99,15 +99,15 @@ def measure() -> list[Figure]:
         against = f"{taken['numba'].median / ours:.2f}" if "numba" in taken else "not installed"
         figures.append(Figure(peer, "none", against))
     columns = ["", "generated", "lambdify", "numba"]
-    table = Table("Microseconds of a call: median, fastest and slowest round", columns, rows)
+    table = Table("Time of a call: median, fastest and slowest round", columns, rows)
     write("numpy_kernels", {"what": "rates by NumPy kernels"}, (), figures, [table])
     return figures
 
 
-def _cells(taken: dict[str, Spread]) -> list[str]:
-    """Times by competitor."""
+def _cells(taken: dict[str, Spread], unit: float, name: str) -> list[str]:
+    """Times by competitor, in a unit of so many seconds."""
     competitors = ("generated", "lambdify", "numba")
-    return [taken[who].text(1e-6, "") if who in taken else "" for who in competitors]
+    return [taken[who].text(unit, name) if who in taken else "" for who in competitors]
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ def markdown(
         times = " | ".join(f"{each:.2f}" for each in point.microseconds)
         ends = f"{point.error:.1e} | {point.worst:.1e}"
         lines.append(f"| {point.who} | {own} | {point.order} | {times} | {ends} |")
-    lines += ["", "| figure | target | measured | |", "|---|---|---|---|"]
+    lines += [""] * bool(points) + ["| figure | target | measured | |", "|---|---|---|---|"]
     lines += [f"| {f.what} | {f.target} | {f.measured} | {VERDICTS[f.met]} |" for f in figures]
     for table in tables:
         lines += ["", f"## {table.title}", "", f"| {' | '.join(table.columns)} |"]

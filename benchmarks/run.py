@@ -135,6 +135,7 @@ if __name__ == "__main__":
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         measure(sys.argv[3], Path(sys.argv[2]))
         sys.exit()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C does
     try:
         sys.exit(main(tuple(sys.argv[1:]) or BENCHMARKS))
     except KeyboardInterrupt:

@@ -127,7 +127,7 @@ def measure_threads() -> list[Figure]:
 def measure() -> list[Figure]:
     """All figures; files are written."""
     found = [*measure_long(), *measure_fixed(), *measure_threads()]
-    write("trajectories", {"system": NAME, "rounds": ROUNDS}, (), found)
+    write("trajectories", {"system": NAME, "rounds": ROUNDS, "build": "c-fast"}, (), found)
     return found
 
 

@@ -42,8 +42,8 @@ def _node(tree: ast.expr, text: str) -> Node:
             return Number(Fraction(ast.get_source_segment(text, tree)))
         case ast.UnaryOp(operand=operand):
             return Negate(_node(operand, text))
-        case ast.Call(func=ast.Name(id=function), args=[argument]):
-            return Call(function, _node(argument, text))
+        case ast.Call(func=ast.Name(id=function), args=arguments):
+            return Call(function, *(_node(argument, text) for argument in arguments))
         case ast.BinOp(left=left, op=ast.Sub(), right=right):
             return Add(_node(left, text), Negate(_node(right, text)))
         case ast.BinOp(left=left, op=operator, right=right):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy
 
 from coadjoint.cli.arguments import load_system
 
@@ -135,3 +136,39 @@ def test_times_are_read_between_points_of_the_curve(ensembles):
     assert ensembles.time_at(points, 1e-6) == pytest.approx(2.0)
     assert ensembles.time_at(points, 1e-2) == 1.0
     assert ensembles.time_at(points, 1e-9) is None
+
+
+@pytest.fixture
+def benchmark_run(monkeypatch):
+    """The script that runs all benchmarks."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return import_module("run")
+
+
+def test_a_benchmark_that_fails_is_a_line_of_the_table(benchmark_run, capfd):
+    """Others go on; the line has the exit status, and counts as missed."""
+    (figure,) = benchmark_run.run("nothing_of_this_name")
+    assert figure.met is False
+    assert "exit status 1" in figure.measured
+    assert "No module named 'nothing_of_this_name'" in capfd.readouterr().err
+
+
+def test_names_of_benchmarks_are_checked_first(benchmark_run, capsys):
+    """A name that is none is told with those that there are, each of which is a script."""
+    assert benchmark_run.main(("rolling", "roling")) == 2
+    told = capsys.readouterr().err
+    assert "unknown: roling; expected" in told
+    for name in benchmark_run.BENCHMARKS:
+        assert name in told
+        assert (BENCHMARKS / f"{name}.py").exists()
+
+
+def test_operations_of_peers_are_those_that_move(monkeypatch):
+    """What rests on parameters alone is left out, and a product that is shared counts once."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    operations = import_module("operations")
+    x, y, p, q, a, b, c = sympy.symbols("x y p q a b c")
+    lines = [(a, p * q), (b, x * y + a), (c, x * y * p + b**2)]
+    # x*y; its sum with a; x*y*p, b*b and their sum
+    assert operations.count(lines, {x, y}, sympy.cse) == 5
+    assert operations.count(lines, {x, y, p}, sympy.cse) == 6

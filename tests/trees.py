@@ -29,7 +29,10 @@ def trees(functions=FUNCTIONS):
             st.builds(Multiply, inner, inner),
             st.builds(Divide, inner, inner),
             st.builds(Negate, inner),
-            st.builds(Call, st.sampled_from(functions), inner),
+            st.builds(Call, st.sampled_from([f for f in functions if f != "atan2"]), inner),
+            st.builds(Call, st.sampled_from(["atan2"]), inner, inner)
+            if "atan2" in functions
+            else st.builds(Negate, inner),
         )
 
     return st.recursive(leaves, grown, max_leaves=40)

@@ -26,6 +26,17 @@ def test_events_are_shown_in_a_table(run):
     assert "status: OK" in result.stdout
 
 
+def test_the_table_shows_what_events_name(run):
+    """The place of a sleigh is reconstructed, and the table of its state has it where x is 1."""
+    result = run("simulate", "chaplygin_sleigh", "--events", "x = 0.2", "--time", "5")
+    head, row = (
+        next(line.split() for line in result.stdout.splitlines() if word in line.split())
+        for word in ("event", "rises")
+    )
+    assert head[-3:] == ["v", "omega", "x"]
+    assert float(row[-1]) == 0.2
+
+
 def test_an_event_ends_the_run(run):
     """With status 0; without any event the status is 1, and the output says so."""
     result = run(*BODY, "--events", "Pi2 = 0", "--until-event", "--json")
@@ -79,10 +90,18 @@ def test_events_of_members_are_counted_for_each(run):
         (("--events", "energy = 1"), "the motion conserves energy"),
         (("--events", "Pi1", "--events-csv", "no/e.csv"), "no"),
         (("--events", "Pi1", "--section", "e.xyz"), ".xyz"),
+        (
+            ("--events", "Pi1", "--section", "e.png", "--section-axes", "Pi1,Pj"),
+            "'Pj' is not known",
+        ),
+        (("--events", "Pi1", "--section", "e.png", "--section-axes", "Pi1,Pi"), "3 components"),
+        (("--events", "Pi1", "--section", "e.png", "--section-axes", "Pi1"), "names of two"),
     ],
 )
 def test_wrong_options_of_events_are_refused(run, words, offending):
     """With status 2, before anything is computed."""
+    if "--section" in words:
+        pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
     result = run(*BODY, *words)
     assert result.exit_code == 2
     assert offending in result.stderr

@@ -1,14 +1,17 @@
 """The ladder of solvers: good ones pass, and each kind of spoiled one is caught by its rung."""
 
 from dataclasses import replace
+from decimal import Decimal
 from functools import cache
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from coadjoint.crosscheck import solver_steps
+from coadjoint.crosscheck import solver_exact, solver_steps
+from coadjoint.crosscheck.oracle import Bounded
 from coadjoint.crosscheck.recurrences import check_recurrences, draw_points
-from coadjoint.crosscheck.solver_exact import Solvers
+from coadjoint.crosscheck.solver_exact import ExactStep, Solvers
 from coadjoint.crosscheck.solver_objects import (
     NumpySolver,
     compile_solver,
@@ -450,3 +453,15 @@ def test_without_a_compiler_numpy_is_checked_alone():
     assert figures.choices == 3
     assert figures.equal == figures.together == {}
     assert figures.coefficients == 84
+
+
+def test_no_step_beyond_the_largest_double_is_compared(monkeypatch):
+    """Of two members the first one ends at 1e400, which no double holds."""
+    one, huge = (Bounded(Decimal(x), Decimal(x)) for x in ("1", "1e400"))
+    steps = iter(ExactStep([one], [end], 1) for end in (huge, one))
+    monkeypatch.setattr(solver_exact, "_exact_step", lambda *_: next(steps))
+    monkeypatch.setattr(solver_exact, "find_point", lambda *_: {})
+    solvers = SimpleNamespace(subject=SimpleNamespace(programs={}))
+    samples = np.array([solver_exact.START + 0.5, solver_exact.START + 1])
+    found = solver_exact.list_exact_steps(solvers, "dop853", SimpleNamespace(size=2), samples)
+    assert [member for member, _ in found] == [1]

@@ -12,7 +12,8 @@ from coadjoint.exact import Condition, Field, Region
 from coadjoint.exact.relations import relations_of
 
 NAMES = ("a", "b", "x", "y", "q")
-FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan")
+FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "sign")
+FUNCTIONS += ("asin", "acos", "atan", "atan2")
 
 #: Identities that hold at every real point where both sides are defined.
 ZEROS = [
@@ -60,6 +61,30 @@ ZEROS = [
     "exp(log(x)) - x",
     "exp(2*log(x) + y) - x**2*exp(y)",
     "exp(log(x)/2) - sqrt(x)",
+    "exp(log(x)*(y + 1)) - x*exp(log(x)*y)",
+    "exp(log(x)*9/4) - x**2*exp(log(x)/4)",
+    "sinh(2*x) - 2*sinh(x)*cosh(x)",
+    "cosh(x + y) - cosh(x)*cosh(y) - sinh(x)*sinh(y)",
+    "cosh(x) + sinh(x) - exp(x)",
+    "tanh(x)*cosh(x) - sinh(x)",
+    "tanh(-x) + tanh(x)",
+    "sin(asin(x)) - x",
+    "cos(asin(x)) - sqrt(1 - x**2)",
+    "sin(acos(x)) - sqrt(1 - x**2)",
+    "tan(atan(x)) - x",
+    "sin(atan2(y, x))*sqrt(x**2 + y**2) - y",
+    "cos(atan2(y, x))*sqrt(x**2 + y**2) - x",
+    "sign(x)**2 - 1",
+    "x*sign(x) - sqrt(x**2)",
+    "sign(x*y) - sign(x)*sign(y)",
+    "sign(-x/y**2) + sign(x)",
+    "sign(x**3/y) - sign(x)*sign(y)",
+    "sign(x**2 + 1) - 1",
+    "cos(8*atan(number(1))/7) + cos(16*atan(number(1))/7) + cos(24*atan(number(1))/7)"
+    " + 1/number(2)",
+    "sin(x + 2*atan(number(1))) - cos(x)",
+    "sin(4*atan(number(1))/3)**2 - 3/number(4)",
+    "8*cos(4*atan(number(1))/9)**3 - 6*cos(4*atan(number(1))/9) - 1",
 ]
 
 #: What looks like them and is not zero.
@@ -78,13 +103,22 @@ OTHERS = [
     "sqrt(sin(q)**2) - sin(q)",
     "exp(log(x**2)/2) - x",
     "log(x*y) - log(x)",
+    "cosh(x) - exp(x)",
+    "tanh(x) - sinh(x)",
+    "asin(sin(x)) - x",
+    "atan2(y, x) - atan(y/x)",
+    "sign(x) - 1",
+    "sign(x/y**2) - sign(x*y)",
+    "sign(x + y) - sign(x)",
+    "exp(log(x)*(y + 1)) - exp(log(x)*y)",
+    "cos(8*atan(number(1))/7) - 5/number(8)",
 ]
 
 
 def written(field, text):
     """An element from Python text, with the functions of the field."""
     names = {name: field[name] for name in NAMES} | {"number": field.number}
-    calls = {f: lambda u, f=f: field.call(f, field.zero + u) for f in FUNCTIONS}
+    calls = {f: lambda *u, f=f: field.call(f, *(field.zero + e for e in u)) for f in FUNCTIONS}
     return eval(text, {"__builtins__": {}}, names | calls)
 
 
@@ -115,10 +149,11 @@ def test_identities_hold_in_numbers(text):
 def real(function):
     """A real function of mpmath; a ValueError outside its domain."""
 
-    def call(x):
-        if function in ("sqrt", "log") and x <= 0:
+    def call(x, *other):
+        is_outside = function in ("sqrt", "log") and x <= 0
+        if is_outside or (function in ("asin", "acos") and abs(x) >= 1):
             raise ValueError(x)
-        return getattr(mpmath, function)(x)
+        return getattr(mpmath, function)(x, *other)
 
     return call
 

@@ -161,8 +161,10 @@ def test_energy_and_casimirs_are_conserved(name, route):
     if first.spec.is_driven:  # what survives is a claim; a double bracket keeps all Casimirs
         metric = first.spec.relaxation
         kept = casimirs_of(first) if metric is not None and metric.S is None else []
-    else:  # of the bracket alone, where the energy depends on time
-        kept = [*([] if first.setting.time else [first.energy]), *casimirs_of(first)]
+    else:  # of the bracket alone, where the energy depends on time or constraints do work
+        constraints = first.distribution
+        works = first.setting.time or (constraints is not None and not constraints.is_linear)
+        kept = [*([] if works else [first.energy]), *casimirs_of(first)]
     assert None not in kept
     for function in kept:
         check_conserved(gradient_of(first, function, solved(first, point)), rates)

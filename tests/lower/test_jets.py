@@ -155,7 +155,7 @@ def test_time_and_inputs_are_lines():
 def test_a_sine_has_its_cosine():
     """Each of the two is the partner of the other, also where the Program calls one alone."""
     cells = make_jets(rates("y x", "sin(x); 1")).cells
-    partners = {cell.name: cell.partner for cell in cells}
+    partners = {cell.name: cell.factors[0][0] for cell in cells}
     assert len(partners) == 2
     assert all(partners[partners[name]] == name for name in partners)
 

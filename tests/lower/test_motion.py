@@ -95,7 +95,7 @@ def value_of(plan, values, call):
             case Quotient(above=above, below=below):
                 known[name] = (known[above] if above else Fraction(1)) / known[below]
             case Function(name=function, of=argument):
-                known[name] = call(function, known[argument])
+                known[name] = call(function, *(known[each] for each in argument))
             case _:
                 known[name] = total(meaning)
     return [total(rate) for rate in plan.rates]

@@ -82,7 +82,7 @@ def test_products_of_momenta_stay_where_they_are_cheaper(name):
 def test_definitions_that_cancel_are_written_out(name, most, gone):
     """Rates take fewer operations without them, and are the same function."""
     equations = derive(read_spec(derivations_folder() / f"{name}.toml"))
-    program = lower(equations)["rhs"]
+    program = lower(equations)["rhs"].factored
     check_inverse(equations, program)
     assert cost(program) <= most
     assert not gone & {statement.name for statement in program.statements}

@@ -25,9 +25,10 @@ from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
 from coadjoint.solve.system import load_folder
-from coadjoint.spec import read_spec_text
+from coadjoint.spec import read_spec, read_spec_text
 from tests.specs import shipped
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "so9_body.toml"
 SPEC = """
 title = "Free body"
 routes = ["euler-poincare"]
@@ -114,13 +115,13 @@ def test_rates_are_loops_from_so9_on():
 
 
 def test_energy_and_observables_are_loops_over_the_same_values():
-    """M Omega/2 for each plane, and velocities times 1; the shipped body has its Casimir, too."""
+    """M Omega/2 for each plane, and velocities times 1; the example has its Casimir, too."""
     own = programs(9)
     values = own["rhs"].table.vectors
     assert own["energy"].table.vectors == own["observables"].table.vectors == values
     assert own["energy"].table.entries == tuple((0, 36 + k, k, Fraction(1, 2)) for k in range(36))
     assert (1, 36, len(values[0]), 1) in own["observables"].table.entries
-    body = lowering.lower(derive(shipped("so9_body")))
+    body = lowering.lower(derive(read_spec(EXAMPLE)))
     assert body["rhs"].table.entries == own["rhs"].table.entries
     rows = {row for row, j, k, c in body["observables"].table.entries if j == k < 36 and c == 1}
     assert [body["observables"].outputs[row].label for row in rows] == ["casimir1"]

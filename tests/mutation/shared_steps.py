@@ -40,7 +40,7 @@ SHARED = (
         "legendre",
         "legendre",
         (),
-        "known_side: flip substitute",
+        "known_side: flip slope",
         tests=("tests/derive/test_routes.py",),
     ),
     *of(

@@ -29,7 +29,7 @@ TEXT = """def _rhs(state, parameters, out):
     out[0] = _t1
     out[1] = _p1
     out[3] = a - (_t2 - np.sin(c - k) * (d / a))
-    out[4] = a
+    out[4] = a + np.arctan2(d - c, np.arcsin(c / 9.0) * np.arctan2(k, l))
     out[5] = _t1
 
 
@@ -88,7 +88,8 @@ def test_every_form_of_a_line_is_computed(members):
     a, _, c, d = state
     t = -(a * c) / (np.sqrt(d) + 3.0 * 2.0)
     last = a - (t - np.sin(c - 0.7) * (d / a))
-    expected = [t, np.full(members, 1.0 / 0.7), 0.0 * a, last, a, t]
+    angle = np.arctan2(d - c, np.arcsin(c / 9.0) * np.arctan2(0.7, 3.0))
+    expected = [t, np.full(members, 1.0 / 0.7), 0.0 * a, last, a + angle, t]
     check_bits(run(TEXT, state, (0.7, 3.0)), np.array(expected))
 
 

@@ -118,36 +118,6 @@ def test_every_loop_is_vectorised(context, tmp_path):
 
 
 @needs_compiler
-def test_the_sanitizers_find_nothing(tmp_path):
-    """The heavy top runs under the address and undefined-behaviour sanitizers at odd sizes."""
-    texts = render_system(HEAVY_TOP)
-    (tmp_path / "main.c").write_text(
-        """#include "kernel.h"
-#include <stdlib.h>
-int main(void)
-{
-    for (size_t count = 0; count < 20; ++count)
-        for (size_t separate = 0; separate < 2; ++separate) {
-            double *state = calloc(6 * count + 1, sizeof *state);
-            double *parameters = calloc(8 * (separate ? count : 1) + 1, sizeof *parameters);
-            double *out = calloc(36 * count + 1, sizeof *out);
-            heavy_top_rhs(count, state, count, parameters, separate * count, out, count);
-            heavy_top_poisson_tensor(count, state, count, parameters, separate * count, out, count);
-            free(state);
-            free(parameters);
-            free(out);
-        }
-    return 0;
-}
-"""
-    )
-    flags = ["-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "main.c"]
-    program_path = compile_text(texts, tmp_path, flags, "main")
-    environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # leaks need ptrace
-    subprocess.run([str(program_path)], check=True, env=environment)
-
-
-@needs_compiler
 def test_signatures_are_pinned(context, tmp_path):
     """Argument names and order are the same for every function, in both languages."""
     texts = render_system(context)

@@ -27,15 +27,15 @@ class ExactSteps:
         part.member, part.start, part.size = self.member[which], self.start[which], self.size[which]
         return part
 
-    def narrow(self, only):
-        """Some components alone."""
-        return lambda rows, after: self.evaluate(rows, after)[only]
-
-    def evaluate(self, rows, after):
+    def follow(self, rows):
         """States at times after the starts of rows."""
-        time = self.start[rows][:, np.newaxis] + after
-        member = np.broadcast_to(self.member[rows][:, np.newaxis], time.shape)
-        return self.function(time, member)[np.newaxis]
+
+        def evaluate(after):
+            time = self.start[rows] + after
+            member = np.broadcast_to(self.member[rows], time.shape)
+            return self.function(time, member)[np.newaxis]
+
+        return evaluate
 
 
 def find_crossings(function, edges, members=1, at_a_time=None):
@@ -48,9 +48,14 @@ def find_crossings(function, edges, members=1, at_a_time=None):
     for number in range(group.max() + 1):
         part = steps.take(group == number)
 
-        def value(rows, share, part=part):
-            found = part.evaluate(rows, share * part.size[rows][:, np.newaxis])[0]
-            return found, np.abs(found) + 1.0
+        def value(rows, part=part):
+            follow = part.follow(rows)
+
+            def evaluate(share):
+                found = follow(share * part.size[rows])[0]
+                return found, np.abs(found) + 1.0
+
+            return evaluate
 
         lots.append(watch.scan(value, part))
     lots += [each for member in range(members) if (each := watch.finish(member)) is not None]

@@ -10,6 +10,7 @@ import numpy as np
 from coadjoint.solve.course import Course
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.events import Event
+from coadjoint.solve.request import EXPLICIT, IMPLICIT
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import kapitza_top, rigid_body
 from tests.driven_specs import POINT
@@ -35,6 +36,7 @@ def check_same(found, solution):
     for name in (*system.STATE.components, *followed):
         assert np.array_equal(found.first(name), solution.first(name))
     check_same_events(found.events, solution.events)
+    check_same_steps(found, solution)
     for name in ("system", "status", "message", "settings"):
         assert np.array_equal(getattr(solution, name), getattr(found, name)), name
 
@@ -50,6 +52,22 @@ def check_same_events(found, events):
             if ours is not None:
                 assert ours.shape == theirs.shape, part
                 assert ours.tobytes() == theirs.tobytes(), part
+
+
+def check_same_steps(found, solution):
+    """The dense outputs of two solutions are equal to the last bit."""
+    assert (found.dense is None) == (solution.dense is None)
+    if solution.dense is None:
+        return
+    last = float(np.max(solution.time_reached))
+    times = np.linspace(solution.dense.start, last, 23)
+    one, other = found.at(times), solution.at(times)
+    for name in ("state", "inputs", "reconstructed"):
+        ours, theirs = getattr(other, name), getattr(one, name)
+        assert (ours is None) == (theirs is None), name
+        assert ours is None or ours.tobytes() == theirs.tobytes(), name
+    assert one.course.start.time == other.course.start.time
+    assert type(found.dense.signal) is type(solution.dense.signal)
 
 
 @cache
@@ -80,22 +98,44 @@ def made(batch=(), **changes):
 
 
 @cache
-def follow_sleigh(samples=7):
+def follow_sleigh(samples=7, **options):
     """A sleigh with its place."""
     return built(FOLLOWED_SLEIGH).simulate(
-        [1, 1], (0, 2), samples=samples, target="numpy", reconstruct=True
+        [1, 1], (0, 2), samples=samples, target="numpy", reconstruct=True, **options
     )
 
 
-def drive_point(inputs):
+#: Methods whose steps are kept; those of SciPy have interpolants of their own.
+DENSE = ("taylor", "dop853", *(f"scipy:{name}" for name in (*EXPLICIT, *IMPLICIT)))
+
+
+@cache
+def turn_densely(method, batch=()):
+    """A body, or some, with their steps; one ends at an event."""
+    state = np.random.default_rng(6).normal(size=(3, *batch))
+    asked = Event("Pi2", terminal=2, name="end")
+    return rigid_body.simulate(state, (0, 3), samples=3, target="numpy", events=asked,
+                               dense=True, method=method, rtol=1e-5, atol=1e-7)  # fmt: skip
+
+
+def drive_point(inputs, **options):
     """A point that is pushed."""
-    return built(POINT).simulate([0.3, 0.1], (0, 1), None, inputs, samples=6, target="numpy")
+    run = {"samples": 6, "target": "numpy", **options}
+    return built(POINT).simulate([0.3, 0.1], (0, 1), None, inputs, **run)
 
 
-def sample_point():
+def sample_point(form="linear", **options):
     """A point that is pushed by samples."""
     times = np.array([0.0, 0.5, 1.0])
-    return drive_point((times, {"f": [1, 3, 2], "k": np.ones((2, 3))}, "linear"))
+    return drive_point((times, {"f": [1, 3, 2], "k": np.ones((2, 3))}, form), **options)
+
+
+hold_point = partial(sample_point, "previous")
+
+
+def drive_nowhere(**options):
+    """A body whose rates are not finite at its start: it makes no step."""
+    return rigid_body.simulate([1e200, 1e200, 1e200], (0, 1), target="numpy", **options)
 
 
 @cache
@@ -125,6 +165,13 @@ RUNS = {
     "one sample": partial(made, time=np.zeros(1), state=np.ones((3, 1))),
     "events": turn_bodies,
     "events of members": partial(turn_bodies, (2, 3)),
+    **{f"steps of {each}": partial(turn_densely, each) for each in DENSE},
+    "steps of members": partial(turn_densely, "taylor", (2, 3)),
+    "steps with sampled inputs": partial(sample_point, dense=True),
+    "steps with held inputs": partial(hold_point, dense=True),
+    "steps with inputs of each": partial(drive_members, [1, 1 / 3, 2], samples=3, dense=True),
+    "steps of what is reconstructed": partial(follow_sleigh, 7, dense=True),
+    "no steps": partial(drive_nowhere, dense=True),
     "batch": partial(made, (5,)),
     "batch of two axes": partial(made, (3, 2)),
     "members on their way": partial(drive_members, samples=4),

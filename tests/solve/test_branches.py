@@ -45,6 +45,7 @@ def rise(t):
 PASSED = {
     "root": (("-sqrt(x)", "1"), [1, 0], lambda t: [np.maximum(1 - t / 2, 0) ** 2, t]),
     "size": (("-1", "sqrt(x*x)"), [1, 0], lambda t: [1 - t, (1 + (t - 1) * abs(t - 1)) / 2]),
+    "kink": (("-1", "x*sign(x)"), [1, 0], lambda t: [1 - t, (1 + (t - 1) * abs(t - 1)) / 2]),
     "twice": (("1", f"sqrt({SIDES}*({SIDES}))"), [0, 0], lambda t: [t, rise(t)]),
 }
 #: The same, and when it ends.
@@ -82,6 +83,32 @@ def test_a_motion_ends_at_a_branch_point(tmp_path, name, target):
     assert found.rejected < 200
 
 
+def swing(t):
+    """The motion of ``x'' = -sign(x)`` from 1/2 at rest: parabolas, with the period 4."""
+    t = np.asarray(t) % 4
+    parts = 1 / 2 - t**2 / 2, (t - 1) ** 2 / 2 - (t - 1), (t - 3) - (t - 3) ** 2 / 2
+    return np.where(t < 1, parts[0], np.where(t < 3, parts[1], parts[2]))
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+@pytest.mark.parametrize("target", ["c", "numpy"])
+def test_rates_that_jump_are_followed(tmp_path, method, target):
+    """Steps become short where the rates jump, and the motion is that of the closed form."""
+    system = build(system_of("jump", ("y", "-sign(x)")), tmp_path)
+    found = system.simulate([0.5, 0], (0, 9.3), samples=94, method=method, target=target)
+    assert found.status == "OK"
+    assert np.abs(found.state[0] - swing(found.time)).max() < 1e-6
+    assert found.rejected > 100
+
+
+def test_a_series_of_fixed_steps_ends_at_a_jump(tmp_path):
+    """It would go on with the rates of the side that it comes from."""
+    system = build(system_of("jump", ("y", "-sign(x)")), tmp_path)
+    found = system.simulate([0.5, 0], (0, 9.3), method="taylor", step=0.07, target="numpy")
+    assert found.status == "STEP_UNDERFLOW"
+    assert 0.93 < found.time_reached <= 1.0
+
+
 def test_a_fixed_step_does_not_cross_one(tmp_path):
     """Steps of 0.3 end before t = 2: the one from 1.8 goes beyond."""
     system = build(EMPTYING, tmp_path)
@@ -112,3 +139,49 @@ def test_smooth_roots_cost_no_step(tmp_path):
     assert (a.status == "OK").all()
     assert a.rejected.max() == 0
     assert np.abs(a.state[0, 0] - np.sin(a.time)).max() < 1e-8
+
+
+RUNGE_KUTTA = [
+    {"method": "dop853"},
+    {"method": "dop853", "rtol": 1e-3, "atol": 1e-5},
+    {"method": "dop853", "step": 0.5},
+    {"method": "dop853", "step": 0.03},
+    {"method": "rk4", "step": 0.3},
+]
+
+
+@pytest.fixture(scope="module")
+def tank(tmp_path_factory):
+    """``dy/dt = -sqrt(y)``: it is empty at 2 sqrt(y(0))."""
+    return build(EMPTYING, tmp_path_factory.mktemp("tank"))
+
+
+def empty(tank, **options):
+    """The runs of tanks of many depths: some steps end where the rates are not real."""
+    start = np.linspace(0.05, 2.2, 431)[np.newaxis] ** 2
+    return tank.simulate(start, (0, 5), samples=6, **options), 2 * np.sqrt(start[0])
+
+
+@pytest.mark.parametrize("options", RUNGE_KUTTA, ids=str)
+def test_no_step_ends_beyond_a_branch_point(tank, options):
+    """The last good state has rates, is in time, and is the same for both targets to the bit."""
+    found, ends = empty(tank, **options)
+    assert {*found.status} <= {"NONFINITE", "STEP_UNDERFLOW"}
+    assert (found.course.last >= 0).all()
+    # an error of the depth moves the end by its root
+    late = 0.1 * options["step"] if "step" in options else 3 * options.get("rtol", 1e-10) ** 0.5
+    assert (found.time_reached - ends).max() < late
+    early = 2 * options["step"] if "step" in options else late
+    assert (found.time_reached > ends - early - 1e-9).all()
+    other, _ = empty(tank, target="numpy", **options)
+    for name in ("state", "time_reached", "steps", "rejected"):
+        assert getattr(found, name).tobytes() == getattr(other, name).tobytes()
+    assert found.course.last.tobytes() == other.course.last.tobytes()
+
+
+@pytest.mark.parametrize("options", RUNGE_KUTTA[1:4], ids=str)
+def test_without_a_look_at_the_end_they_go_beyond(tank, monkeypatch, options):
+    """Spoiled: a step may end where the rates are not finite, with a depth below zero."""
+    monkeypatch.setattr("coadjoint.solve.steps._check_end", lambda rates, lanes, h, state: state)
+    found, _ = empty(tank, target="numpy", **options)
+    assert (found.course.last < 0).any()

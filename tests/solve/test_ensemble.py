@@ -1,5 +1,7 @@
 """Steps that solvers record: polynomials of the motion, the same from everybody; and early ends."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -120,7 +122,7 @@ def test_a_member_stops_within_a_step(target):
                 record, step, after, record.evaluate(np.array([step]), np.array([after]))[:, 0]
             )
 
-    march(stepper(choice, target), run, 0.0, 2, watch=watch)
+    march(stepper(choice, target), run, 0.0, 2, watch=SimpleNamespace(look=watch, terms=None))
     assert (run.status == Status.EVENT).nonzero()[0].tolist() == [2, 17]
     assert (run.status == Status.OK).sum() == MEMBERS - 2
     others = np.delete(np.arange(MEMBERS), (2, 17))

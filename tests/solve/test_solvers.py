@@ -12,9 +12,10 @@ from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.solve import march, solvers
 from coadjoint.solve.calls import CStepper
-from coadjoint.solve.choices import Choice, choose_order
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.costs import Costs, choose_order
 from coadjoint.solve.ensemble import Status
-from coadjoint.systems import heavy_top, kepler, rigid_body
+from coadjoint.systems import heavy_top, kepler, rigid_body, so8_body
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
 from tests.kernels import COMPILER
@@ -74,8 +75,8 @@ def test_a_free_body_turns_as_the_elliptic_functions_say(options, close):
     [
         ("rk4", None, 4, (0.02, 0.01)),
         ("dop853", None, 8, (0.25, 0.125)),
-        ("taylor", 0.5, 5, (0.05, 0.025)),
-        ("taylor", 0.03, 6, (0.1, 0.05)),
+        ("taylor", 0.5, 6, (0.1, 0.05)),
+        ("taylor", 0.01, 8, (0.16, 0.08)),
     ],
 )
 def test_methods_have_their_order(method, tolerance, order, steps):
@@ -96,7 +97,7 @@ def test_methods_have_their_order(method, tolerance, order, steps):
 
 def test_the_order_follows_from_the_tolerance():
     """The order is max(4, ceil(4 - ln(rtol)/2)), and no more than the table of 1/k has."""
-    assert [choose_order(rtol) for rtol in (2, 1e-6, 1e-10, 1e-40)] == [4, 11, 16, 40]
+    assert [choose_order(rtol) for rtol in (2, 1e-6, 1e-10, 1e-40)] == [4, 12, 16, 40]
 
 
 @pytest.mark.parametrize(
@@ -391,3 +392,40 @@ def test_members_end_where_each_leaves_the_domain(tmp_path, target, method):
     one = system.simulate(start[:, 0], (0, 4), **named)
     assert one.status == "DOMAIN"
     assert "the condition one does not hold after t = 1.1467" in one.message
+
+
+@pytest.mark.parametrize(
+    ("rtol", "options", "method"),
+    [
+        (1e-6, {}, "dop853"),
+        (1e-6, {"dense": True}, "taylor"),
+        (1e-6, {"method": "taylor"}, "taylor"),
+        (1e-13, {}, "taylor"),
+    ],
+)
+def test_the_faster_method_is_chosen_for_the_same_errors(rtol, options, method):
+    """By operations; the tolerances that it is given are told, and errors are as small."""
+    state = np.random.default_rng(3).normal(size=(28, 4))
+    run = {"t": (0.0, 2.0), "parameters": np.arange(1.0, 9.0), "samples": 1, "target": "numpy"}
+    found = so8_body.simulate(state, rtol=rtol, atol=rtol, **run, **options)
+    assert found.method == method
+    share = 2.0**-12 if method == "dop853" else 1.0
+    assert found.settings["rtol"] == pytest.approx(rtol * share)
+    assert found.settings["atol"] == pytest.approx(rtol * share)
+    exact = so8_body.simulate(state, rtol=1e-15, atol=1e-15, method="taylor", **run)
+    assert np.abs(found.state - exact.state).max() < rtol
+
+
+def test_small_systems_and_branch_points_are_of_taylor():
+    """A step of few products is cheap, and ``dop853`` looks for no branch points."""
+    assert heavy_top.simulate(np.ones(6), (0, 1), samples=1).method == "taylor"
+    assert Costs(rows=28, products=168, operations=398, branches=False).is_dop853_faster(1e-8)
+    assert not Costs(rows=28, products=168, operations=398, branches=True).is_dop853_faster(1e-8)
+
+
+def test_no_tolerance_is_below_what_rounding_leaves():
+    """Of a large state."""
+    state = 1e6 * np.random.default_rng(3).normal(size=28)
+    found = so8_body.simulate(state, (0, 1e-6), np.arange(1.0, 9.0), samples=1, target="numpy")
+    assert found.method == "dop853"
+    assert found.settings["atol"] == 2.0**-48 * np.abs(state).max()

@@ -76,11 +76,17 @@ MAIN = """#include "solver.h"
 #include <stdio.h>
 #include <pthread.h>
 #include <stdlib.h>
-enum { WIDTH = 5 + %(state)d * (%(degree)d + 1), ROOM = 11 };
-/* Advance members in short calls, which record their steps. */
+enum { WIDTH = 5 + %(state)d * (%(degree)d + 1), ROOM = 35 };
+/* Where the square of a component is 1.1, by COMPONENT, MULTIPLY, SHIFT, SIZE and SOUGHT. */
+static const %(name)s_term terms[] = {
+    {.kind = 1}, {.kind = 7}, {.kind = 9, .left = 1, .value = -1.1}, {.kind = 12, .left = 1},
+    {.kind = 13, .left = 2, .right = 3, .value = -1.0}};
+/* Advance members in short calls, which record their steps, or those near an event. */
 static void *advance(void *given)
 {
     %(name)s_run *run = given;
+    if (run->members %% 2)
+        run->terms = terms, run->term_count = 5;
     run->record = calloc(WIDTH * ROOM, 8), run->record_room = ROOM;
     do
         run->recorded = 0;

@@ -11,7 +11,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import rigid_body
-from tests.solve.runs import RUNS, check_same, follow_sleigh, made
+from tests.solve.runs import RUNS, check_same, follow_sleigh, made, turn_densely
 
 
 @pytest.mark.parametrize("kind", RUNS)
@@ -82,6 +82,26 @@ def test_a_spoiled_table_is_refused(old, new, message, tmp_path):
     assert str(path) in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("method", "old", "new", "message"),
+    [
+        ("taylor", '"begun": [0.0, ', '"begun": [', "begin, and are long, in arrays of one length"),
+        ("taylor", '"member": [0, ', '"member": [', "not as many steps as begin"),
+        ("taylor", '"coefficients": [[', '"others": [[', "its steps are damaged: 'coefficients'"),
+        ("scipy:RK45", '"class": "RkDenseOutput"', '"class": "system"', "its steps are damaged"),
+    ],
+)
+def test_spoiled_steps_are_refused(method, old, new, message, tmp_path):
+    """Numbers that are missing, and interpolants of no class of SciPy."""
+    path = tmp_path / "run.csv"
+    turn_densely(method).to_csv(path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(KernelArgumentError, match=message):
+        Solution.from_csv(rigid_body.system, path)
+
+
 def test_a_table_that_is_not_there_is_named(tmp_path):
     """A missing file, an empty one, and a folder that does not exist."""
     with pytest.raises(KernelArgumentError, match=r"none\.csv cannot be read: No such file"):
@@ -97,7 +117,7 @@ def test_a_failed_write_leaves_the_old_table(tmp_path, monkeypatch):
     """The file is replaced at the end; what stopped on the way leaves nothing."""
     path = tmp_path / "run.csv"
     path.write_text("old")
-    monkeypatch.setattr(json, "dumps", lambda _value: 1 / 0)
+    monkeypatch.setattr(json, "dumps", lambda _value, default: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         made().to_csv(path)
     assert path.read_text() == "old"

@@ -251,6 +251,11 @@ def allowed(name: str, point: dict[str, Any]) -> dict[str, Any]:
     if name in ("suslov", "veselova"):
         n1, n2, n3 = (point[f"{'a' if name == 'suslov' else 'Gamma'}{i}"] for i in (1, 2, 3))
         return point | {"Omega3": -(n1 * point["Omega1"] + n2 * point["Omega2"]) / n3}
+    if name == "double_spherical_pendulum":
+        for n in (1, 2):
+            x, y, z = (point[f"gamma{n}_{i}"] for i in (1, 2, 3))
+            point = point | {f"v{n}_3": -(x * point[f"v{n}_1"] + y * point[f"v{n}_2"]) / z}
+        return point
     if name == "snakeboard":
         s, c = circular("sin", point["phi"]), circular("cos", point["phi"])
         return point | {"v1": -point["l"] * point["omega"] * c / s, "v2": 0 * s}

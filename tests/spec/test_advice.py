@@ -620,7 +620,6 @@ FORMULAS = [
     ("a \u00b7 b", "The dot product is dot(a, b), a product *.", "dot(a, b)"),
     ("m \u2212 c", "Write the minus sign of the keyboard, -.", "m - c"),
     ("m^2^c", "Write (a^b)^c, or multiply the exponents out.", "(m^2)^2"),
-    ("m^c", "Roots and other powers are sqrt(x) and exp(y*log(x)).", "exp(c*log(m))"),
     ("m c", "Write m*c.", "m*c"),
     ("2(m + c)", "Write * for a product.", "2*(m + c)"),
     ("(A*a)[1]", "Only names have subscripts.", "a[1]"),

@@ -59,6 +59,30 @@ def test_precedence_is_that_of_mathematics(text, expected):
     assert value(read_expression(text)) == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "exponent"),
+    [
+        ("x^0.5", Number(Fraction(1, 2))),
+        ("x**n", Name("n")),
+        ("x^-n", Negate(Name("n"))),
+        ("x^(1/2)", Binary("/", Number(Fraction(1)), Number(Fraction(2)))),
+        ("x^(-1.5)", Negate(Number(Fraction(3, 2)))),
+        ("x^dot(a, b)", Call("dot", (Name("a"), Name("b")))),
+    ],
+)
+def test_a_power_with_another_exponent_is_a_call(text, exponent):
+    """All but a literal integer is an exponent of the function pow."""
+    assert read_expression(text) == Call("pow", (Name("x"), exponent))
+    assert read_expression(f"-{text}*y") == Binary(
+        "*", Negate(Call("pow", (Name("x"), exponent))), Name("y")
+    )
+
+
+def test_pi_is_exact():
+    """The ratio of a circle is four times the angle whose tangent is 1."""
+    assert read_expression("pi") == Binary("*", Number(Fraction(4)), Call("atan", (Number(1),)))
+
+
 def test_names_components_and_calls_become_nodes():
     """Subscripts count from 1, functions keep their arguments in order."""
     tree = read_expression("dot(Omega, diag(I)*Omega) + A[1, 2]*Omega[3]")
@@ -121,9 +145,10 @@ def test_walks_visit_every_node_in_order():
         ("A[-1]", "-", "counted from 1"),
         ("A[1.5]", "1.5", "counted from 1"),
         ("(x + y)[1]", "[", "Only names"),
-        ("x^0.5", "0.5", "sqrt(x)"),
-        ("x^n", "n", "sqrt(x)"),
-        ("x^(1/2)", "(1/", "sqrt(x)"),
+        ("x^n^2", "x^n^", "(a^b)^c"),
+        ("x^pi(2)", "(", "Write * for a product."),
+        ("x^", "^", "a number, a name"),
+        ("pi[1]", "[", "Only names have subscripts."),
         ("x^2^3", "x^2^", "(a^b)^c"),
         ("9**9**9", "9**9**", "(a^b)^c"),
         ("\u03a9*x", "\u03a9", "Write Omega."),

@@ -46,6 +46,7 @@ SCOPE = {
         ("det(A)", ()),
         ("inverse(A)*u", (3,)),
         ("hat(u)", (3, 3)),
+        ("complex(C, 2*C)", (4, 6)),
         ("diag(q)", (4, 4)),
         ("diag(A)", (3,)),
         ("norm(q)", ()),
@@ -57,6 +58,8 @@ SCOPE = {
         ("C[2]", (3,)),
         ("rows(A[1], cross(A[2], A[3]), u)*w", (3,)),
         ("sqrt(s) + sin(s)*cos(s)/tan(s) - exp(s)*log(s)", ()),
+        ("sinh(s)/cosh(s) - tanh(s) + asin(s) - acos(s) + atan(s) - atan2(s, u[1])", ()),
+        ("abs(s) + min(s, 1) - max(s, u[1])*sign(s) + pow(s, u[2])", ()),
     ],
 )
 def test_shape_of_what_fits(text, shape):
@@ -66,7 +69,7 @@ def test_shape_of_what_fits(text, shape):
 
 def test_every_function_is_tried_above():
     """No function of the table is missing from the test above."""
-    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(34))
+    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(37))
     assert all(f"{name}(" in texts for name in FUNCTIONS)
 
 

@@ -6,6 +6,7 @@ and a table, JSON values, or files of what was found. Read next: `coadjoint.cli.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +21,15 @@ if TYPE_CHECKING:
     from coadjoint.solve.events import Event
     from coadjoint.solve.occurrences import Occurrences
     from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 #: Rows of the table on screen.
 ROWS = 20
 _WORDS = {1: "rises", -1: "falls", 0: "touches"}
+#: A name in a formula.
+_NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 def events_options(command: Command) -> Command:
@@ -113,13 +117,28 @@ class Asked:
 
             check_picture(self.section)
 
+    @property
+    def _axes(self) -> list[str] | None:
+        """The names of the axes of the picture."""
+        return None if self.axes is None else [each.strip() for each in self.axes.split(",")]
+
+    def check_axes(self, system: System, *, followed: bool) -> None:
+        """The axes of the picture are components.
+
+        Raises:
+            KernelArgumentError: There are not two, or one is no component.
+        """
+        if self._axes is not None:
+            from coadjoint.solve.section import check_axes  # which needs NumPy
+
+            check_axes(system, self._axes, followed=followed)
+
     def write(self, solution: Solution) -> None:
         """Write the files."""
         if self.table is not None:
             solution.events.to_csv(self.table)
         if self.section is not None:
-            axes = None if self.axes is None else [each.strip() for each in self.axes.split(",")]
-            solution.events.plot(self.section, axes)
+            solution.events.plot(self.section, self._axes)
 
     def has_arrived(self, solution: Solution) -> bool:
         """Whether all trajectories ended as they were to: at an event, or else at the end."""
@@ -159,14 +178,17 @@ def _describe(found: Occurrences) -> dict[str, Any]:
 
 
 def print_events(solution: Solution) -> None:
-    """A table of the first events, and a line for each that did not occur."""
+    """A table of the first events, with the state and what they name; a line for what never was."""
     from coadjoint.solve.event_tables import list_columns
 
     if not solution.events:
         return
     columns = list_columns(solution.events)
-    total, names = len(columns["time"]), solution.system.STATE.components
+    total, names = len(columns["time"]), list(solution.system.STATE.components)
     axes = [name for name in columns if name.startswith("member")]
+    told = {name for each in solution.events.values() for name in _NAME.findall(each.event.formula)}
+    told -= {"event", "time", "direction", *axes, *names}
+    names += [name for name in columns if name in told]
     if total:
         shown = ["event", *(f">{axis}" for axis in axes), ">t", "left side"]
         shown += [f">{name}" for name in names]

@@ -149,6 +149,7 @@ def command(
     if members is not None and (plot or trace):
         raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
     loaded = load_system(system, seconds)
+    asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
 

@@ -16,9 +16,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
 from fractions import Fraction
-from typing import Final, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar
 
 from mpmath import MPContext
+
+from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, jump_of, slopes_of
 
 Value = TypeVar("Value")
 
@@ -30,14 +32,11 @@ DIGITS: Final = 60
 #: bound of first order says nothing about the quotient.
 LARGEST_CONDITION: Final = Decimal(2**40)
 
-#: Above it the exponential, or its reciprocal, leaves the range of doubles.
-LARGEST_EXPONENT: Final = Decimal(700)
-
-# `decimal` is written in C and 10 times as fast as `mpmath`, which is asked for sin and cos alone.
+# `decimal` is written in C and 10 times as fast as `mpmath`, which has the other functions.
 # Contexts of our own: a check changes the precision of no other code.
 CONTEXT: Final = Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)
-_DIGITS: Final = MPContext()
-_DIGITS.dps = DIGITS
+DIGITS_OF_MPMATH: Final = MPContext()
+DIGITS_OF_MPMATH.dps = DIGITS
 _UNIT: Final = Decimal(2.0**-53)
 _FLOOR: Final = Decimal(2.0**-1074)
 
@@ -50,7 +49,7 @@ class Reference(Protocol):
         function: str,
         inputs: Mapping[str, Value],
         number: Callable[[Fraction], Value],
-        call: Callable[[str, Value], Value],
+        call: Callable[..., Value],
     ) -> list[Value]:
         """All outputs of one function, row by row."""
         ...
@@ -104,42 +103,62 @@ def exact(value: float | Fraction) -> Bounded:
     return Bounded(taken, abs(taken))
 
 
-def call(function: str, argument: Bounded) -> Bounded:
+def call(function: str, *arguments: Bounded) -> Bounded:
     """``f(u)``, with envelope ``|f(u)| + |f'(u)| envelope(u)``.
 
     Raises:
-        OutsideDomain: The square root or logarithm of a number that rounding may make negative, or
-            an exponential that no double holds.
+        OutsideDomain: Rounding may move an argument out of the domain or across a jump, as that of
+            a square root or logarithm below 0, or the value is one that no double holds.
     """
-    u = argument.value
-    if function in ("sqrt", "log") and argument.envelope >= LARGEST_CONDITION * u:
-        if function == "sqrt" and argument.envelope == 0:
-            return argument
+    if function == "sqrt" and arguments[0].value == arguments[0].envelope == 0:
+        return arguments[0]
+    if not is_inside(function, arguments):
         raise OutsideDomain
-    if function == "exp" and abs(u) > LARGEST_EXPONENT:
-        raise OutsideDomain
-    value, slope = _FUNCTIONS[function](u)
-    return Bounded(value, abs(value) + abs(slope) * argument.envelope)
+    values = tuple(argument.value for argument in arguments)
+    value = _value(function, *values)
+    slopes = slopes_of(function, values, value, _DECIMALS)
+    parts = (abs(s) * u.envelope for s, u in zip(slopes, arguments, strict=True))
+    return Bounded(value, sum(parts, abs(value)))
 
 
-def _sqrt(u: Decimal) -> tuple[Decimal, Decimal]:
-    root = u.sqrt()
-    return root, 1 / (2 * root)
+def is_inside(function: str, arguments: tuple[Bounded, ...]) -> bool:
+    """Whether a function certainly has a value, for all that rounding may do to its arguments."""
+    largest, first = ELEMENTARY[function].largest, arguments[0]
+    if largest and abs(first.value) > largest:
+        return False
+    positive = domain_of(function, arguments, Arithmetic(number=exact, call=call))
+    if positive is not None and positive.envelope >= LARGEST_CONDITION * positive.value:
+        return False
+    zero, side = jump_of(function, arguments)
+    near = zero is not None and zero.envelope >= LARGEST_CONDITION * abs(zero.value)
+    return not (near and (side is None or side.envelope >= LARGEST_CONDITION * side.value))
 
 
-def _sine_and_cosine(u: Decimal) -> tuple[Decimal, Decimal]:
-    cosine, sine = _DIGITS.cos_sin(_DIGITS.mpf(str(u)))
-    return Decimal(_DIGITS.nstr(sine, DIGITS)), Decimal(_DIGITS.nstr(cosine, DIGITS))
+def _value(function: str, *arguments: Decimal) -> Decimal:
+    """A function of numbers."""
+    if function in _BY_DECIMAL:
+        return _BY_DECIMAL[function](*arguments)
+    return from_digits(getattr(DIGITS_OF_MPMATH, function)(*map(to_digits, arguments)))
 
 
-#: Value and slope of each function; only the magnitude of the slope is used.
-_FUNCTIONS: Final[dict[str, Callable[[Decimal], tuple[Decimal, Decimal]]]] = {
-    "sqrt": _sqrt,
-    "sin": _sine_and_cosine,
-    "cos": lambda u: _sine_and_cosine(u)[::-1],
-    "exp": lambda u: (u.exp(),) * 2,
-    "log": lambda u: (u.ln(), 1 / u),
+def to_digits(value: Decimal) -> Any:
+    """A number in the arithmetic of mpmath."""
+    return DIGITS_OF_MPMATH.mpf(str(value))
+
+
+def from_digits(value: Any) -> Decimal:
+    """A number of mpmath as a decimal."""
+    return Decimal(DIGITS_OF_MPMATH.nstr(value, DIGITS))
+
+
+#: Functions that `decimal` has.
+_BY_DECIMAL: Final[dict[str, Callable[[Decimal], Decimal]]] = {
+    "sqrt": Decimal.sqrt,
+    "exp": Decimal.exp,
+    "log": Decimal.ln,
 }
+#: Where slopes are computed, of which only the sizes are used.
+_DECIMALS: Final = Arithmetic(number=lambda number: exact(number).value, call=_value)
 
 
 def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> list[Bounded]:

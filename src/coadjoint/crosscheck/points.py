@@ -275,7 +275,7 @@ def safe_exponent(programs: Mapping[str, Program], elementary: bool) -> int:
 def _degrees(program: Program) -> Iterator[int]:
     """Degrees of the outputs; what an output is made of has no larger one."""
     inputs = {name: _Degree(1) for name in program.names}
-    outputs = run(program, inputs, _constant, lambda function, argument: argument)
+    outputs = run(program, inputs, _constant, lambda _, *of: max(of, key=lambda u: u.degree))
     return (output.degree for output in outputs)
 
 

@@ -43,7 +43,7 @@ def run_recurrences(
     given: Mapping[str, tuple[Value, ...]],
     order: int,
     number: Callable[[Fraction], Value],
-    apply: Callable[[str, Value], Value],
+    apply: Callable[..., Value],
 ) -> dict[str, list[Value]]:
     """The coefficients of a state, by component, as the printed lines compute them.
 
@@ -67,7 +67,7 @@ class _Running:
         state: Mapping[str, Any],
         given: Mapping[str, tuple[Any, ...]],
         number: Callable[[Fraction], Any],
-        apply: Callable[[str, Any], Any],
+        apply: Callable[..., Any],
     ) -> None:
         self.text, self.number, self.apply = text, number, apply
         self.known: MutableMapping[str, Any] = {f"{name}[0]": x for name, x in state.items()}

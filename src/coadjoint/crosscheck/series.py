@@ -3,7 +3,7 @@
 Comes in: equations that any arithmetic can evaluate. Goes out: their solution as power series in
 time, by Picard's iteration: each round integrates the rates of the round before, and gives one more
 order. No recurrence of a solver is used: a quotient is a product with a Newton iteration, a
-function is its Taylor series at the first coefficient.
+function is differentiated numerically.
 Read next: `coadjoint.crosscheck.recurrences`.
 """
 
@@ -13,14 +13,23 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
-from math import factorial
 from operator import mul
+from typing import Any
 
-from coadjoint.crosscheck.oracle import CONTEXT, Bounded, OutsideDomain, call, exact
+from coadjoint.crosscheck.oracle import (
+    CONTEXT,
+    DIGITS_OF_MPMATH,
+    Bounded,
+    OutsideDomain,
+    exact,
+    from_digits,
+    is_inside,
+    to_digits,
+)
 
 #: Evaluates rates in any arithmetic: values by name, numbers, functions.
 Rates = Callable[
-    [Mapping[str, "Series"], Callable[[Fraction], "Series"], Callable[[str, "Series"], "Series"]],
+    [Mapping[str, "Series"], Callable[[Fraction], "Series"], Callable[..., "Series"]],
     Sequence["Series"],
 ]
 
@@ -60,51 +69,21 @@ def constant(value: Decimal, length: int) -> Series:
     return Series((value, *[Decimal(0)] * (length - 1)))
 
 
-def apply(function: str, argument: Series) -> Series:
-    """A function of a series: its Taylor series at the first coefficient, put together by Horner.
+def apply(function: str, *arguments: Series) -> Series:
+    """A function of series, differentiated numerically with as many digits as that takes.
 
     Raises:
-        OutsideDomain: It has no value there.
+        OutsideDomain: It has no value there, or no slope.
     """
-    length = len(argument.of)
-    moving = Series((Decimal(0), *argument.of[1:]))
-    slopes = _slopes(function, argument.of[0], length)
-    total, *rest = (constant(slope, length) for slope in reversed(slopes))
-    for each in rest:
-        total = total * moving + each
-    return total
-
-
-def _slopes(function: str, at: Decimal, length: int) -> list[Decimal]:
-    """The derivatives of a function, each divided by the factorial of its order."""
-    value = _value(function, at)
-    found, turn = [value], [value]
-    if function in ("sin", "cos"):
-        sine, cosine = _value("sin", at), _value("cos", at)
-        turn = [sine, cosine, -sine, -cosine] * 2
-        turn = turn[function == "cos" :][:4]
-    for k in range(1, length):
-        match function:
-            case "exp":
-                found.append(found[-1] / k)
-            case "log":
-                found.append(-((-1 / at) ** k) / k)
-            case "sqrt":  # the binomial series
-                found.append(found[-1] * (Decimal(3) / 2 - k) / (k * at))
-            case _:
-                found.append(turn[k % 4] / factorial(k))
-    return found
-
-
-def _value(function: str, at: Decimal) -> Decimal:
-    """A function at a point.
-
-    Raises:
-        OutsideDomain: It has no value there, or a root no slope.
-    """
-    if function in ("sqrt", "log") and at <= 0:
+    if not is_inside(function, tuple(Bounded(each.of[0], Decimal(0)) for each in arguments)):
         raise OutsideDomain
-    return call(function, Bounded(at, Decimal(0))).value
+    digits, length = DIGITS_OF_MPMATH, len(arguments[0].of)
+    of = [[to_digits(c) for c in reversed(each.of)] for each in arguments]
+
+    def value(time: Any) -> Any:
+        return getattr(digits, function)(*(digits.polyval(each, time) for each in of))
+
+    return Series(tuple(map(from_digits, digits.taylor(value, 0, length - 1))))
 
 
 def solve(

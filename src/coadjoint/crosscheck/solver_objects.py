@@ -126,8 +126,8 @@ class NumpySolver:
                 branches=self.branches,
             )
         if name == "dop853":
-            return DormandPrince8(rates, rtol, atol, size)
-        return RungeKutta4(rates, size)
+            return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
+        return RungeKutta4(rates, size, branches=self.branches)
 
     def advance(self, name: str) -> Advance:
         """What goes on by a method."""

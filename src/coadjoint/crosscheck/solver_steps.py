@@ -7,7 +7,7 @@ a `CrossCheckError` that shows a member and the two values.
              the equations: no error is above depth * 2^-53 * envelope, where the envelope is that
              of the recurrences, or of the method run on the Program, and the depth is the number of
              operations that follow one another in it; and the step that the Taylor method chooses
-             is the one in which its last two orders are a sixteenth of what the tolerances allow
+             is the one in which its last two orders are a 64th of what the tolerances allow
     rung 5   some steps of a dozen members with samples between them: NumPy has the same bits as
              exact C; where functions beyond sqrt are called, single steps are within the same bound
 
@@ -173,7 +173,7 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
 
 
 def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
-    """The logarithm to base 2 of the step whose last two orders are a sixteenth of the tolerance.
+    """The logarithm to base 2 of the step whose last two orders are a 64th of the tolerance.
 
     With the factor of A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99. No step is longer
     than all the time there is, or than one in which the first order is four times the state, where
@@ -182,7 +182,7 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
     state, given = split(solvers.subject.programs["rhs"], point)
     series = solve(rates_of(solvers.subject), state, given, ORDER)
     norms = [max(abs(float(row[k])) for row in series.values()) for k in range(ORDER + 1)]
-    size = TOLERANCE / 16 * max(norms[0], 1.0)
+    size = TOLERANCE / 64 * max(norms[0], 1.0)
     last = [k for k in (ORDER - 1, ORDER) if norms[k]]
     radius = min(((size / norms[k]) ** (1 / k) for k in last), default=math.inf)
     bounded = norms[1] > 0 and solvers.text.branches

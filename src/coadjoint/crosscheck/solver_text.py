@@ -220,7 +220,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         stages=(),
         rates=(),
         functions=solver.functions,
-        products=0,
+        products=solver.products,
         operations=solver.operations,
         reads=frozenset(),
         fixed_reads=frozenset(),

@@ -20,6 +20,7 @@ from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
 from coadjoint.derive.reference import Reference as Derived
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import LEVELS, Program, run
@@ -55,7 +56,7 @@ def depth(program: Program) -> int:
     of theirs: k grows by 1 at most. The same holds for a product, a quotient and a function.
     """
     inputs = dict.fromkeys(program.names, Levels(0))
-    outputs = run(program, inputs, level_of, lambda _, of: Levels(of.count + 1))
+    outputs = run(program, inputs, level_of, lambda _, *of: Levels(max(u.count for u in of) + 1))
     return max(output.count for output in outputs)
 
 
@@ -178,8 +179,8 @@ class Subject:
         known = self.values(batch)
         called = list[Array]()
 
-        def call(function: str, argument: Array) -> Array:
-            called.append(np.asarray(getattr(np, function)(argument)))
+        def call(function: str, *arguments: Array) -> Array:
+            called.append(np.asarray(getattr(np, ELEMENTARY[function].numpy_name)(*arguments)))
             return called[-1]
 
         with np.errstate(all="ignore"):

@@ -55,7 +55,7 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
 
 
 def _arguments(equations: Equations) -> list[Condition]:
-    """Arguments of square roots and logarithms in the energy and the rates: they are positive.
+    """What the functions in the energy and the rates ask to be positive, as ``u`` of ``sqrt(u)``.
 
     A root has no slope where its argument is zero.
     """
@@ -64,11 +64,11 @@ def _arguments(equations: Equations) -> list[Condition]:
     written += [exact.energy] if exact.energy is not None else []
     called = {name for each in written for name in field.functions_in(each)}
     return [
-        Condition(known.argument, strict=True)
+        Condition(positive, strict=True)
         for known in field.adjoined.values()
         if known.generator in called
-        and known.function in ("sqrt", "log")
-        and field.as_number(known.argument) is None
+        and (positive := field.domain_of(known)) is not None
+        and field.as_number(positive) is None
     ]
 
 

@@ -9,7 +9,7 @@ Read next: `coadjoint.derive.setting`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
@@ -30,6 +30,8 @@ from coadjoint.exact.dense import (
     trace,
     transpose,
 )
+from coadjoint.exact.signs import sign
+from coadjoint.exact.text import element_text
 from coadjoint.exact.witness import is_nonzero
 from coadjoint.spec.core import tree
 
@@ -114,10 +116,20 @@ def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], fie
             raise DerivationError(
                 "an expression takes the logarithm of 0; expected a positive one."
             )
+        case tree.Call(function="pow"):
+            return _any_power(below[0], below[1], field)
+        case tree.Call(function="sign") if field.is_zero(below[0]):
+            raise DerivationError("an expression takes the sign of 0; expected what is not 0.")
+        case tree.Call(function="abs"):
+            return _absolute(below[0], field)
+        case tree.Call(function="min" | "max" as function):
+            a, b = below
+            size = _absolute(a - b, field)
+            return (a + b + (size if function == "max" else -size)) / 2
         case tree.Call(function=function) if function in _TENSOR_FUNCTIONS:
             return _TENSOR_FUNCTIONS[function](*below)
         case tree.Call(function=function):
-            return field.call(function, below[0])
+            return field.call(function, *below)
     raise AssertionError(node)
 
 
@@ -190,6 +202,35 @@ def _power(base: Value, exponent: int, field: Field) -> Value:
     return result
 
 
+def _any_power(base: Element, exponent: Element, field: Field) -> Element:
+    """A power with any exponent, of a base that is positive: ``exp(b*log(a))``.
+
+    Raises:
+        DerivationError: The base is not known to be positive.
+    """
+    number = field.as_number(exponent)
+    if number is not None and number.denominator == 1:
+        return cast(Element, _power(base, int(number), field))
+    if sign(field, base) != 1:
+        raise DerivationError(
+            f"the base of a power with the exponent {element_text(field, exponent)} is "
+            f"{element_text(field, base)}, which is not known to be positive everywhere; expected "
+            "a positive base, or a literal integer as exponent. Say in [domain] that the base is "
+            "> 0, or declare its parameters as positive."
+        )
+    if number is not None and number.denominator == 2:
+        return cast(Element, _power(field.call("sqrt", base), int(2 * number), field))
+    return field.call("exp", exponent * field.call("log", base))
+
+
+def _absolute(value: Element, field: Field) -> Element:
+    """The absolute value: the value times its sign, which jumps where it is 0."""
+    if field.is_zero(value):
+        return field.zero
+    known = sign(field, value, strict=False)
+    return value * (known or field.call("sign", value))
+
+
 _BINARY: dict[str, Callable[..., Value]] = {
     "+": add,
     "-": subtract,
@@ -206,5 +247,9 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Value]] = {
     "outer": lambda a, b: tuple(tuple(x * y for y in b) for x in a),
     "rows": lambda *rows: rows,
     "vector": lambda *components: components,
+    "complex": lambda a, b: (
+        *(x + tuple(-e for e in y) for x, y in zip(a, b, strict=True)),
+        *(y + x for x, y in zip(a, b, strict=True)),
+    ),
     "commutator": commutator,
 }

@@ -15,20 +15,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import cached_property
-from operator import truediv
+from functools import cached_property, reduce
 from typing import Any, TypeVar
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
-from coadjoint.derive.sloped import Sloped, negative, scale
+from coadjoint.derive.sloped import Sloped, add_slopes, scale
+from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
 Value = TypeVar("Value")
 Number = Callable[[Fraction], Value]
-Apply = Callable[[str, Value], Value]
+Apply = Callable[..., Value]
 
 
 class Reference:
@@ -115,8 +115,8 @@ class Reference:
         def constant(value: Fraction) -> Sloped[Value]:
             return Sloped(number(value), {})
 
-        def apply(function: str, argument: Sloped[Value]) -> Sloped[Value]:
-            return _apply(function, argument, number, call)
+        def apply(function: str, *arguments: Sloped[Value]) -> Sloped[Value]:
+            return _apply(function, arguments, number, call)
 
         rates = self._values(function, known, constant, apply)
         columns = 1 if along else len(names)
@@ -124,22 +124,14 @@ class Reference:
 
 
 def _apply(
-    function: str, argument: Sloped[Value], number: Number[Value], call: Apply[Value]
+    function: str,
+    arguments: tuple[Sloped[Value], ...],
+    number: Number[Value],
+    call: Apply[Value],
 ) -> Sloped[Value]:
     """``f(u)`` with the slopes ``f'(u) u'``."""
-    u = argument.value
-    value = call(function, u)
-
-    match function:
-        case "sqrt":
-            slopes = scale(argument.slopes, truediv(number(Fraction(1, 2)), value))
-        case "sin":
-            slopes = scale(argument.slopes, call("cos", u))
-        case "cos":
-            slopes = scale(argument.slopes, negative(call("sin", u)))
-        case "exp":
-            slopes = scale(argument.slopes, value)
-        case _:
-            assert function == "log", function
-            slopes = {j: truediv(slope, u) for j, slope in argument.slopes.items()}
-    return Sloped(value, slopes)
+    values = tuple(argument.value for argument in arguments)
+    value = call(function, *values)
+    slopes = slopes_of(function, values, value, Arithmetic(number=number, call=call))
+    parts = (scale(each.slopes, slope) for each, slope in zip(arguments, slopes, strict=True))
+    return Sloped(value, reduce(add_slopes, parts))

@@ -19,12 +19,12 @@ from typing import Any, Protocol, TypeVar, cast
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Value, entries, interpret
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.core.shapes import ELEMENTARY
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
@@ -34,7 +34,10 @@ Built = TypeVar("Built")
 #: What has a name in formulas.
 Declared = Variable | Parameter | Input | Time
 #: The functions for which the field needs room; the others are sums and products.
-_ADJOINED = (*ELEMENTARY, "norm")
+#: Functions of which elements are adjoined to the field, and how many each.
+_ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
+    name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
+}
 
 
 @dataclass(frozen=True)
@@ -329,7 +332,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         more += 2
     if calls_of(spec, "velocity"):  # a Legendre transform that is not linear, with numbers as well
         more += 4
-    room = len(_list_calls(spec)) * (1 + more)
+    room = _count_room(spec) * (1 + more)
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
         parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)
@@ -382,7 +385,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     What a formula depends on in these shows much sooner there than among all the symbols.
     """
     names = list_components(spec.having_role(role))
-    field = Field(names, len(_list_calls(spec)))
+    field = Field(names, _count_room(spec))
     values: dict[str, Value] = {name: field[name] for name in names}
     quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
     for quantity in quantities:
@@ -397,6 +400,11 @@ def _list_calls(spec: Spec) -> list[tree.Call]:
     """The calls of elementary functions in the formulas of a spec."""
     nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
     return [node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED]
+
+
+def _count_room(spec: Spec) -> int:
+    """How many functions may be adjoined for those that the formulas of a spec call."""
+    return sum(_ADJOINED[call.function] for call in _list_calls(spec))
 
 
 def calls_of(spec: Spec, role: str) -> bool:

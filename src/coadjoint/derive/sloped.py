@@ -35,10 +35,10 @@ class Sloped(Generic[Value]):
         self.factors = factors or (self,)
 
     def __add__(self, other: Sloped[Value]) -> Sloped[Value]:
-        return Sloped(add(self.value, other.value), _add_slopes(self.slopes, other.slopes))
+        return Sloped(add(self.value, other.value), add_slopes(self.slopes, other.slopes))
 
     def __mul__(self, other: Sloped[Value]) -> Sloped[Value]:
-        slopes = _add_slopes(scale(self.slopes, other.value), scale(other.slopes, self.value))
+        slopes = add_slopes(scale(self.slopes, other.value), scale(other.slopes, self.value))
         return Sloped(mul(self.value, other.value), slopes, self.factors + other.factors)
 
     def __truediv__(self, other: Sloped[Value]) -> Sloped[Value]:
@@ -49,7 +49,7 @@ class Sloped(Generic[Value]):
                 j: negative(mul(quotient, truediv(slope, factor.value)))
                 for j, slope in factor.slopes.items()
             }
-            slopes = _add_slopes(slopes, part)
+            slopes = add_slopes(slopes, part)
         return Sloped(quotient, slopes)
 
     def __neg__(self) -> Sloped[Value]:
@@ -63,7 +63,7 @@ def negative(value: Value) -> Value:
     return -value  # type: ignore[operator, no-any-return]
 
 
-def _add_slopes(one: Mapping[int, Value], other: Mapping[int, Value]) -> dict[int, Value]:
+def add_slopes(one: Mapping[int, Value], other: Mapping[int, Value]) -> dict[int, Value]:
     """The sums of two sets of slopes."""
     total = dict(one)
     for j, slope in other.items():

@@ -1,8 +1,8 @@
 """The Field of a system: named symbols, adjoined functions, calculus and evaluation.
 
 Comes in: names of the symbols. Goes out: elements with a decidable zero. Elementary functions
-(sqrt, sin, cos, exp, log) are adjoined as new generators with their derivative and, for sqrt and
-the pair sin, cos, the relation that reduces them.
+are adjoined as new generators with their derivative and, for roots and the pairs sin, cos and sinh,
+cosh, the relation that reduces them, as `coadjoint.elementary` has it.
 Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
 """
 
@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar, cast
 
 import sympy
 from sympy.polys.rings import PolyElement
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, evaluate, slopes_of
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, split_by_powers
 from coadjoint.exact.rationals import Rationals
@@ -30,23 +31,29 @@ class Adjoined:
 
     Attributes:
         generator: Its name.
-        function: ``sqrt``, ``sin``, ``cos``, ``exp`` or ``log``.
-        argument: An element of generators adjoined before.
+        function: The name of one of `coadjoint.elementary`.
+        arguments: Elements of generators adjoined before.
         partner: The generator of the cosine for a sine and the other way round, else empty.
     """
 
     generator: str
     function: str
-    argument: Element
+    arguments: tuple[Element, ...]
     partner: str = ""
 
+    @property
+    def argument(self) -> Element:
+        """The argument of a function of one."""
+        (only,) = self.arguments
+        return only
 
-def refuse_call(function: str, argument: Any) -> NoReturn:
+
+def refuse_call(function: str, *arguments: Any) -> NoReturn:
     """No arithmetic for functions: the elements have none."""
-    raise AssertionError(f"{function}({argument}) in a function-free element")
+    raise AssertionError(f"{function}{arguments} in a function-free element")
 
 
-_SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ("sqrt", "sin", "cos", "exp", "log")}
+_SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ELEMENTARY}
 
 
 class Field(Rationals):
@@ -85,8 +92,8 @@ class Field(Rationals):
 
     # -- elementary functions -----------------------------------------------------------
 
-    def call(self, function: str, argument: Element) -> Element:
-        """``function(argument)``, adjoining a generator unless one stands for it already.
+    def call(self, function: str, *arguments: Element) -> Element:
+        """A function of elements, adjoining a generator unless one stands for it already.
 
         ``tan`` becomes ``sin / cos``, ``sin(-x)`` is ``-sin(x)``, and the square root of a square
         is its root where that has a declared sign.
@@ -98,33 +105,47 @@ class Field(Rationals):
 
         self.has_called = True
         if function == "tan":
-            return self.call("sin", argument) / self.call("cos", argument)
-        if function in ("sin", "cos") and argument and argument.parts[0].numer.LC < 0:
-            turned = self.call(function, -argument)
-            return turned if function == "cos" else -turned
+            return self.call("sin", *arguments) / self.call("cos", *arguments)
+        entry, first = ELEMENTARY[function], arguments[0]
+        if entry.parity and first and first.parts[0].numer.LC < 0:
+            return self.call(function, -first) * entry.parity
         for known in self.adjoined.values():
-            if known.function == function and self.is_zero(known.argument - argument):
+            if known.function == function and all(
+                self.is_zero(a - b) for a, b in zip(known.arguments, arguments, strict=True)
+            ):
                 return self[known.generator]
-        if (value := known_value(self, function, argument)) is not None:
+        if (value := known_value(self, function, *arguments)) is not None:
             return value
-        if len(self._free) < 1 + (function in ("sin", "cos")):
+        if len(self._free) < 1 + bool(entry.partner):
             raise OverflowError(f"no room left for {function}")
-        if function in ("sin", "cos"):  # always both: each is the derivative of the other
-            cosine, sine = self._free[:2]
-            self._adjoin("cos", argument, sine)
-            self._adjoin("sin", argument, cosine)
-            return self[sine if function == "sin" else cosine]
-        return self._adjoin(function, argument)
+        if entry.partner:  # always both: each has the derivative of the other
+            names, own = self._free[:2], sorted((function, entry.partner))
+            for each, partner in zip(own, reversed(names), strict=True):
+                self._adjoin(each, arguments, partner)
+            return self[names[own.index(function)]]
+        result = self._adjoin(function, arguments)
+        if entry.calls_others:  # now, while there is room
+            self._slopes_of(self.adjoined[str(result)])
+        return result
 
     @property
     def room(self) -> int:
         """How many generators are left for functions; sines and cosines take two."""
         return len(self._free)
 
-    def _adjoin(self, function: str, argument: Element, partner: str = "") -> Element:
+    def _adjoin(self, function: str, arguments: tuple[Element, ...], partner: str = "") -> Element:
         generator = self._free.pop(0)
-        self.adjoined[generator] = Adjoined(generator, function, argument, partner)
+        self.adjoined[generator] = Adjoined(generator, function, arguments, partner)
         return self[generator]
+
+    @property
+    def _arithmetic(self) -> Arithmetic:
+        """What texts of the table of functions are computed with."""
+        return Arithmetic(number=self.number, call=self.call)
+
+    def domain_of(self, known: Adjoined) -> Element | None:
+        """What is positive where an adjoined function is analytic; None where it is everywhere."""
+        return cast("Element | None", domain_of(known.function, known.arguments, self._arithmetic))
 
     def normal(self, element: Element) -> Element:
         """Normal form: even powers of square roots and of sines in the numerator are replaced.
@@ -136,7 +157,7 @@ class Field(Rationals):
             return element
         called = self.functions_in(element)
         for known in reversed(self.adjoined.values()):
-            square = self._square_of(known)
+            square = self.square_of(known)
             if square is not None:
                 element = self.reduce_squares(element.combine(), known.generator, square)
         short = element.combine()
@@ -147,13 +168,14 @@ class Field(Rationals):
         hidden = vanish_by_relations(self, short, called | self.functions_in(short))
         return self.zero if hidden else short
 
-    def _square_of(self, known: Adjoined) -> Element | None:
+    def square_of(self, known: Adjoined) -> Element | None:
         """What the square of an adjoined generator equals, where there is such a relation."""
-        if known.function == "sqrt":
-            return known.argument
-        if known.function == "sin":
-            return self.one - self[known.partner] ** 2
-        return None
+        text = ELEMENTARY[known.function].square
+        if not text:
+            return None
+        partner = self[known.partner] if known.partner else None
+        values = {"u": known.arguments[0], "p": partner}
+        return cast(Element, evaluate(text, self._arithmetic, **values))
 
     def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
@@ -167,6 +189,30 @@ class Field(Rationals):
             parts[power // 2] = parts.get(power // 2, ring.zero) + odd
         numer = sum((self.from_polynomial(p) * square**k for k, p in parts.items()), self.zero)
         return numer * Element(self._factors, [(ring.one, quotient.powers)])
+
+    def reduce_modulo(
+        self, element: Element, generator: str, coefficients: Sequence[Fraction]
+    ) -> Element:
+        """A single quotient whose numerator is reduced by a monic polynomial in a generator.
+
+        Args:
+            element: The quotient.
+            generator: A root of the polynomial.
+            coefficients: Those of the polynomial, the highest power first.
+        """
+        place, ring = self._position[generator], self._ring
+        degree = len(coefficients) - 1
+        if not element or element.parts[0].numer.degree(ring.gens[place]) < degree:
+            return element
+        (quotient,) = element.parts
+        parts, root = split_by_powers(quotient.numer, place), ring.gens[place]
+        for power in range(max(parts), degree - 1, -1):
+            top = parts.pop(power, ring.zero)
+            for n, number in enumerate(coefficients[1:], 1):
+                ground = ring.domain(number.numerator, number.denominator)
+                parts[power - n] = parts.get(power - n, ring.zero) - top * ground
+        numer = sum((part * root**power for power, part in parts.items()), ring.zero)
+        return Element(self._factors, [(numer, quotient.powers)])
 
     def is_zero(self, element: Element) -> bool:
         """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
@@ -197,7 +243,7 @@ class Field(Rationals):
         {-1: -1, 0: 3, 2: a}
         """
         place, result = self._position[name], dict[int, list[Element]]()
-        if any(name in self.reach(self.adjoined[g].argument) for g in self._calls_in(element)):
+        if any(name in self.reach(self[g]) for g in self._calls_in(element)):
             raise ValueError(f"{name} occurs in a function")
         for quotient in element.parts:
             lowered, powers = 0, {}
@@ -218,7 +264,8 @@ class Field(Rationals):
         """Generators of the functions that occur in an element or in their arguments."""
         result = set(self._calls_in(element))
         for generator in self._calls_in(element):
-            result |= self.functions_in(self.adjoined[generator].argument)
+            for argument in self.adjoined[generator].arguments:
+                result |= self.functions_in(argument)
         return frozenset(result)
 
     # -- calculus -----------------------------------------------------------------------
@@ -239,19 +286,16 @@ class Field(Rationals):
 
     def _derivative_of(self, known: Adjoined, name: str) -> Element:
         """Derivative of an adjoined function by a symbol."""
-        inner, own = self.derivative(known.argument, name), self[known.generator]
-        if inner == 0:
+        inner = [self.derivative(argument, name) for argument in known.arguments]
+        if all(each == 0 for each in inner):
             return self.zero
-        match known.function:
-            case "sqrt":
-                return inner / (2 * own)
-            case "sin":
-                return inner * self[known.partner]
-            case "cos":
-                return -inner * self[known.partner]
-            case "exp":
-                return inner * own
-        return inner / known.argument  # log
+        pairs = zip(inner, self._slopes_of(known), strict=True)
+        return self.sum(each * slope for each, slope in pairs)
+
+    def _slopes_of(self, known: Adjoined) -> list[Element]:
+        """Derivatives of an adjoined function by its arguments."""
+        own = self[known.generator]
+        return slopes_of(known.function, known.arguments, own, self._arithmetic)
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""
@@ -265,7 +309,7 @@ class Field(Rationals):
         element: Element,
         values: Mapping[str, Value],
         number: Callable[[Fraction], Value],
-        call: Callable[[str, Value], Value] = refuse_call,
+        call: Callable[..., Value] = refuse_call,
         factors: dict[int, Value] | None = None,
     ) -> Value:
         """The value of an element in any arithmetic with ``+ * /``: term by term, as it is written.
@@ -281,9 +325,9 @@ class Field(Rationals):
         calls = [name for name in self._calls_in(element) if name not in values]
         known = dict(values) if calls else values
         for generator in calls:
-            argument = self.adjoined[generator].argument
-            inner = self.evaluate(argument, known, number, call, factors)
-            known[generator] = call(self.adjoined[generator].function, inner)  # type: ignore[index]
+            arguments = self.adjoined[generator].arguments
+            inner = (self.evaluate(each, known, number, call, factors) for each in arguments)
+            known[generator] = call(self.adjoined[generator].function, *inner)  # type: ignore[index]
         quotients = [self._quotient(q, known, number, factors) for q in element.parts]
         return total(quotients) if quotients else number(Fraction(0))
 
@@ -299,16 +343,16 @@ class Field(Rationals):
         new = {name: values[name] for name in self.names if name in values}
         for generator in self._calls_in(element):
             known = self.adjoined[generator]
-            argument = self.substitute(known.argument, values)
-            if argument is not known.argument:
-                new[generator] = self.call(known.function, argument)
+            arguments = tuple(self.substitute(each, values) for each in known.arguments)
+            if any(a is not b for a, b in zip(arguments, known.arguments, strict=True)):
+                new[generator] = self.call(known.function, *arguments)
         return self._replace(element, new)
 
     def reach(self, element: Element) -> frozenset[str]:
         """Symbols that occur in an element or in the arguments of its functions."""
         names = self.names_in(element) - self.adjoined.keys()
         for generator in self._calls_in(element):
-            names |= self.reach(self.adjoined[generator].argument)
+            names = names.union(*map(self.reach, self.adjoined[generator].arguments))
         return names
 
     def write_in_sines(self, p: PolyElement) -> PolyElement:
@@ -323,7 +367,7 @@ class Field(Rationals):
         """The element as a SymPy expression of plain symbols, for people to read and use."""
         functions = {
             sympy.Symbol(generator): _SYMPY_FUNCTIONS[self.adjoined[generator].function](
-                self.to_sympy(self.adjoined[generator].argument)
+                *map(self.to_sympy, self.adjoined[generator].arguments)
             )
             for generator in self._calls_in(element)
         }

@@ -67,10 +67,10 @@ def _relations_in(
     present, gens = top.degrees(), top.ring.gens
     for known in field.adjoined.values():
         own = places[known.generator]
-        if known.function == "sin":
-            other = places[known.partner]
+        if known.function in ("sin", "sinh"):
+            other, side = places[known.partner], 1 if known.function == "sin" else -1
             if present[own] > 0 or present[other] > 0:
-                yield gens[own] ** 2 + gens[other] ** 2 - 1
+                yield gens[own] ** 2 * side + gens[other] ** 2 - 1
         if known.function == "sqrt" and present[own] > 0 and known.argument != 0:
             (argument,) = known.argument.combine().parts
             if not argument.powers:

@@ -10,8 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import reduce
 from operator import mul
+
+import sympy
+from sympy.polys.numberfields.minpoly import minimal_polynomial
 
 from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import (
@@ -60,6 +64,7 @@ class Products:
         self.ring, self._free, self._exponent_of = ring, list(free), exponent_of
         self._positive = set(ring.positive)
         self._squares: dict[str, Element] = {}
+        self._minimal: dict[str, list[Fraction]] = {}
         self._radicals: list[Radical] = []
         self._signs: dict[Factor, Element] = {}
         self._logarithms: dict[Factor, Element] = {}
@@ -87,12 +92,23 @@ class Products:
         self._radicals.append(Radical(sine, self.factor(1 - cosine**2), signed=True))
         return cosine, sine
 
+    def cosine_of_part(self, parts: int) -> Element:
+        """``cos(pi/n)``, a new generator that is a root of its minimal polynomial."""
+        cosine = self.new()
+        (name,) = self.ring.names_in(cosine)
+        symbol = sympy.Symbol("x")
+        minimal = minimal_polynomial(sympy.cos(sympy.pi / parts), symbol, polys=True).monic()
+        self._minimal[name] = [Fraction(int(c.p), int(c.q)) for c in minimal.all_coeffs()]
+        return cosine
+
     def normalize(self, element: Element, values: Mapping[str, Element] | None = None) -> Element:
         """An element with squares replaced, and signs that are known."""
         if values:
             element = self.ring.substitute(element, values)
         for name in reversed(self._squares):
             element = self.ring.reduce_squares(element.combine(), name, self._squares[name])
+        for name, coefficients in self._minimal.items():
+            element = self.ring.reduce_modulo(element.combine(), name, coefficients)
         return element.combine()
 
     def derive_signs(self) -> dict[str, Element]:
@@ -157,6 +173,10 @@ class Products:
         """The absolute value of a product of powers of factors."""
         positive = {f: e for f, e in vector.items() if f != -1}
         return self._multiply(positive) * self._sign_of(positive)
+
+    def sign_of(self, element: Element) -> Element:
+        """The sign of an element other than 0."""
+        return self.normalize(self._sign_of(self.factor(element)))
 
     def _sign_of(self, vector: Powers) -> Element:
         """The sign of a product: a number, or a product of generators of square 1."""

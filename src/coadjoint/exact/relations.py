@@ -22,21 +22,32 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
-from math import prod
+from math import lcm, prod
 
 from sympy.polys.rings import PolyElement
 
+from coadjoint.elementary import Arithmetic, evaluate
 from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import Factor, factors_of
-from coadjoint.exact.field import Adjoined, Field
+from coadjoint.exact.field import Adjoined, Field, refuse_call
 from coadjoint.exact.lattices import Lattice
 from coadjoint.exact.products import Products, product
+from coadjoint.exact.values import half_turns
 from coadjoint.exact.witness import witness_nonzero
 
+#: Functions in exponentials e of their arguments.
+EXPONENTIALS = {
+    "exp": "e",
+    "sinh": "(e - 1/e)/2",
+    "cosh": "(e + 1/e)/2",
+    "tanh": "(e*e - 1)/(e*e + 1)",
+}
 #: Terms of a sine of a sum; one with more keeps a generator of its own.
 EXPANDED = 64
 #: Generators for signs and logarithms beyond one for each factor of a radicand or an argument.
 SPARE = 3
+#: Parts of a half turn whose cosines are algebraic numbers; with more, equations are too long.
+PARTS = 60
 #: What a term costs to rewrite, in products of two terms.
 WORK = 20
 
@@ -61,7 +72,7 @@ class Relations:
     def __init__(self, field: Field, names: Iterable[str]) -> None:
         self.field, self.names = field, frozenset(names)
         called = [known for name, known in field.adjoined.items() if name in self.names]
-        powers = [known for known in called if known.function == "exp"]
+        powers = [known for known in called if known.function in EXPONENTIALS]
         angles = [known for known in called if known.function in ("sin", "cos")]
         products = [known for known in called if known.function in ("sqrt", "log")]
         roots = sum(known.function == "sqrt" for known in products)
@@ -70,12 +81,17 @@ class Relations:
         self._lonely = [n for n, row in enumerate(self._angles.rows) if _terms(row) > EXPANDED]
         count = len(self._exponents.basis) + 2 * len(self._angles.basis) + 2 * len(self._lonely)
         count += sum(SPARE + len(_polynomial_factors(field, known.argument)) for known in products)
+        count += len(called) - len(powers) - len(angles) - len(products)  # one for each other
         free = [f"__{n + 1}" for n in range(count)]
         self.ring = Field([*field.names, *free], positive=field.positive)
         self.products = Products(self.ring, free, self._exponent_of)
         self._images: dict[str, Element] = {}
         self._powers = [self.products.new(positive=True) for _ in self._exponents.basis]
-        self._circles = [self.products.circle() for _ in self._angles.basis]
+        self._turns = [half_turns(field, each) for each in self._angles.basis]
+        self._circles = [
+            self.products.circle() if turn is None else self._part_of_turn(turn)
+            for turn in self._turns
+        ]
         self._angles_of = {known.generator: n for n, known in enumerate(angles)}
         self._exponents_of = {known.generator: n for n, known in enumerate(powers)}
         self._alone: dict[tuple[Fraction, ...], tuple[Element, Element]] = {}
@@ -100,6 +116,8 @@ class Relations:
     def are_any(self) -> bool:
         """Whether a function is more than a generator of its own."""
         angles = set(self._angles.vectors)
+        if any(turn is not None for turn in self._turns):
+            return True
         if len(self._exponents.rows) + len(angles) > len(self._powers) + len(self._circles):
             return True
         products = [
@@ -130,16 +148,31 @@ class Relations:
     def _image_of(self, known: Adjoined) -> Element:
         """A function in the new ring."""
         match known.function:
-            case "exp":
-                row = self._exponents.rows[self._exponents_of[known.generator]]
-                return product(self.ring, zip(self._powers, row, strict=True))
             case "sqrt":
                 return self.products.root(self._image(known.argument))
             case "log":
                 return self.products.logarithm(self._image(known.argument))
-        place = self._angles_of[known.generator]
-        cosine, sine = self._turn(place)
-        return cosine if known.function == "cos" else sine
+            case "sin" | "cos":
+                cosine, sine = self._turn(self._angles_of[known.generator])
+                return cosine if known.function == "cos" else sine
+            case "sign":
+                return self.products.sign_of(self._image(known.argument))
+            case function if function in EXPONENTIALS:
+                row = self._exponents.rows[self._exponents_of[known.generator]]
+                power = product(self.ring, zip(self._powers, row, strict=True))
+                own = Arithmetic(number=self.ring.number, call=refuse_call)
+                return self.products.normalize(evaluate(EXPONENTIALS[function], own, e=power))
+        return self.products.new()
+
+    def _part_of_turn(self, turn: Fraction) -> tuple[Element, Element]:
+        """Cosine and sine of a rational multiple of pi, in the cosine of a smallest part."""
+        parts = lcm(2, turn.denominator)
+        if parts > PARTS:
+            return self.products.circle()
+        cosine, count = self.products.cosine_of_part(parts), int(turn * parts)
+        both = (cosine_of_multiple(self.ring, cosine, n) for n in (count, parts // 2 - count))
+        first, second = map(self.products.normalize, both)
+        return first, second
 
     def _turn(self, place: int) -> tuple[Element, Element]:
         """Cosine and sine of the argument in a place, by the addition theorem."""
@@ -155,6 +188,14 @@ class Relations:
                 s_turn = s if count > 0 else -s
                 cosine, sine = cosine * c - sine * s_turn, sine * c + cosine * s_turn
         return self.products.normalize(cosine), self.products.normalize(sine)
+
+
+def cosine_of_multiple(ring: Field, cosine: Element, count: int) -> Element:
+    """``cos(n*a)`` as Chebyshev's polynomial of ``cos(a)``."""
+    last, result = cosine, ring.one  # cos(-a), cos(0)
+    for _ in range(abs(count)):
+        last, result = result, 2 * cosine * result - last
+    return result
 
 
 def relations_of(field: Field, names: frozenset[str]) -> Relations | None:

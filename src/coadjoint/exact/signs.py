@@ -16,6 +16,7 @@ from typing import Any
 
 from sympy.polys.rings import PolyElement
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.exact.element import Element, remove_factor
 from coadjoint.exact.factors import factors_of
 from coadjoint.exact.field import Field
@@ -152,7 +153,7 @@ class Signs:
             argument = self.field.normal(known.argument)
             signs = Signs(self.field, strict=True, more=self._more)
             return 1 + (argument != 0 and signs.of(argument.combine()) == 1)
-        return 2 * (known.function == "exp")
+        return 2 * ELEMENTARY[known.function].is_positive
 
     def _conditions(self) -> Iterator[tuple[PolyElement, bool]]:
         """What the conditions of the field say is positive: monic, or minus a monic one."""
@@ -206,13 +207,14 @@ class Signs:
         return 0
 
     def _bound(self, p: PolyElement, side: int) -> PolyElement:
-        """A polynomial with sines and cosines at their worst: ``2 + cos`` is at least ``2 - 1``.
+        """A polynomial with sines and the like at their worst: ``2 + cos`` is at least ``2 - 1``.
 
         It bounds the given one from one side where what they multiply is not negative. Else that
         has no sign, and what a pair makes up for is its size: ``a*b*(1 + cos)`` may be ``2*a*b``.
         """
-        circles = {g for g, f in self.field.adjoined.items() if f.function in ("sin", "cos")}
-        circular = [n for n, name in enumerate(self.field.generators) if name in circles]
+        known = self.field.adjoined.items()
+        swinging = {name for name, f in known if ELEMENTARY[f.function].is_bounded}
+        circular = [n for n, name in enumerate(self.field.generators) if name in swinging]
         fixed, swing = dict[tuple[int, ...], Any](), dict[tuple[int, ...], Any]()
         for exponents, number in p.terms():
             rest = tuple(0 if n in circular else e for n, e in enumerate(exponents))

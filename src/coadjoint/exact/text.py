@@ -6,6 +6,7 @@ of generated files and in documents.
 
 from __future__ import annotations
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 from coadjoint.exact.rationals import Monomial, Written
@@ -51,6 +52,8 @@ def _sum(field: Field, monomials: tuple[Monomial, ...]) -> str:
 def _product(field: Field, monomial: Monomial) -> str:
     """One addend without its sign."""
     number = abs(monomial.number)
+    for name, exponent in monomial.powers:  # pi is 4*atan(1)
+        number = number / 4**exponent if _is_eighth(field, name) else number
     factors = [_power(_name(field, name), exponent) for name, exponent in monomial.powers]
     return "*".join(([] if number == 1 and factors else [str(number)]) + factors)
 
@@ -65,7 +68,34 @@ def _bracket(field: Field, element: Element) -> str:
     return text if text.isidentifier() else f"({text})"
 
 
+def _is_eighth(field: Field, name: str) -> bool:
+    """Whether a generator is an eighth of a turn, ``atan(1)``."""
+    known = field.adjoined.get(name)
+    return known is not None and known.function == "atan" and known.argument == 1
+
+
 def _name(field: Field, name: str) -> str:
     """A symbol, or the function that an adjoined generator stands for."""
     known = field.adjoined.get(name)
-    return name if known is None else f"{known.function}({element_text(field, known.argument)})"
+    if known is None:
+        return name
+    if _is_eighth(field, name):
+        return "pi"
+    arguments = (element_text(field, each) for each in known.arguments)
+    return f"{known.function}({', '.join(arguments)})"
+
+
+def text_of_jumps(field: Field) -> str:
+    """What proofs in a field leave out: they hold between jumps of functions, not across them.
+
+    A quantity such as ``sign(q)`` has the rate 0 and changes all the same.
+    """
+    texts = list[str]()
+    for known in field.adjoined.values():
+        if known.function == "sign":
+            texts.append(f"{element_text(field, known.argument)} is not 0")
+        elif ELEMENTARY[known.function].jumps[0]:
+            zero, side = (element_text(field, each) for each in known.arguments)
+            either = f"{zero} is not 0 or " if known.arguments[0] != 0 else ""
+            texts.append(f"{either}{side} is positive")
+    return f", where and while {' and '.join(texts)}" if texts else ""

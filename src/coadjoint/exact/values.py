@@ -7,28 +7,43 @@ Read next: `coadjoint.exact.signs`.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import reduce
+from math import floor
 from operator import mul
+from typing import cast
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, by_name, evaluate
 from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of, rational_root, to_fraction
 from coadjoint.exact.field import Field
 from coadjoint.exact.signs import sign
+from coadjoint.limits import EXPONENT
 
-#: Values at 0, but for the logarithm.
-_AT_ZERO = {"sqrt": 0, "sin": 0, "cos": 1, "exp": 1}
+#: Cosine and sine of an inverse function, in its arguments and ``r``.
+_OF_INVERSES = {
+    "asin": ("r", "u", "1 - u*u"),
+    "acos": ("u", "r", "1 - u*u"),
+    "atan": ("1/r", "u/r", "1 + u*u"),
+    "atan2": ("v/r", "u/r", "u*u + v*v"),
+}
 
 
-def known_value(field: Field, function: str, argument: Element) -> Element | None:
+def known_value(field: Field, function: str, *arguments: Element) -> Element | None:
     """The value of a function where it is an element without it; else None.
 
     >>> field = Field(["m", "q"], slots=1, positive=["m"])
     >>> known_value(field, "sqrt", 4 * field["m"] ** 2), known_value(field, "sqrt", field["q"] ** 2)
     (2*m, None)
     """
-    if function in _AT_ZERO and argument == 0:
-        return field.number(_AT_ZERO[function])
+    argument, at_zero = arguments[0], ELEMENTARY[function].at_zero
+    if at_zero is not None and argument == 0:
+        return field.number(at_zero)
     match function:
+        case "sin" | "cos":
+            return _of_inverse(field, function, argument) or _of_turn(field, function, argument)
+        case "sign":
+            return _sign(field, argument)
         case "sqrt":
             return _root(field, argument)
         case "log":
@@ -36,6 +51,68 @@ def known_value(field: Field, function: str, argument: Element) -> Element | Non
         case "exp":
             return _power(field, argument)
     return None
+
+
+def _of_inverse(field: Field, function: str, argument: Element) -> Element | None:
+    """The sine or cosine of an inverse function: ``cos(asin(u)) = sqrt(1 - u^2)``."""
+    for name in field.functions_in(argument):
+        known = field.adjoined[name]
+        if known.function in _OF_INVERSES and argument == field[name]:
+            cosine, sine, square = _OF_INVERSES[known.function]
+            own, values = Arithmetic(number=field.number, call=field.call), by_name(known.arguments)
+            root = field.call("sqrt", evaluate(square, own, **values))
+            text = sine if function == "sin" else cosine
+            return cast(Element, evaluate(text, own, r=root, **values))
+    return None
+
+
+def _of_turn(field: Field, function: str, argument: Element) -> Element | None:
+    """The cosine or sine of a multiple of pi/3 or pi/2 that is a rational number."""
+    half = half_turns(field, argument)
+    if half is None:
+        return None
+    place = (half if function == "cos" else Fraction(1, 2) - half) % 2
+    place = min(place, 2 - place)
+    value = _COSINES.get(min(place, 1 - place))
+    if value is None:
+        return None
+    return field.number(value if place <= Fraction(1, 2) else -value)
+
+
+#: Cosines by the part of pi, up to a half.
+_COSINES = {Fraction(0): Fraction(1), Fraction(1, 3): Fraction(1, 2), Fraction(1, 2): Fraction(0)}
+
+
+def half_turns(field: Field, argument: Element) -> Fraction | None:
+    """The rational number that pi is multiplied by, ``4*atan(1)``; None of what is none."""
+    for name in field.names_in(argument) & field.adjoined.keys():
+        if field.adjoined[name].function == "atan" and field.adjoined[name].argument == 1:
+            number = field.as_number(argument / field[name])
+            return None if number is None else number / 4
+    return None
+
+
+def _sign(field: Field, argument: Element) -> Element | None:
+    """The sign of a product of factors, of which each is irreducible; None of a single one.
+
+    Raises:
+        ZeroDivisionError: Of 0, where a sign jumps.
+    """
+    whole = field.normal(argument).combine()
+    if whole == 0:
+        raise ZeroDivisionError("the sign of 0")
+    if (known := sign(field, whole)) != 0:
+        return field.number(known)
+    top, bottom = field.fraction(whole)
+    content, factors = factors_of(top)
+    powers = list(factors)
+    for divisor, power in bottom:
+        powers += [(f, e * power) for f, e in factors_of(divisor)[1]]
+    is_single = len(powers) == 1 and powers[0][1] == 1 and content == 1 and not bottom
+    if is_single or len(powers) > field.room:  # then it has a generator of its own
+        return None
+    signs = (field.call("sign", field.from_polynomial(f)) ** e for f, e in powers)
+    return field.normal(reduce(mul, signs, field.number(1 if content > 0 else -1)))
 
 
 def _root(field: Field, argument: Element) -> Element | None:
@@ -70,16 +147,18 @@ def _exponent(field: Field, argument: Element) -> Element | None:
 
 
 def _power(field: Field, argument: Element) -> Element | None:
-    """``exp(n*log(u) + v) = u^n*exp(v)`` for whole and half n."""
+    """``exp((n + a)*log(u) + v) = u^n*exp(a*log(u) + v)`` for whole n, and n + 1/2 alone."""
     for name in sorted(field.names_in(argument) & field.adjoined.keys()):
         known = field.adjoined[name]
         if known.function != "log":
             continue
-        slope = field.as_number(field.slope(argument, name))
-        if slope is None or (2 * slope).denominator != 1:
+        numbers = map(field.as_number, field.terms(field.slope(argument, name)))
+        slope = sum((number for number in numbers if number is not None), Fraction(0))
+        whole = slope if (2 * slope).denominator == 1 else Fraction(floor(slope))
+        if not whole or abs(whole) > EXPONENT:
             continue
-        rest = field.call("exp", argument - slope * field[name])
-        if slope.denominator == 1:
-            return rest * known.argument ** int(slope)
-        return rest * field.call("sqrt", known.argument) ** int(2 * slope)
+        rest = field.call("exp", argument - whole * field[name])
+        if whole.denominator == 1:
+            return rest * known.argument ** int(whole)
+        return rest * field.call("sqrt", known.argument) ** int(2 * whole)
     return None

@@ -19,10 +19,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import islice
-from typing import Any
+from typing import Any, cast
 
 import mpmath
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, by_name, domain_of, evaluate, jump_of
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 
@@ -77,23 +78,35 @@ class Enclosure:
     def __mul__(self, other: Enclosure) -> Enclosure:
         return Enclosure(self.bounds * other.bounds)
 
+    def __neg__(self) -> Enclosure:
+        return Enclosure(-self.bounds)
+
     def __truediv__(self, other: Enclosure) -> Enclosure:
         if not other.sign:
             raise ZeroDivisionError("a divisor that may be zero")
         return Enclosure(self.bounds / other.bounds)
 
 
-def enclose_function(function: str, argument: Enclosure) -> Enclosure:
+def enclose_function(function: str, *arguments: Enclosure) -> Enclosure:
     """Bounds of an elementary function.
 
     Raises:
-        ValueError: The argument may be outside the open real domain, or is huge.
+        ValueError: An argument may be outside the open domain, or where it jumps, or is huge.
     """
-    if function in ("sqrt", "log") and argument.sign <= 0:
-        raise ValueError(f"{function} of {argument.bounds}, which may not be positive")
-    if function in LARGEST and not argument.size < LARGEST[function]:
-        raise ValueError(f"{function} of {argument.bounds}")
-    return Enclosure(getattr(INTERVALS, function)(argument.bounds))
+    positive = domain_of(function, arguments, _ENCLOSED)
+    zero, side = jump_of(function, arguments)
+    may_jump = zero is not None and not zero.sign and (side is None or side.sign <= 0)
+    if may_jump or (positive is not None and positive.sign <= 0):
+        shown = ", ".join(str(each.bounds) for each in arguments)
+        raise ValueError(f"{function} of {shown}, where it may have no value")
+    if function in LARGEST and not arguments[0].size < LARGEST[function]:
+        raise ValueError(f"{function} of {arguments}")
+    if text := ELEMENTARY[function].enclosed:
+        return cast(Enclosure, evaluate(text, _ENCLOSED, **by_name(arguments)))
+    return Enclosure(getattr(INTERVALS, function)(*(each.bounds for each in arguments)))
+
+
+_ENCLOSED = Arithmetic(number=Enclosure.of, call=enclose_function)
 
 
 def enclosure(field: Field, element: Element, point: Mapping[str, Fraction]) -> Enclosure:
@@ -164,8 +177,8 @@ def is_entire(field: Field, elements: Iterable[Element]) -> bool:
     """
     called = frozenset[str]().union(*map(field.functions_in, elements))
     return all(
-        known.function in ("sin", "cos", "exp")
-        and not any(quotient.divisors for quotient in field.quotients(known.argument))
+        ELEMENTARY[known.function].entire
+        and not any(q.divisors for each in known.arguments for q in field.quotients(each))
         for known in map(field.adjoined.__getitem__, called)
     )
 
@@ -232,7 +245,7 @@ class Domain:
 
     @cached_property
     def positive(self) -> tuple[Element, ...]:
-        """What must be positive: symbols, arguments of roots and logarithms, and conditions.
+        """What must be positive: symbols, what functions ask for, and conditions.
 
         Inner arguments come first. A condition that allows 0 is asked for more: points lie inside.
         """
@@ -240,9 +253,9 @@ class Domain:
         reached = (*self.elements, *conditions)
         called = frozenset[str]().union(*map(self.field.functions_in, reached))
         inner = [
-            known.argument
+            positive
             for name, known in self.field.adjoined.items()
-            if name in called and known.function in ("sqrt", "log")
+            if name in called and (positive := self.field.domain_of(known)) is not None
         ]
         names = frozenset[str]().union(*map(self.field.reach, (*reached, *inner)))
         signed = [
@@ -296,6 +309,11 @@ class Domain:
 
 def _float(field: Field, element: Element, place: Mapping[str, float]) -> float:
     """The value of an element to double precision."""
-    return field.evaluate(
-        element, place, float, lambda function, x: float(getattr(math, function)(x))
-    )
+    return field.evaluate(element, place, float, _float_of)
+
+
+def _float_of(function: str, *arguments: float) -> float:
+    """A function in double precision."""
+    if function == "sign":
+        return math.copysign(1.0, *arguments)
+    return float(getattr(math, function)(*arguments))

@@ -154,9 +154,9 @@ def _find_differing_residues(equations: Equations, program: Program) -> Iterator
     )
 
 
-def _call(function: str, argument: Residue, prime: int) -> Residue:
+def _call(function: str, *arguments: Residue, prime: int) -> Residue:
     """A number that an elementary function has at an argument: any, but always the same.
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
-    return draw(f"{function} {argument.value}", prime)
+    return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)

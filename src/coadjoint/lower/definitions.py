@@ -83,8 +83,7 @@ def _uses(field: Field, element: Element) -> Counter[str]:
             in_sum = len(field.terms(divisor)) > 1
             uses.update(dict.fromkeys(field.reach(divisor), power + in_sum))
     for generator in field.functions_in(element):
-        argument = field.adjoined[generator].argument
-        uses.update(dict.fromkeys(field.reach(argument), 2))
+        uses.update(dict.fromkeys(field.reach(field[generator]), 2))
     return uses
 
 

@@ -8,9 +8,11 @@ Read next: `coadjoint.lower.naming`, which turns a graph into statements.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import reduce
 
+from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.lower.program import Call, Node, Number, Symbol, children, operation
 
 
@@ -113,9 +115,9 @@ class Graph:
             return self.negate(self.divide(a, self.operands[b][0]))
         return self._intern("divide", (a, b))
 
-    def call(self, function: str, argument: int) -> int:
-        """``function(argument)``."""
-        return self._intern("call", (argument,), function)
+    def call(self, function: str, *arguments: int) -> int:
+        """``function(arguments)``."""
+        return self._intern("call", arguments, function)
 
     def sum(self, terms: Iterable[int]) -> int:
         """Terms in pairs, pairs of pairs and so on, a term without a minus sign first.
@@ -151,8 +153,8 @@ class Graph:
                 return self.number(value)
             case Symbol(name=name):
                 return values[name] if name in values else self.symbol(name)
-            case Call(function=function, argument=argument):
-                return self.call(function, self.insert(argument, values))
+            case Call(function=function):
+                return self.call(function, *(self.insert(each, values) for each in children(tree)))
         operands = [self.insert(child, values) for child in children(tree)]
         return int(getattr(self, str(operation(tree)))(*operands))
 
@@ -182,7 +184,7 @@ class Graph:
             case "negate":
                 return self.negate(da)
             case "call":
-                return self.multiply(self._call_slope(node, a), da)
+                return self._call_slope(node, [part.get(name, zero) for part in parts])
         db, b = parts[1].get(name, zero), self.operands[node][1]
         match self.kinds[node]:
             case "add":
@@ -192,15 +194,16 @@ class Graph:
         # (a/b)' = (a' - (a/b) b') / b, which shares the quotient with the value
         return self.divide(self.add(da, self.negate(self.multiply(node, db))), b)
 
-    def _call_slope(self, node: int, argument: int) -> int:
-        """``f'(argument)`` for the function of a call node."""
-        match self.payload[node]:
-            case "sqrt":
-                return self.divide(self.number(Fraction(1, 2)), node)
-            case "sin":
-                return self.call("cos", argument)
-            case "cos":
-                return self.negate(self.call("sin", argument))
-            case "exp":
-                return node
-        return self.divide(self.number(1), argument)  # log
+    def _call_slope(self, node: int, inner: Sequence[int]) -> int:
+        """The derivative of a call from those of its arguments."""
+        own = Arithmetic(
+            number=self.number,
+            call=self.call,
+            add=self.add,
+            multiply=self.multiply,
+            divide=self.divide,
+            negate=self.negate,
+        )
+        outer = slopes_of(str(self.payload[node]), self.operands[node], node, own)
+        terms = map(self.multiply, outer, inner)
+        return reduce(self.add, terms)

@@ -10,20 +10,22 @@ Derivatives, 2008, ch. 13)::
     product   p = a b        p[k] = sum_{m=0..k} a[m] b[k-m]
     quotient  q = a / b      q[k] = (a[k] - sum_{m=1..k} b[m] q[k-m]) / b[0]
     sqrt      s = sqrt(a)    s[k] = (a[k] - sum_{m=1..k-1} s[m] s[k-m]) / (2 s[0])
-    exp       e = exp(a)     e[k] = sum_{m=1..k} m a[m] e[k-m] / k
-    log       l = log(a)     l[k] = (a[k] - sum_{m=1..k-1} m l[m] a[k-m] / k) / a[0]
-    sin, cos  s, c of a      s[k] = sum_{m=1..k} m a[m] c[k-m] / k,  c[k] = -sum m a[m] s[k-m] / k
+    function  f' = p a'      f[k] = sum_{m=1..k} m a[m] p[k-m] / k
+    function  d f' = a'      f[k] = (a[k] - sum_{m=1..k-1} m f[m] d[k-m] / k) / d[0]
+    atan2     d f' = x y' - y x'
 
-The coefficients of the state are the rates, ``x[k+1] = rate[k] / (k + 1)``. What depends on
-parameters alone is its own order 0.
+The table of functions gives p, as ``f`` of ``exp`` and ``cos(a)`` of ``sin``, or d, as ``a`` of
+``log`` and ``sqrt(1 - a*a)`` of ``asin``. The coefficients of the state are the rates,
+``x[k+1] = rate[k] / (k + 1)``. What depends on parameters alone is its own order 0.
 Read next: `coadjoint.render.solvers`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.motion import Function, Meaning, Plan, Quotient, find_plan
 from coadjoint.lower.polynomials import (
     Constant,
@@ -35,6 +37,7 @@ from coadjoint.lower.polynomials import (
 )
 from coadjoint.lower.program import (
     ONE,
+    ZERO,
     Call,
     Divide,
     Multiply,
@@ -45,9 +48,6 @@ from coadjoint.lower.program import (
     Symbol,
     walk,
 )
-
-#: The function that has to stand with another one, whose recurrence reads its coefficients.
-PARTNERS = {"sin": "cos", "cos": "sin"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +61,17 @@ class Cell:
             names of cells for these; None where it follows from the recurrence of ``value``, whose
             operands are names then: a product, a quotient or a function of names.
         depth: How many recurrences stand between it and the state, one upon the other.
-        partner: The sine of a cosine, the cosine of a sine; else "".
+        factors: Of a function other than a root, by argument, what multiplies its rate in the rate
+            of the function, and whether with a minus: a name, or "" for one.
+        divisor: What the sum of these is divided by: a name, or "".
     """
 
     name: str
     value: Node
     tail: Node | None
     depth: int
-    partner: str = ""
+    factors: tuple[tuple[str, bool], ...] = ()
+    divisor: str = ""
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,8 @@ def _reads_all_orders(cell: Cell) -> set[str]:
             return {cell.name, *_names(right)}
         case Call(function="sqrt"):
             return {cell.name}
-    return {cell.name, *_names(cell.value), *filter(None, [cell.partner])}
+    others = {cell.divisor, *(name for name, _ in cell.factors)}
+    return {cell.name, *_names(cell.value), *others} - {""}
 
 
 def _names(node: Node) -> Iterator[str]:
@@ -170,8 +174,8 @@ class _Making:
             case Quotient(above=above, below=below):
                 over = ONE if above is None else Symbol(above)
                 self._recurrence(Divide(over, Symbol(below)), name)
-            case Function(name=function, of=argument):
-                self._recurrence(Call(function, Symbol(argument)), name)
+            case Function(name=function, of=arguments):
+                self._recurrence(Call(function, *map(Symbol, arguments)), name, meaning)
             case _:
                 self._make_sum(name, meaning)
 
@@ -189,25 +193,40 @@ class _Making:
         self._cells.append(cell)
         self._depth[cell.name] = cell.depth
 
-    def _recurrence(self, value: Node, name: str = "") -> str:
+    def _recurrence(self, value: Node, name: str = "", meaning: Function | None = None) -> str:
         """The cell of an operation on names that no combination gives."""
         if value not in self._known:
-            name, partner, depth = name or self._name(), "", 1 + self._depth_of(value)
+            name, depth = name or self._name(), 1 + self._depth_of(value)
             self._known[value] = name
-            if isinstance(value, Call) and value.function in PARTNERS:
-                partner = self._partner(value, name, depth)
-            self._append(Cell(name=name, value=value, tail=None, depth=depth, partner=partner))
+            cell = Cell(name=name, value=value, tail=None, depth=depth)
+            if meaning is not None and meaning.factors:
+                cell = self._with_factors(cell, meaning)
+            elif isinstance(value, Call) and ELEMENTARY[value.function].partner:
+                cell = self._with_partner(cell, value)
+            elif isinstance(value, Call) and ELEMENTARY[value.function].is_locally_constant:
+                cell = replace(cell, tail=ZERO)
+            self._append(cell)
         elif name and self._known[value] != name:  # the partner of another has it
             same = Symbol(self._known[value])
             self._append(Cell(name=name, value=same, tail=same, depth=self._depth_of(same)))
         return self._known[value]
 
-    def _partner(self, value: Call, name: str, depth: int) -> str:
-        """The name of the cosine of a sine, or the sine of a cosine, which is made."""
-        other = Call(PARTNERS[value.function], value.argument)
-        partner = self._known[other] = self._name()
-        self._append(Cell(name=partner, value=other, tail=None, depth=depth, partner=name))
-        return partner
+    def _with_factors(self, cell: Cell, meaning: Function) -> Cell:
+        """The cell of a function with what its recurrence reads."""
+        before = (
+            [meaning.divisor, *(name for name, _ in meaning.factors)] if meaning.divisor else []
+        )
+        depth = max(cell.depth, *(1 + self._depth.get(name, 0) for name in before), 0)
+        return replace(cell, depth=depth, factors=meaning.factors, divisor=meaning.divisor)
+
+    def _with_partner(self, cell: Cell, value: Call) -> Cell:
+        """The cell of a sine with its cosine, or the other way round, which is made."""
+        own, name = ELEMENTARY[value.function], self._name()
+        other = Call(own.partner, value.argument)
+        self._known[other] = name
+        factors = ((cell.name, ELEMENTARY[own.partner].slopes[0].startswith("-")),)
+        self._append(replace(cell, name=name, value=other, factors=factors))
+        return replace(cell, factors=((name, own.slopes[0].startswith("-")),))
 
     def _name(self) -> str:
         """A name that nothing has yet."""

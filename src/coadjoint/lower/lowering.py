@@ -19,12 +19,14 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import Rows, rhs, rows_of
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, Field
 from coadjoint.exact.rationals import Written
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.definitions import inline_single_uses, shorten
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
+from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
@@ -191,8 +193,8 @@ class Lowering:
             if name in self._scales:
                 self._coefficient(self._scales.take(name)[0])
             if name in self.field.adjoined:
-                argument = self.field.adjoined[name].argument
-                self._form(argument, self._level(argument))
+                for argument in self.field.adjoined[name].arguments:
+                    self._form(argument, self._level(argument))
 
     def _moves(self, element: Element) -> bool:
         """Whether an element depends on the member, not on parameters alone."""
@@ -284,9 +286,9 @@ class Lowering:
         known = self.field.adjoined.get(name)
         if known is None:
             return self.graph.node_of_name(name, self._numbers)
-        level = self._level(known.argument)
-        argument = self._build(self._form(known.argument, level), level)
-        return self.graph.call(known.function, argument)
+        levels = [(argument, self._level(argument)) for argument in known.arguments]
+        arguments = (self._build(self._form(each, level), level) for each, level in levels)
+        return self.graph.call(known.function, *arguments)
 
 
 def _mark(element: Element) -> Any:
@@ -362,7 +364,17 @@ def _choose(equations: Equations, plain: Program) -> Program:
             program = _program(equations, "rhs", rows.lines, rows.shape, rows.state, closed=tried)
             if cost(program) < cost(best):
                 closed, best = tried, program
-    return best
+    return _take_minors(equations, best, closed)
+
+
+def _take_minors(equations: Equations, best: Program, closed: frozenset[str]) -> Program:
+    """The rates with three unknowns by minors, where that takes less time."""
+    rows = rhs(equations)
+    if (solve := find_solve(equations, rows.lines)) is None:
+        return best
+    shape, state = rows.shape, rows.state
+    program = _program(equations, "rhs", rows.lines, shape, state, closed=closed, solve=solve)
+    return set_factored(program, best) if is_faster(program, best) else best
 
 
 def _scale(equations: Equations, plain: Program) -> Program:
@@ -416,14 +428,18 @@ def _program(
     state: tuple[str, ...],
     scales: Mapping[str, Element] | None = None,
     closed: frozenset[str] = frozenset(),
+    solve: Solve | None = None,
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
-    shorter = [(label, shorten(equations, element)) for label, element in outputs]
-    definitions, outputs = inline_single_uses(equations, shorter, closed)
-    elements = [element for _, element in (*definitions, *outputs)]
-    lowering = Lowering(equations, elements, scales)
+    asked = outputs if solve is None else entries_of(solve, outputs)
+    shorter = [(label, shorten(equations, element)) for label, element in asked]
+    definitions, parts = inline_single_uses(equations, shorter, closed)
+    lowering = Lowering(equations, [element for _, element in (*definitions, *parts)], scales)
     named = [(label, lowering.node(element)) for label, element in definitions]
-    results = [(label, lowering.node(element)) for label, element in outputs]
+    results = [(label, lowering.node(element)) for label, element in parts]
+    if solve is not None:
+        lines, results = solve_by_minors(lowering.graph, solve, dict(results), outputs)
+        named += lines
     return _name(equations, name, lowering, (named, results), shape, state)
 
 

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, slopes_of
 from coadjoint.lower.polynomials import (
     Polynomial,
     Product,
@@ -46,6 +47,15 @@ from coadjoint.lower.program import (
     with_children,
 )
 
+#: Functions whose recurrence needs nothing else: a root, signs, and what stands with a partner.
+ALONE = (
+    "sqrt",
+    *(name for name, each in ELEMENTARY.items() if each.partner or each.is_locally_constant),
+)
+#: What makes nodes of the texts of functions.
+NODES = Arithmetic(
+    number=Number, call=Call, add=Add, multiply=Multiply, divide=Divide, negate=Negate
+)
 #: What a term of a linear combination costs, where a product costs 1.
 TERM = 0.02
 #: Plans are tried while their number times the size of the Program is below.
@@ -71,11 +81,16 @@ class Function:
 
     Attributes:
         name: The function.
-        of: The name of its argument.
+        of: The names of its arguments.
+        factors: By argument, what its rate is multiplied by in the rate of the function, and
+            whether with a minus: a name, or "" for one.
+        divisor: The name of what their sum is divided by, or "".
     """
 
     name: str
-    of: str
+    of: tuple[str, ...]
+    factors: tuple[tuple[str, bool], ...] = ()
+    divisor: str = ""
 
 
 Meaning = Polynomial | Quotient | Function
@@ -203,6 +218,7 @@ class _Planning:
                     done.add(name)
                     yield from visit(_names_in(self._meanings[name]))
                     yield name
+                    yield from visit(_names_behind(self._meanings[name]))
 
         for rate in rates:
             yield from visit(_names_in(rate))
@@ -247,12 +263,31 @@ class _Planning:
                 return self._multiply(self._polynomial(left), self._polynomial(right))
             case Divide(left=left, right=right):
                 return self._divide(self._polynomial(left), right)
-            case Call(function=function, argument=argument):
-                whole = self._polynomial(argument)
-                if not _moves(whole):
-                    return self._fixed(Call(function, _constant_node(whole)))
-                return self._meant(Function(function, self._as_name(whole)))
+            case Call(function=function):
+                wholes = list(map(self._polynomial, children(node)))
+                if not any(map(_moves, wholes)):
+                    return self._fixed(Call(function, *map(_constant_node, wholes)))
+                return self._function(function, tuple(map(self._as_name, wholes)))
         raise AssertionError(node)
+
+    def _function(self, function: str, arguments: tuple[str, ...]) -> Polynomial:
+        """A function under its name, with names for what its rate is made of."""
+        meaning = Function(function, arguments)
+        whole = self._meant(meaning)
+        name = self._as_name(whole)
+        if self._meanings[name] == meaning and function not in ALONE:
+            self._values |= {each: moving(each) for each in (*arguments, name)}
+            slopes = slopes_of(function, tuple(map(Symbol, arguments)), Symbol(name), NODES)
+            parts = [_parts_of_slope(slope) for slope in slopes]
+            factors = tuple((self._part(above), minus) for minus, above, _ in parts)
+            self._meanings[name] = replace(
+                meaning, factors=factors, divisor=self._part(parts[0][2])
+            )
+        return whole
+
+    def _part(self, node: Node) -> str:
+        """The name of a factor or divisor of a slope; "" for one."""
+        return "" if node == ONE else self._as_name(self._polynomial(node))
 
     def _meant(self, meaning: Quotient | Function) -> Polynomial:
         """A quotient or a function under its name."""
@@ -300,6 +335,23 @@ class _Planning:
         return scaled(Fraction(1), (self._reciprocals[node],))
 
 
+def _names_behind(meaning: Meaning) -> Iterator[str]:
+    """The names that a meaning reads of which orders below are enough: they may depend on it."""
+    if isinstance(meaning, Function) and not meaning.divisor:
+        yield from (name for name, _ in meaning.factors if name)
+
+
+def _parts_of_slope(slope: Node) -> tuple[bool, Node, Node]:
+    """Whether a derivative begins with a minus, its numerator and its denominator."""
+    match slope:
+        case Negate(operand=operand):
+            return True, *_parts_of_slope(operand)[1:]
+        case Divide(left=left, right=right):
+            minus = isinstance(left, Negate)
+            return minus, left.operand if isinstance(left, Negate) else left, right
+    return False, slope, ONE
+
+
 def _constant_node(whole: Polynomial) -> Node:
     return node_of({rest: factor for (_, rest), factor in whole.items()})
 
@@ -321,8 +373,11 @@ def _names_in(meaning: Meaning) -> Iterator[str]:
     match meaning:
         case Quotient(above=above, below=below):
             yield from filter(None, [above, below])
-        case Function(of=name):
-            yield name
+        case Function(of=names, factors=factors, divisor=divisor):
+            yield from names
+            if divisor:  # it does not depend on the value
+                yield divisor
+                yield from (name for name, _ in factors if name)
         case _:
             for product, _ in meaning:
                 yield from product

@@ -15,13 +15,15 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import Literal, TypeVar
 
+from coadjoint.elementary import ELEMENTARY
+
 Value = TypeVar("Value")
 
 #: When a statement is computed: once for all members that share parameters, or for each member.
 LEVELS = ("parameters", "member")
 
 #: Elementary functions a Program may call; each has the same meaning in every target.
-FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")
+FUNCTIONS = tuple(ELEMENTARY)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +73,11 @@ class Divide:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``function(argument)`` for a function of `FUNCTIONS`."""
+    """``function(argument, other)`` for a function of `FUNCTIONS`, most of which have no other."""
 
     function: str
     argument: Node
+    other: Node | None = None
 
 
 Node = Number | Symbol | Negate | Add | Multiply | Divide | Call
@@ -201,6 +204,8 @@ class Program:
         inputs: Component names of the inputs, in order; empty where the spec declares none.
         time: The name of the time; empty where the spec declares none.
         table: What the outputs are the sums of, where targets print loops in their place.
+        factored: The same function in fewer products that move, where there is one: recurrences are
+            made of it. It begins with the same statements of level ``parameters``.
     """
 
     name: str
@@ -212,6 +217,7 @@ class Program:
     inputs: tuple[str, ...] = ()
     time: tuple[str, ...] = ()
     table: Table | None = None
+    factored: Program | None = None
 
     @property
     def arrays(self) -> dict[str, tuple[str, ...]]:
@@ -278,7 +284,9 @@ def children(node: Node) -> tuple[Node, ...]:
     match node:
         case Add(left, right) | Multiply(left, right) | Divide(left, right):
             return (left, right)
-        case Negate(operand=operand) | Call(argument=operand):
+        case Call(argument=argument, other=other):
+            return (argument,) if other is None else (argument, other)
+        case Negate(operand=operand):
             return (operand,)
     return ()
 
@@ -301,7 +309,7 @@ def evaluate(
     node: Node,
     values: Mapping[str, Value],
     number: Callable[[Fraction], Value],
-    call: Callable[[str, Value], Value],
+    call: Callable[..., Value],
 ) -> Value:
     """The value of a node in any arithmetic that has ``+ * /`` and unary ``-``.
 
@@ -316,8 +324,8 @@ def evaluate(
             return number(value)
         case Symbol(name=name):
             return values[name]
-        case Call(function=function, argument=argument):
-            return call(function, evaluate(argument, values, number, call))
+        case Call(function=function):
+            return call(function, *(evaluate(u, values, number, call) for u in children(node)))
         case Negate(operand=operand):
             return -evaluate(operand, values, number, call)  # type: ignore[operator, no-any-return]
     left = evaluate(node.left, values, number, call)
@@ -334,7 +342,7 @@ def run(
     program: Program,
     inputs: Mapping[str, Value],
     number: Callable[[Fraction], Value],
-    call: Callable[[str, Value], Value],
+    call: Callable[..., Value],
 ) -> list[Value]:
     """The outputs of a Program in any arithmetic: exact elements, fractions, 50 digits, floats."""
     values = dict(inputs)

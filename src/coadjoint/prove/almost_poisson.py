@@ -43,7 +43,7 @@ from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot, inverse
-from coadjoint.exact.witness import is_entire
+from coadjoint.exact.witness import Enclosure, enclose_function, is_entire
 from coadjoint.poisson.jacobi import Triple, schouten_bracket
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.constrained import ConstrainedRates
@@ -321,12 +321,10 @@ def _bounds(value: Fraction) -> Any:
     return INTERVALS.mpf(value.numerator) / value.denominator
 
 
-def _bounds_of(function: str, argument: Any) -> Any:
+def _bounds_of(function: str, *arguments: Any) -> Any:
     """Bounds of a real elementary function.
 
     Raises:
         ValueError: The argument may be outside the real domain.
     """
-    if function in ("sqrt", "log") and not argument > 0:
-        raise ValueError(f"{function} of {argument}")
-    return getattr(INTERVALS, function)(argument)
+    return enclose_function(function, *map(Enclosure, arguments)).bounds

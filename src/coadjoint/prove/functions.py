@@ -41,6 +41,8 @@ Multiples = dict[int, int]
 #: Functions that follow addition theorems, each group with a basis of its own.
 GROUPS = (("sin", "cos"), ("exp",))
 LOGARITHMS = ("log",)
+#: All functions whose relations are known here.
+RELATED = ("sqrt", *LOGARITHMS, *(name for group in GROUPS for name in group))
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,8 @@ class Functions:
     def _obstacle(self, known: set[str]) -> str:
         """Why relations may be missed; the bases of arguments are made on the way."""
         for each in self.known:
+            if each.function not in RELATED:
+                return f"{each.function} occurs, which may be related to other functions"
             if not self.field.reach(each.argument) <= known:
                 return f"{each.function} has an argument that depends on more than the state"
             inner = self.field.functions_in(each.argument)

@@ -147,10 +147,9 @@ class Ideal:
         called = {g for each in self.relations for g in field.functions_in(each)}
         for known in field.adjoined.values():
             own = field[known.generator]
-            if known.generator in called and known.function == "sqrt":
-                generators.append(own**2 - known.argument)
-            if known.function == "sin" and {known.generator, known.partner} & called:
-                generators.append(own**2 + field[known.partner] ** 2 - 1)
+            square = field.square_of(known)
+            if square is not None and {known.generator, known.partner} & called:
+                generators.append(own**2 - square)
         return generators
 
     def _strip(self, relation: Element) -> Element:
@@ -312,7 +311,7 @@ class Ideal:
 
     def _has_room(self, name: str) -> bool:
         """Whether the functions of a symbol can be called with another argument."""
-        called = [a for a in self.field.adjoined.values() if name in self.field.reach(a.argument)]
+        called = [g for g in self.field.adjoined if name in self.field.reach(self.field[g])]
         return 2 * len(called) <= self.field.room
 
     def _factors(self, relation: Element, nonzero: Sequence[Element] = ()) -> list[Element]:

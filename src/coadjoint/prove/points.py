@@ -27,6 +27,7 @@ from typing import Any
 
 import mpmath
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, jump_of
 from coadjoint.exact import Condition, Element, Field
 
 #: Digits of values at points.
@@ -181,9 +182,9 @@ class Points:
         strictly = {name for each in written for name in self.ring.functions_in(each)}
         called = {name for each in self._involved for name in self.ring.functions_in(each)}
         arguments = [
-            (known.argument, known.function == "log" or known.generator in strictly)
+            (positive, known.generator in strictly or not ELEMENTARY[known.function].has_edge)
             for known in self.ring.adjoined.values()
-            if known.generator in called and known.function in ("sqrt", "log")
+            if known.generator in called and (positive := self.ring.domain_of(known)) is not None
         ]
         signs = [(self.ring[name], True) for name in self.names if name in self.ring.positive]
         solved = [
@@ -303,7 +304,7 @@ class Points:
             divisors = [d for part in self.ring.quotients(element) for d, _ in part.divisors]
             divisors = [each for each in divisors if each not in collected]
             collected += divisors
-            left += [*divisors, *(known[name].argument for name in sorted(new))]
+            left += [*divisors, *(each for name in sorted(new) for each in known[name].arguments)]
         return collected
 
     def _starts(self) -> Iterator[Values]:
@@ -420,15 +421,21 @@ def real(value: Any) -> Any:
     return mpmath.mpf(value.numerator) / value.denominator if _is_rational(value) else value
 
 
-def real_function(function: str, argument: Any) -> Any:
+def real_function(function: str, *arguments: Any) -> Any:
     """A real elementary function, to the working precision of mpmath.
 
     Raises:
-        ValueError: The argument is outside the real domain.
+        ValueError: An argument is outside the real domain, or where the function jumps.
     """
-    if (argument < 0 and function in ("sqrt", "log")) or (argument == 0 and function == "log"):
-        raise ValueError(f"{function} of {argument}")
-    return getattr(mpmath, function)(argument)
+    positive = domain_of(function, arguments, _REAL)
+    zero, side = jump_of(function, arguments)
+    jumps, has_edge = zero == 0 and (side is None or side <= 0), ELEMENTARY[function].has_edge
+    if jumps or (positive is not None and (positive < 0 or (positive == 0 and not has_edge))):
+        raise ValueError(f"{function} of {arguments}")
+    return getattr(mpmath, function)(*arguments)
+
+
+_REAL = Arithmetic(number=real, call=real_function)
 
 
 def _is_rational(value: Any) -> bool:

@@ -100,9 +100,10 @@ class PolynomialFamily:
             known
             for known in self.samples.functions.known
             if known.function != "sqrt"
-            and self.field.reach(known.argument) & set(self.motion.positions)
+            and self.field.reach(self.field[known.generator]) & set(self.motion.positions)
         ]
-        inside = {name for known in functions for name in self.field.reach(known.argument)}
+        called = (self.field[known.generator] for known in functions)
+        inside = {name for each in called for name in self.field.reach(each)}
         moved = set(self.samples.state) - inside - set(self.velocities)
         plain = [name for name in self.motion.positions if name in moved]
         return (*plain, *(known.generator for known in functions))

@@ -177,7 +177,7 @@ def _parities(motion: Motion, time: set[str]) -> tuple[list[Parity], bool]:
             continue
         (written,) = field.quotients(field.normal(rate).combine())
         inside = [d for d, _ in written.divisors if field.reach(d) & (state | time)]
-        called = [field.adjoined[g].argument for g in field.functions_in(rate)]
+        called = [u for g in field.functions_in(rate) for u in field.adjoined[g].arguments]
         inside += [argument for argument in called if field.reach(argument) & (state | time)]
         is_complete &= not inside
         for powers in (dict(each.powers) for each in written.monomials):

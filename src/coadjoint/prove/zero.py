@@ -20,6 +20,7 @@ import mpmath
 
 from coadjoint.errors import ClaimError
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.text import text_of_jumps
 from coadjoint.exact.witness import enclosure
 from coadjoint.prove.certificate import Claim, Finding, Shown, Verdict
 from coadjoint.prove.ideals import Ideal
@@ -205,10 +206,8 @@ def prove_by_normal_form(ring: Field) -> Decision:
 
     What is zero need not show the functions whose relations made it so, as in ``sin(-x) + sin(x)``.
     """
-    return Decision(
-        verdict=Verdict.PROVED,
-        method=NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM,
-    )
+    method = NORMAL_FORM_WITH_FUNCTIONS if ring.has_called else NORMAL_FORM
+    return Decision(verdict=Verdict.PROVED, method=f"{method}{text_of_jumps(ring)}")
 
 
 def _decide_where(
@@ -217,6 +216,10 @@ def _decide_where(
     """Whether every element is zero where relations hold: on each branch of their zero set."""
     if where.contains(where.field.one):
         raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
+    for known in where.field.adjoined.values():
+        if known.function == "sign" and where.contains(known.argument):
+            kink = element_text(where.field, known.argument)
+            raise UndecidedError(f"it is asked for on the kink where {kink} is 0. {ADVICE}")
     if all(map(where.contains, elements)):
         return _proof(elements, where, defined, f"modulo the ideal of {where.scope}")
     try:
@@ -286,7 +289,8 @@ def _proof(
             raise UndecidedError(f"{where.scope} holds nowhere. {ADVICE}")
         empty = f"no point is found at which it has a value, where {where.scope}"
         raise UndecidedError(f"{empty}. {ADVICE}")
-    return Decision(verdict=Verdict.PROVED, method=f"normal form {text}{_but_for(poles, where)}")
+    method = f"normal form {text}{_but_for(poles, where)}{text_of_jumps(where.field)}"
+    return Decision(verdict=Verdict.PROVED, method=method)
 
 
 def _is_regular(poles: Sequence[Element], points: Points, point: Values) -> bool:
@@ -415,8 +419,8 @@ class _Sized:
         return _Sized(exact, abs(exact))
 
     @staticmethod
-    def call(function: str, argument: _Sized) -> _Sized:
-        return _Sized.of(real_function(function, argument.value))
+    def call(function: str, *arguments: _Sized) -> _Sized:
+        return _Sized.of(real_function(function, *(each.value for each in arguments)))
 
 
 def _with_size(element: Element, ring: Field, point: Values) -> tuple[Any, Any]:

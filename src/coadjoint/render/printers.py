@@ -10,13 +10,23 @@ Read next: `coadjoint.render.targets.c.printer`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Final
 
 from coadjoint.errors import SpecError
-from coadjoint.lower.program import Add, Call, Divide, Multiply, Negate, Node, Number, Symbol
+from coadjoint.lower.program import (
+    Add,
+    Call,
+    Divide,
+    Multiply,
+    Negate,
+    Node,
+    Number,
+    Symbol,
+    children,
+)
 
 WIDTH: Final = 100
 
@@ -66,6 +76,8 @@ class Printer:
     Attributes:
         function_prefix: What stands before the name of an elementary function.
         function_suffix: What stands behind it.
+        names: Names of functions that have others than ours.
+        ends_with_comma: Whether one stands behind the last of arguments on lines of their own.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> Printer("np.").text(Add(Multiply(x, Add(x, y)), Negate(Call("sqrt", y))))
@@ -74,6 +86,8 @@ class Printer:
 
     function_prefix: str
     function_suffix: str = ""
+    names: Mapping[str, str] = field(default_factory=dict)
+    ends_with_comma: bool = True
 
     def text(self, node: Node) -> str:
         """``node`` on one line."""
@@ -82,15 +96,21 @@ class Printer:
                 return number_text(value)
             case Symbol(name=name):
                 return name
-            case Call(function=function, argument=argument):
-                return f"{self._name(function)}({self.text(argument)})"
+            case Call(function=function):
+                arguments = ", ".join(map(self.argument, children(node)))
+                return f"{self._name(function)}({arguments})"
             case Negate(operand=operand):
                 return "-" + self._operand(operand, ATOM)  # so never "--x", a decrement in C
             case Add() | Multiply() | Divide():
                 return self._chain_text(node)
 
+    def argument(self, node: Node) -> str:
+        """``node`` as the argument of a function."""
+        return self.text(node)
+
     def _name(self, function: str) -> str:
-        return f"{self.function_prefix}{function}{self.function_suffix}"
+        own = self.names.get(function, function)
+        return f"{self.function_prefix}{own}{self.function_suffix}"
 
     def _chain_text(self, node: Compound) -> str:
         (_, first), *rest = _chain(node)
@@ -131,8 +151,10 @@ class Printer:
         if _binding(node) < place:
             return self._bracket(lead + "(", node, width)
         match node:
-            case Call(function=function, argument=argument):
+            case Call(function=function, argument=argument, other=None):
                 return self._bracket(f"{lead}{self._name(function)}(", argument, width)
+            case Call(function=function):
+                return self._break_call(f"{lead}{self._name(function)}(", children(node), width)
             case Negate(operand=operand):
                 return self._break_operand(operand, ATOM, width, lead + "-")
             case Add() | Multiply() | Divide():
@@ -142,6 +164,16 @@ class Printer:
     def _bracket(self, opening: str, node: Node, width: int) -> list[str]:
         inner = self._break_operand(node, SUM, width - 4, lead="")
         return [opening, *("    " + line for line in inner), ")"]
+
+    def _break_call(self, opening: str, arguments: Sequence[Node], width: int) -> list[str]:
+        """A call of a function of several arguments, on one line of their own or one line each."""
+        joined = ", ".join(map(self.argument, arguments))
+        if len(joined) <= width - 4:
+            return [opening, "    " + joined, ")"]
+        lines = [self._break_operand(each, SUM, width - 5, lead="") for each in arguments]
+        for each in lines[: None if self.ends_with_comma else -1]:
+            each[-1] += ","
+        return [opening, *("    " + line for each in lines for line in each), ")"]
 
     def _break_chain(self, node: Compound, width: int, lead: str) -> list[str]:
         (_, first), *rest = _chain(node)

@@ -13,9 +13,10 @@ from fractions import Fraction
 from functools import reduce
 from itertools import islice, pairwise
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, widen
-from coadjoint.lower.polynomials import product_of
+from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
     ZERO,
@@ -29,6 +30,7 @@ from coadjoint.lower.program import (
     Program,
     Symbol,
     Table,
+    children,
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
@@ -121,13 +123,13 @@ class SolverText:
         first: Order 0 of all, and order 1 of the state.
         stages: Each order k > 0.
         rates: Coefficients of the state at the order k + 1.
-        functions: Elementary functions that are called, sqrt left out.
+        functions: Elementary functions that are called, with their arguments, sqrt left out.
         products: How many sums there are.
         operations: How many operations the rates take where parameters are fixed.
         reads: Names that the recurrences read.
         fixed_reads: Names that ``fixed`` reads.
-        branches: Whether the rates call sqrt or log of what moves. A motion may be analytic where
-            these have branch points.
+        branches: Whether the rates call functions of what moves that have branch points or jumps,
+            as sqrt and log. A motion may be analytic there.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
     """
 
@@ -136,7 +138,7 @@ class SolverText:
     first: tuple[Line, ...]
     stages: tuple[Stage, ...]
     rates: tuple[Line, ...]
-    functions: tuple[str, ...]
+    functions: tuple[tuple[str, str], ...]
     products: int
     operations: int
     reads: frozenset[str]
@@ -154,13 +156,18 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     """
     rates = programs["rates"]
     if rates.table is None:
-        return _arrange(programs, make_jets(rates), ())
+        return _arrange(programs, make_jets(rates.factored or rates), ())
     stars = find_stars(rates.table)
     jets, weights = make_looped_jets(rates, stars, is_written_out=is_written_out)
     names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
     lines = tuple(Line(statement.name, statement.value) for statement in weights)
     loops = LoopText(table=rates.table, stars=stars, scales=names)
-    return replace(_arrange(programs, jets, lines), loops=loops)
+    return replace(
+        _arrange(programs, jets, lines),
+        loops=loops,
+        products=len(list(stars.products())),
+        operations=3 * len(rates.table.entries) + len(rates.table.scaled),
+    )
 
 
 def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, ...]) -> SolverText:
@@ -175,7 +182,7 @@ def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, .
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
-    branches = bool(calls & {"sqrt", "log"})
+    branches = any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls)
     values = (value for program in programs.values() for value in program.values())
     calls |= {n.function for value in values for n in walk(value) if isinstance(n, Call)}
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
@@ -185,7 +192,7 @@ def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, .
         first=tuple(first),
         stages=stages,
         rates=rates,
-        functions=tuple(sorted(calls - {"sqrt"})),
+        functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         products=jets.products,
         operations=_count(arrange_function("rates", programs["rates"])),
         reads=_reads(lines),
@@ -257,8 +264,8 @@ def _at(node: Node, order: str, arrays: frozenset[str]) -> Node:
             return Symbol(f"{name}[{order}]") if name in arrays else node
         case Negate(operand=operand):
             return Negate(_at(operand, order, arrays))
-        case Call(function=function, argument=argument):
-            return Call(function, _at(argument, order, arrays))
+        case Call(function=function):
+            return Call(function, *(_at(each, order, arrays) for each in children(node)))
         case Add(left=left, right=right) | Multiply(left=left, right=right):
             return type(node)(_at(left, order, arrays), _at(right, order, arrays))
         case Divide(left=left, right=right):
@@ -291,8 +298,8 @@ def _divisor(cell: Cell) -> Node | None:
             return right
         case Call(function="sqrt"):
             return Multiply(Number(Fraction(2)), Symbol(cell.name))
-        case Call(function="log", argument=argument):
-            return argument
+        case Call() if cell.divisor:
+            return Symbol(cell.divisor)
     return None
 
 
@@ -317,7 +324,22 @@ def _stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterato
     for loop in [list(terms.items())] if is_one_loop else _loops(terms):
         sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
         yield Stage(tuple(Line(name, ZERO) for name, _ in loop), sums, ())
-    yield Stage((), (), tuple(lines))
+    yield Stage((), (), tuple(_without_unread(lines, [*terms.values(), *_rates(jets, arrays)])))
+
+
+def _rates(jets: Jets, arrays: frozenset[str]) -> Iterator[Node]:
+    """The rates of the state at an order k > 0."""
+    return (_at(tail, "_k", arrays) for _, tail in jets.rates)
+
+
+def _without_unread(lines: list[Line], others: list[Node]) -> list[Line]:
+    """Lines but for names that nothing reads, as the arguments of signs at orders k > 0."""
+    kept, read = list[Line](), {name for node in others for name in _names(node)}
+    for line in reversed(lines):
+        if not line.is_new or line.name in read:
+            kept.append(line)
+            read.update(_names(line.value))
+    return kept[::-1]
 
 
 def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:
@@ -373,15 +395,25 @@ def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -
         case Call(function="sqrt", argument=argument):
             rest = Add(_at(argument, "_k", arrays), Negate(total))
             return term(name, name), Multiply(rest, reciprocal)
-        case Call(function="exp", argument=Symbol(name=a)):
-            return term(a, name, _WEIGHT), Add(Multiply(part, total), ends(a, name))
-        case Call(function="log", argument=Symbol(name=a)):
-            rest = Add(Symbol(f"{a}[_k]"), Negate(Multiply(part, total)))
-            return term(name, a, _WEIGHT), Multiply(rest, reciprocal)
-        case Call(function=function, argument=Symbol(name=a)):
-            result = Add(Multiply(part, total), ends(a, cell.partner))
-            return (
-                term(a, cell.partner, _WEIGHT),
-                Negate(result) if function == "cos" else result,
-            )
+        case Call(argument=Symbol(name=a), other=None):
+            ((factor, minus),) = cell.factors
+            if not cell.divisor:
+                whole = Add(Multiply(part, total), ends(a, factor))
+                return term(a, factor, _WEIGHT), Negate(whole) if minus else whole
+            if not factor:
+                left = sum_of([(minus, Symbol(f"{a}[_k]")), (True, Multiply(part, total))])
+                return term(name, cell.divisor, _WEIGHT), Multiply(left, reciprocal)
+        case Call() if cell.divisor:
+            pairs = list(zip(children(cell.value), cell.factors, strict=True))
+            added = [(minus, term(_name_of(a), factor)) for a, (factor, minus) in pairs]
+            last = [(minus, ends(_name_of(a), factor)) for a, (factor, minus) in pairs]
+            inner = sum_of([*added, (True, term(name, cell.divisor))])
+            whole = Add(Multiply(part, total), sum_of(last))
+            return Multiply(_WEIGHT, inner), Multiply(whole, reciprocal)
     raise AssertionError(cell)
+
+
+def _name_of(node: Node) -> str:
+    """The name that a node is."""
+    assert isinstance(node, Symbol), node
+    return node.name

@@ -56,6 +56,8 @@ class _Run(ctypes.Structure):
         ("record", _PLACE),
         ("record_room", _SIZE),
         ("recorded", _SIZE),
+        ("terms", _PLACE),
+        ("term_count", _SIZE),
     )
 
 
@@ -107,6 +109,8 @@ def call(
         return advance(ctypes.byref(run))
     run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
     run.recorded = record.count
+    if record.terms is not None:
+        run.terms, run.term_count = _place(record.terms), len(record.terms)
     on = advance(ctypes.byref(run))
     record.count = run.recorded
     return on

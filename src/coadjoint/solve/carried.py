@@ -21,11 +21,13 @@ from coadjoint.solve.course import Course, read_record
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.event_tables import describe_events, read_events_back
 from coadjoint.solve.occurrences import Events
+from coadjoint.solve.step_tables import read_dense
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.declared import Quantity
+    from coadjoint.solve.dense_output import Dense
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
@@ -156,6 +158,7 @@ def rebuild(
         inputs=inputs,
         course=course,
         events=_read_events(system, parameters, said.get("events", []), path),
+        dense=_read_dense(said.get("dense"), path),
     )
 
 
@@ -170,6 +173,18 @@ def _read_events(system: System, parameters: Array, said: Any, path: Path) -> Ev
         return Events(read_events_back(system, parameters, records))
     except (KeyError, TypeError, ValueError) as error:
         raise explain_unread(path, f"its events are damaged: {error}") from error
+
+
+def _read_dense(said: Any, path: Path) -> Dense | None:
+    """What a file says of the steps, a record; None if it holds none.
+
+    Raises:
+        KernelArgumentError: It is no such record.
+    """
+    try:
+        return None if said is None else read_dense(said)
+    except (KeyError, TypeError, ValueError) as error:
+        raise explain_unread(path, f"its steps are damaged: {error}") from error
 
 
 def _take_inputs(inputs: Array, form: str) -> Array:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.roots import Function
-    from coadjoint.solve.taken import Bounds, Steps
+    from coadjoint.solve.taken import Enclosed, Steps
 
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
@@ -124,37 +124,48 @@ class Watch:
         self._held: dict[int, Held] = {}
         self.undefined = np.full(members, np.inf)
 
-    def scan(self, function: Function, steps: Steps, bounds: Bounds | None = None) -> Crossings:
+    def scan(self, function: Function, steps: Steps, known: Enclosed | None = None) -> Crossings:
         """The crossings that the next steps decide.
 
         Args:
             function: The function, of the rows of the steps and parts of them.
             steps: The steps that follow those of the call before.
-            bounds: Its bounds on each step, if they are known: most steps then cost no more.
+            known: Its enclosure over all steps, if one is known: most steps then cost no more.
         """
         with np.errstate(all="ignore"):
-            knots, band = self._find_knots(function, steps, bounds)
+            knots, band = self._find_knots(function, steps, known)
             return _Scan(self, function, steps, knots, band).find()
 
     def _find_knots(
-        self, function: Function, steps: Steps, bounds: Bounds | None
+        self, function: Function, steps: Steps, known: Enclosed | None
     ) -> tuple[Knots, Array]:
-        """The knots of steps; of one that keeps away from zero by its bounds, its start alone."""
-        count = len(steps.member)
-        if bounds is None:
-            return find_knots(function, count, steps.degree, self._band_of)
-        band = self._band_of(bounds.size)
-        clear = np.abs(bounds.middle) > bounds.reach + band + 64 * EPS * bounds.size
-        left, away = np.flatnonzero(~clear), np.flatnonzero(clear)
+        """The knots of steps.
+
+        On a step where the enclosure is monotone they are its ends. Where it keeps away from zero,
+        the start is enough; and none is needed if the step before has the same sign.
+        """
+        if known is None:
+            return find_knots(function, len(steps.member), steps.degree, self._band_of)
+        band = self._band_of(known.size)
+        low, high = known.value.low, known.value.high
+        sign = (low > band).astype(np.int8) - (high < -band)
+        fresh = np.append(True, (sign[1:] != sign[:-1]) | np.diff(steps.member).astype(bool))
+        away = np.flatnonzero((sign != 0) & fresh[: sign.size])
+        monotone = (sign == 0) & known.value.is_monotone
+        simple, left = np.flatnonzero(monotone), np.flatnonzero((sign == 0) & ~monotone)
         knots, band[left] = find_knots(
-            lambda rows, part: function(left[rows], part), len(left), steps.degree, self._band_of
+            lambda rows: function(left[rows]), len(left), steps.degree, self._band_of
         )
-        row = np.concatenate([left[knots.row], away])
+        values, sizes = function(simple)(np.array([[0.0], [1.0]]) + np.zeros(simple.size))
+        band[simple] = self._band_of(np.maximum(*sizes))
+        row = np.concatenate([left[knots.row], simple, simple, away])
         order = np.argsort(row, kind="stable")
+        ends = np.repeat([0.0, 1.0, 0.0], [simple.size, simple.size, away.size])
+        number = -2 - np.concatenate([simple, simple, away])
         parts = (
-            np.concatenate([knots.part, np.zeros(len(away))]),
-            np.concatenate([knots.value, bounds.middle[away]]),
-            np.concatenate([knots.piece, -2 - away]),
+            np.concatenate([knots.part, ends]),
+            np.concatenate([knots.value, values.ravel(), np.where(low > 0, low, high)[away]]),
+            np.concatenate([knots.piece, number]),
         )
         return Knots(row[order], *(each[order] for each in parts)), band
 
@@ -315,11 +326,12 @@ class _Scan:
             start, size = self.steps.start[rows], self.steps.size[rows]
             close = 2.0 * EPS * np.maximum(np.abs(start), np.abs(start + size)) / np.abs(size)
 
-            def value(active: Places, x: Array) -> Array:
-                return self.function(rows[active], x[:, np.newaxis])[0][:, 0]
+            def value(active: Places) -> Callable[[Array], Array]:
+                evaluate = self.function(rows[active])
+                return lambda x: evaluate(x)[0]
 
-            part[place] = find_roots(value, left[place], right[place], *ends, close)
-            there = np.abs(self.function(rows, part[place][:, np.newaxis])[0][:, 0])
+            part[place], there = find_roots(value, left[place], right[place], *ends, close)
+            there = np.abs(there)
             real[place] = (there < np.minimum(*np.abs(ends))) | (there <= self.band[rows])
         return row, part, real
 
@@ -338,8 +350,7 @@ class _Scan:
 
     def _states(self, row: Places, part: Array) -> Array:
         """States at parts of steps, ``(n, R)``."""
-        after = (part * self.steps.size[row])[:, np.newaxis]
-        return self.steps.evaluate(row, after)[:, :, 0]
+        return self.steps.follow(row)(part * self.steps.size[row])
 
     # -- between two calls ------------------------------------------------------------------------
 
@@ -361,13 +372,13 @@ class _Scan:
             return
         begun = self.anchor[last]
         row, size = self.row[last], self.steps.size[self.row[last]]
-        parts = np.stack([np.full(len(row), 1.0 - _BACK), np.ones(len(row))], axis=1)
-        values, sizes = self.function(row, parts)
-        slope = np.abs(values[:, 1] - values[:, 0]) / (_BACK * np.abs(size))
-        time = np.maximum(np.abs(self._times(row, parts[:, 1])), np.abs(size))
-        value = np.abs(values[:, 1])
+        parts = np.stack([np.full(len(row), 1.0 - _BACK), np.ones(len(row))])
+        values, sizes = self.function(row)(parts)
+        slope = np.abs(values[1] - values[0]) / (_BACK * np.abs(size))
+        time = np.maximum(np.abs(self._times(row, parts[1])), np.abs(size))
+        value = np.abs(values[1])
         ends = value <= self.watch._slack * time * slope
-        clear = value > 64 * EPS * sizes[:, 1]
+        clear = value > 64 * EPS * sizes[1]
         roots: dict[int, Point | None] = {}
         some = np.flatnonzero(changes[begun] >= 0)
         root_row, part, real = self._polish(changes[begun[some]])

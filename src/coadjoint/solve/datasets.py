@@ -27,6 +27,7 @@ from coadjoint.solve.carried import (
     rebuild,
 )
 from coadjoint.solve.event_tables import list_columns
+from coadjoint.solve.step_tables import as_json, describe_dense
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 PARAMETER = "parameter_"
 #: Before the columns of the table of events.
 EVENT = "event_"
+#: Before what `describe_dense` says.
+STEP = "dense_"
 #: Before what `describe_form` says.
 FORM = "form_"
 
@@ -70,6 +73,7 @@ def to_xarray(solution: Solution) -> Any:
         if name in attributes:
             attributes[name] = json.dumps(attributes[name])
     _add_events(solution, variables)
+    _add_steps(solution, coordinates, variables, attributes)
     _add_parameters(solution, axes, coordinates, variables, attributes)
     return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
 
@@ -96,6 +100,37 @@ def _add_events(solution: Solution, variables: dict[str, Any]) -> None:
         attributes = {"units": units[name]} if name in units else {}
         title = EVENT + ("name" if name == "event" else name)
         variables[title] = (EVENT + "number", np.asarray(values, kind), attributes)
+
+
+def _add_steps(
+    solution: Solution,
+    coordinates: dict[str, Any],
+    variables: dict[str, Any],
+    attributes: dict[str, Any],
+) -> None:
+    """The steps of dense output, along an axis of their own; those of SciPy as an attribute."""
+    said = describe_dense(solution.dense)
+    if said is None:
+        return
+    if "coefficients" in said and len(said["begun"]):
+        coefficients, system = said.pop("coefficients"), solution.system
+        names = [*system.STATE.components, *system.RECONSTRUCTED.components]
+        axes = [STEP + name for name in ("step", "component", "order")]
+        coordinates[axes[1]] = (axes[1], names[: coefficients.shape[1]])
+        units = {"begun": {"units": "s"}, "size": {"units": "s"}}
+        for name in ("member", "begun", "size"):
+            variables[STEP + name] = (axes[0], said.pop(name), units.get(name, {}))
+        variables[STEP + "coefficients"] = (axes, coefficients)
+    attributes["dense"] = json.dumps(said, default=as_json)
+
+
+def _find_steps(said: dict[str, Any], dataset: Any) -> Any:
+    """The record of dense output, from an attribute and variables."""
+    if "dense" not in said:
+        return None
+    held = ("member", "begun", "size", "coefficients")
+    arrays = {name: dataset[STEP + name].values for name in held if STEP + name in dataset}
+    return json.loads(said["dense"]) | arrays
 
 
 def _add_parameters(
@@ -140,6 +175,7 @@ def read_netcdf(system: System, path: Path) -> Solution:
     try:
         form |= {"time": dataset["time"].values, "parameters": _read_parameters(system, dataset)}
         shared = {name: value for name, value in said.items() if not name.startswith(PARAMETER)}
+        shared["dense"] = _find_steps(said, dataset)
         return rebuild(system, path, shared, _find_rows(system, dataset), form)
     except KeyError as error:
         raise explain_unread(path, f"it has no {error}") from error

@@ -17,10 +17,10 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64
 from coadjoint.solve.course import Start
-from coadjoint.solve.driving import Previous, Signal
-from coadjoint.solve.events import Surroundings
+from coadjoint.solve.driving import Signal
 from coadjoint.solve.lookout import Ending, Lookout, list_occurrences
 from coadjoint.solve.occurrences import Events
+from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.taken import Steps
 
 if TYPE_CHECKING:
@@ -79,21 +79,21 @@ class Interpolants:
         paths = [self.paths[place] for place in which.tolist()]
         return Interpolants(paths, self.start[which], self.size[which])
 
-    def narrow(self, only: Places) -> Callable[[Places, Array], Array]:
-        """As `Steps.narrow`."""
-        return lambda rows, after: self.evaluate(rows, after)[only]
+    def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
+        """As `Steps.follow`."""
 
-    def bound(self, row: int) -> None:
-        """As `Steps.bound`: nothing is known."""
+        def evaluate(after: Array) -> Array:
+            states = np.empty((len(self.paths[0](self.start[0])), *after.shape))
+            for row in np.unique(rows).tolist():
+                own = rows == row
+                time = self.start[row] + after[..., own]
+                states[..., own] = self.paths[row](time.ravel()).reshape(-1, *time.shape)
+            return states if only is None else states[only]
 
-    def evaluate(self, rows: Places, after: Array) -> Array:
-        """As `Steps.evaluate`."""
-        states = np.empty((len(self.paths[0](self.start[0])), *after.shape))
-        for row in np.unique(rows).tolist():
-            own = rows == row
-            time = self.start[row] + after[own]
-            states[:, own] = self.paths[row](time.ravel()).reshape(-1, *time.shape)
-        return states
+        return evaluate
+
+    def enclose(self, row: int) -> None:
+        """As `Steps.enclose`: nothing is known."""
 
 
 class Projected:
@@ -109,26 +109,32 @@ class Projected:
         self.member, self.start, self.size = steps.member, steps.start, steps.size
         self.degree = steps.degree
 
-    def narrow(self, only: Places) -> Callable[[Places, Array], Array]:
-        """As `Steps.narrow`."""
-        return lambda rows, after: self.evaluate(rows, after)[only]
+    def enclose(self, row: int) -> None:
+        """As `Steps.enclose`: nothing is known."""
 
-    def bound(self, row: int) -> None:
-        """As `Steps.bound`: nothing is known."""
+    def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
+        """As `Steps.follow`; where there is no nearest state, it is left as it is."""
+        follow = self._steps.follow(rows)
 
-    def evaluate(self, rows: Places, after: Array) -> Array:
-        """As `Steps.evaluate`; where there is no nearest state, it is left as it is."""
-        states = self._steps.evaluate(rows, after)
-        flat, many = states.reshape(len(states), -1), after.shape[1]
+        def evaluate(after: Array) -> Array:
+            states = self._project(follow(after), rows, after)
+            return states if only is None else states[only]
+
+        return evaluate
+
+    def _project(self, states: Array, rows: Places, after: Array) -> Array:
+        """The nearest states on the constraints."""
+        flat = states.reshape(len(states), -1)
         system, n = self._around.system, self._around.system.STATE.size
-        member, start = np.repeat(self.member[rows], many), np.repeat(self.start[rows], many)
+        member = np.broadcast_to(self.member[rows], after.shape).ravel()
+        start = np.broadcast_to(self.start[rows], after.shape).ravel()
         time = start + after.ravel()
         shared = self._around.parameters.ndim == 1
         nearest = system.evaluate(
             "projection",
             np.ascontiguousarray(flat[:n]),
             self._around.parameters if shared else self._around.parameters[:, member],
-            None if self._around.driving is None else self._around.driving(member, start, time),
+            None if self._around.driven is None else self._around.driven(member, start, time),
             time=time if system.TIME else None,
             target="numpy",
         )
@@ -141,31 +147,6 @@ def move_onto_constraints(steps: Steps, surroundings: Surroundings) -> Steps:
     """Steps with their states on the constraints; as they are where a System keeps none."""
     keeps = "projection" in surroundings.system.functions
     return Projected(steps, surroundings) if keeps else steps
-
-
-def make_driving(
-    signal: Signal | Array | None,
-) -> Callable[[Places, Array, Array], Array] | None:
-    """Inputs ``(m, P)`` of members at times of steps that began at others; None without inputs.
-
-    Args:
-        signal: Inputs over time, or constants of each member, ``(m, *batch)``.
-    """
-    if signal is None:
-        return None
-
-    def drive(member: Places, start: Array, time: Array) -> Array:
-        if isinstance(signal, np.ndarray):
-            return np.ascontiguousarray(signal.reshape(len(signal), -1)[:, member])
-        # a jump at the end of a step belongs to the next
-        values = signal.over(start if isinstance(signal, Previous) else time)
-        return np.ascontiguousarray(np.broadcast_to(_as_columns(values), (len(values), len(time))))
-
-    return drive
-
-
-def _as_columns(values: Array) -> Array:
-    return values[:, np.newaxis] if values.ndim == 1 else values
 
 
 # -- what a Solution keeps ------------------------------------------------------------------------
@@ -294,7 +275,7 @@ def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:
         parameters=solution.parameters.reshape(len(solution.parameters), -1)
         if solution.parameters.ndim > 1
         else solution.parameters,
-        driving=make_driving(dense.signal),
+        driven=None if dense.signal is None else Driven(dense.signal),
     )
     steps = move_onto_constraints(dense.steps, around)
     members = int(np.prod(solution.batch, dtype=np.intp))
@@ -311,8 +292,7 @@ def _find_states(solution: Solution, dense: Dense, times: Array) -> Array:
         # a time between two steps belongs to the first
         places = np.searchsorted(steps.start[first:last], times[come], side="left") - 1
         rows = first + np.maximum(places, 0)
-        after = (times[come] - steps.start[rows])[:, np.newaxis]
-        states[:, member, come] = steps.evaluate(rows, after)[:, :, 0]
+        states[:, member, come] = steps.follow(rows)(times[come] - steps.start[rows])
     return states.reshape(size, *solution.batch, times.size)
 
 

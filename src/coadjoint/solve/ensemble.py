@@ -84,8 +84,8 @@ class Limits:
 NONE = Limits()
 #: Numbers of a recorded step before its polynomials.
 HEAD = 5
-#: The fewest steps that a record has room for: one of each lane of a vector.
-ROOM = 8
+#: The fewest steps that a record has room for: one of each lane of the blocks of a solver.
+ROOM = 32
 
 
 @dataclass
@@ -102,22 +102,28 @@ class Record:
             long it is; and, component by component, ``degree + 1`` coefficients.
         degree: Of the polynomials: the order of the Taylor method; 7 for dop853, 3 for rk4.
         count: How many rows hold a step.
+        terms: Formulas that are sought, as `coadjoint.solve.terms` writes them; None for none.
+            Steps on which none of them comes near zero, and which follow such a step with the same
+            signs, need not be recorded: solvers in C leave them out.
     """
 
     rows: Array
     degree: int
     count: int = 0
+    terms: NDArray[np.void] | None = None
 
     @classmethod
-    def make(cls, n: int, degree: int, room: int) -> Record:
+    def make(cls, n: int, degree: int, room: int, terms: NDArray[np.void] | None = None) -> Record:
         """An empty record.
 
         Args:
             n: Components of the state.
             degree: Of the polynomials.
             room: For how many steps; `ROOM` at the least. A call of a solver ends when it is full.
+            terms: Formulas that are sought.
         """
-        return cls(np.empty((max(room, ROOM), HEAD + n * (degree + 1))), degree)
+        rows = np.empty((max(room, ROOM), HEAD + n * (degree + 1)))
+        return cls(rows, degree, terms=terms)
 
     def clear(self) -> None:
         """Forget all steps, so that there is room for others."""

@@ -1,9 +1,9 @@
 """Events: where a formula of the state has a value, as a person asks for them.
 
 Comes in: names of quantities, formulas such as ``"Gamma3 == 0.5"``, or `Event` records. Goes out:
-the same, checked, as functions of the steps of an integration.
-Read next: `coadjoint.solve.crossings`, which finds them, and `coadjoint.solve.lookout`, which ends
-trajectories at those that are terminal.
+the same, checked.
+Read next: `coadjoint.solve.surroundings`, which makes functions of the steps of an integration of
+them, and `coadjoint.solve.lookout`, which looks for them.
 """
 
 from __future__ import annotations
@@ -17,17 +17,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.taken import Bounds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.formulas import Formula
     from coadjoint.solve.system import System
-    from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 #: Names of the time where a system does not declare one of its own.
 TIME: Final = ("t", "time")
@@ -240,149 +237,6 @@ def _check_moves(system: System, formula: Formula, label: str) -> None:
         )
 
 
-# -- their values ---------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What the names of a formula mean besides the state.
-
-    Attributes:
-        system: The System.
-        parameters: ``(k,)``, or ``(k, N)``.
-        driving: Inputs ``(m, P)`` of members at times of steps that began at others; None where
-            there are none.
-        followed: Rows of what is reconstructed, which stand below the state.
-    """
-
-    system: System
-    parameters: Array
-    driving: Callable[[Places, Array, Array], Array] | None
-    followed: int = 0
-
-    def list_rows(self, names: Iterable[str]) -> Places:
-        """The rows of the state that names of a formula depend on."""
-        system, n = self.system, self.system.STATE.size
-        chosen = np.zeros(n + self.followed, bool)
-        for name in names:
-            if name in system.STATE or name in system.STATE.components:
-                chosen[:n][system.STATE.rows(name)] = True
-            elif name in system.OBSERVABLES or name in system.OBSERVABLES.components:
-                chosen[:n] = True
-            elif name in system.RECONSTRUCTED or name in system.RECONSTRUCTED.components:
-                chosen[n:] = True
-        return np.flatnonzero(chosen)
-
-    def find_values(
-        self, names: Iterable[str], states: Array, member: Places, start: Array, time: Array
-    ) -> dict[str, Array]:
-        """The value of each name at points, ``(*shape, P)``.
-
-        Args:
-            names: The names.
-            states: ``(n, P)``, below it what is reconstructed.
-            member: Whose each is, ``(P,)``.
-            start: When the step began in which it is, ``(P,)``.
-            time: When it is, ``(P,)``.
-        """
-        system, wanted = self.system, set(names)
-        n = system.STATE.size
-        own = self.parameters if self.parameters.ndim == 1 else self.parameters[:, member]
-        inputs = None if self.driving is None else self.driving(member, start, time)
-        tables: list[tuple[Any, Callable[[], Array]]] = [
-            (system.STATE, lambda: states[:n]),
-            (system.RECONSTRUCTED, lambda: states[n:]),
-            (system.OBSERVABLES, lambda: observe(system, states[:n], own, inputs, time)),
-            (system.PARAMETERS, lambda: own[:, np.newaxis] if own.ndim == 1 else own),
-            (system.INPUTS, lambda: inputs if inputs is not None else states[:0]),
-            (system.TIME, lambda: time[np.newaxis]),
-        ]
-        found: dict[str, Array] = {}
-        for quantities, rows in tables:
-            if quantities is system.RECONSTRUCTED and not self.followed:
-                continue
-            here = [name for name in wanted if name in quantities or name in quantities.components]
-            values = rows() if here else time
-            for name in here:
-                found[name] = _shape(values[quantities.rows(name)], quantities, name)
-            wanted -= set(here)
-        return found | dict.fromkeys(wanted, time)
-
-
-def observe(
-    system: System, states: Array, parameters: Array, inputs: Array | None, time: Array
-) -> Array:
-    """Observables of states ``(n, P)``, by the NumPy kernel, so that all targets agree."""
-    return system.evaluate(
-        "observables",
-        states,
-        parameters,
-        inputs,
-        time=time if system.TIME else None,
-        target="numpy",
-    )
-
-
-def _shape(rows: Array, quantities: Any, name: str) -> Array:
-    """Rows of a quantity as its vector or matrix; of a component as they are."""
-    if name in quantities and len(quantities[name].shape) > 1:
-        return rows.reshape(*quantities[name].shape, -1)
-    return rows
-
-
-def find_bounds(sought: Sought, surroundings: Surroundings, steps: Steps) -> Bounds | None:
-    """Bounds of the left side minus the right side on steps; None where none are known.
-
-    They are known of linear combinations of components of the state along polynomials.
-    """
-    linear, state = sought.formula.linear, surroundings.system.STATE
-    if linear is None or not linear.keys() <= {"", *state.components}:
-        return None
-    alone = linear.get("", 0.0) - float(sought.event.value)
-    middle = np.full(len(steps.member), alone)
-    reach = np.zeros(len(steps.member))
-    size = np.full(len(steps.member), abs(linear.get("", 0.0)) + abs(float(sought.event.value)))
-    for name, factor in linear.items():
-        row = state.rows(name) if name else None
-        if isinstance(row, int):
-            bounds = steps.bound(row)
-            if bounds is None:
-                return None
-            middle += factor * bounds[0]
-            reach += abs(factor) * bounds[1]
-            size += abs(factor) * (np.abs(bounds[0]) + bounds[1])
-    return Bounds(middle, reach, size)
-
-
-def make_function(
-    sought: Sought, surroundings: Surroundings, steps: Steps
-) -> Callable[[Places, Array], tuple[Array, Array]]:
-    """The left side minus the right side along steps, with the size of both."""
-    level = float(sought.event.value)
-    rows_read = surroundings.list_rows(sought.formula.names)
-    total = surroundings.system.STATE.size + surroundings.followed
-    evaluate = steps.evaluate if len(rows_read) == total else steps.narrow(rows_read)
-
-    def function(rows: Places, part: Array) -> tuple[Array, Array]:
-        after = part * steps.size[rows][:, np.newaxis]
-        states = np.empty((total, *after.shape))
-        states[rows_read] = evaluate(rows, after)
-        shape, many = part.shape, part.shape[1]
-        start = np.repeat(steps.start[rows], many)
-        values = surroundings.find_values(
-            sought.formula.names,
-            states.reshape(len(states), -1),
-            np.repeat(steps.member[rows], many),
-            start,
-            start + after.ravel(),
-        )
-        found, size = sought.formula.evaluate(values)
-        found = np.broadcast_to(found - level, after.size).reshape(shape)
-        return found, np.broadcast_to(size + abs(level), after.size).reshape(shape)
-
-    return function
-
-
 def list_scope(quantities: Iterable[Any]) -> dict[str, tuple[int, ...]]:
     """The shape of each quantity and component, by name; the first of a name counts."""
     scope: dict[str, Any] = {}
@@ -391,3 +245,15 @@ def list_scope(quantities: Iterable[Any]) -> dict[str, tuple[int, ...]]:
         for component in quantity.components:
             scope.setdefault(component, ())
     return scope
+
+
+def explain_unknown(name: str, names: list[str]) -> KernelArgumentError:
+    """What to say of a name that has no value at events."""
+    from coadjoint.spec.core.faults import did_you_mean, list_names
+
+    return KernelArgumentError(
+        f"{name!r} is not known at events; expected one of {list_names(names)} or 'time'. "
+        f"{did_you_mean(name, names)}".rstrip(),
+        found=name,
+        expected=names,
+    )

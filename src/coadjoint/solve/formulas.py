@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import KernelArgumentError
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
-from coadjoint.spec.core.shapes import ELEMENTARY, shape_of, words
+from coadjoint.spec.core.shapes import shape_of, words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,8 +40,6 @@ class Formula:
         text: As given.
         names: The names that occur.
         terms: The terms of the sum that it is.
-        linear: The factor of each name, and under "" what stands alone, where that is all there is
-            and factors are numbers; else None.
 
     Raises:
         KernelArgumentError: A syntax error, an unknown name, or a value that is no scalar.
@@ -62,13 +61,13 @@ class Formula:
         parts = tree.walk(self._tree)
         self.names = frozenset(p.name for p in parts if isinstance(p, tree.Name | tree.Index))
         self.terms = tuple(_list_terms(self._tree))
-        self.linear = _find_linear(self._tree)
 
     def evaluate(self, values: Mapping[str, Array]) -> tuple[Array, Array]:
         """The value at points, and its size: the sum of the magnitudes of its terms.
 
         Args:
-            values: The value of each name that occurs, ``(*shape, P)``.
+            values: The value of each name that occurs, ``(*shape, P)``: numbers, or objects that
+                add, multiply and have the functions of the language, such as an `Enclosure`.
 
         Returns:
             Two arrays, ``(P,)`` or ``(1,)`` where nothing depends on the point.
@@ -94,29 +93,6 @@ def _list_terms(node: tree.Node) -> Iterable[tree.Node]:
         case tree.Negate(operand=operand):
             return _list_terms(operand)
     return [node]
-
-
-def _find_linear(node: tree.Node) -> dict[str, float] | None:
-    """The factors of the names of a linear combination; None for what is none."""
-    match node:
-        case tree.Number(value=value):
-            return {"": float(value)}
-        case tree.Name(name=name):
-            return {name: 1.0}
-        case tree.Negate(operand=operand):
-            found = _find_linear(operand)
-            return None if found is None else {name: -factor for name, factor in found.items()}
-        case tree.Binary(operator="+" | "-" as sign, left=left, right=right):
-            first, second = _find_linear(left), _find_linear(right)
-            if first is None or second is None:
-                return None
-            unit = 1.0 if sign == "+" else -1.0
-            names = first | second
-            return {n: first.get(n, 0.0) + unit * second.get(n, 0.0) for n in names}
-        case tree.Binary(operator="*", left=tree.Number(value=value), right=right):
-            found = _find_linear(right)
-            return None if found is None else {n: float(value) * f for n, f in found.items()}
-    return None
 
 
 def _value(node: tree.Node, below: list[Array], values: Mapping[str, Array]) -> Array:
@@ -168,6 +144,13 @@ def _power(base: Array, exponent: int) -> Array:
         base = 1.0 / base if base.ndim == 1 else _inverse(base)
     one = np.ones(1) if base.ndim == 1 else _diag(np.ones((len(base), 1)))
     return reduce(_multiply, [base] * abs(exponent)) if exponent else one
+
+
+def _complex(a: Array, b: Array) -> Array:
+    """A complex matrix as a real one of twice the size."""
+    a, b = np.broadcast_arrays(a, b)
+    above, below = np.concatenate([a, -b], axis=1), np.concatenate([b, a], axis=1)
+    return np.concatenate([above, below], axis=0)
 
 
 def _cross(a: Array, b: Array) -> Array:
@@ -233,5 +216,11 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "outer": lambda a, b: _stack(_stack(x * y for y in b) for x in a),
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
-    **{name: getattr(np, name) for name in ELEMENTARY},
+    "complex": _complex,
+    "tan": np.tan,
+    "pow": np.power,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
+    **{name: getattr(np, each.numpy_name) for name, each in ELEMENTARY.items()},
 }

@@ -17,16 +17,15 @@ from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.comparison import count_rows
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense_output import make_driving
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
-from coadjoint.solve.events import Surroundings
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.starts import check_starts
+from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.twins import StepwiseStepper
 from coadjoint.solver_kinds import list_kinds
 
@@ -97,8 +96,7 @@ def simulate(system: System, request: Request) -> Solution:
             told = stack.enter_context(progress_bar())
         # a function of Python may not be ready to be called by several threads
         threads = 1 if request.stepwise else request.threads or count_threads()
-        watch = None if recording is None else recording.look
-        march(stepper, run, request.start, threads, told, checkpoint, watch)
+        march(stepper, run, request.start, threads, told, checkpoint, recording)
     if recording is not None:
         recording.finish()
     course = _make_course(request, run, driven, below)
@@ -135,7 +133,8 @@ def _make_recording(
     if not (request.events or request.dense):
         return None
     followed = len(run.state) - system.STATE.size
-    surroundings = Surroundings(system, run.parameters, make_driving(signal), followed)
+    driven = None if signal is None else Driven(signal)
+    surroundings = Surroundings(system, run.parameters, driven, followed)
     return Recording(run, request.events, surroundings, keeps=request.dense)
 
 

@@ -13,13 +13,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from coadjoint.solve.crossings import Crossings, Watch, join
-from coadjoint.solve.events import Sought, Surroundings, find_bounds, make_function
+from coadjoint.solve.crossings import EPS, Crossings, Watch, join
 from coadjoint.solve.occurrences import Events, Occurrences
+from coadjoint.solve.surroundings import enclose, make_function
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.events import Sought
+    from coadjoint.solve.surroundings import Surroundings
     from coadjoint.solve.taken import Steps
 
     Array = NDArray[np.float64]
@@ -95,8 +97,8 @@ class Lookout:
         endings: list[Ending] = []
         for place, (sought, watch) in enumerate(zip(self.sought, self._watches, strict=True)):
             function = make_function(sought, self.surroundings, steps)
-            bounds = find_bounds(sought, self.surroundings, steps)
-            endings += self._add(place, watch.scan(function, steps, bounds))
+            known = enclose(sought, self.surroundings, steps)
+            endings += self._add(place, watch.scan(function, steps, known))
         return self._end(endings)
 
     def finish(self, members: Iterable[int]) -> list[Ending]:
@@ -179,8 +181,10 @@ class Lookout:
 
     def collect(self, place: int) -> tuple[Crossings, Array]:
         """The crossings of an event up to the ends of trajectories, and where it is undefined."""
-        whole = self._join(place)
-        kept = whole.take(whole.time <= self.ends[whole.member])
+        whole, ends = self._join(place), self.ends
+        # of two at one time either may end a trajectory: the other is not lost by its last digit
+        kept = whole.take(whole.time <= ends[whole.member] + 8 * EPS * np.abs(whole.time))
+        kept.time = np.minimum(kept.time, ends[kept.member])
         return kept, self._watches[place].undefined
 
 
@@ -197,8 +201,8 @@ def list_occurrences(lookout: Lookout, batch: tuple[int, ...]) -> Events:
         whole, undefined = lookout.collect(place)
         shared = around.parameters.ndim == 1
         inputs = None
-        if around.driving is not None:
-            inputs = around.driving(whole.member, whole.time, whole.time)
+        if around.driven is not None:
+            inputs = around.driven(whole.member, whole.time, whole.time)
         found[sought.event.name] = Occurrences(
             event=sought.event,
             system=around.system,

@@ -17,21 +17,21 @@ from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from threading import Event
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from coadjoint.solve.ensemble import Record, Status
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.solve.checkpoints import Checkpoint
     from coadjoint.solve.ensemble import Ensemble
     from coadjoint.solve.solvers import Stepper
 
 #: Told now and then: the part of the way that is done, from 0 to 1.
 Progress = Callable[[float], object]
-#: Shown the steps of each call by the thread that made them; it may stop members of these.
-Watch = Callable[["Record"], object]
 #: Seconds that one call of a solver is to take, and those between two reports.
 CALL_SECONDS, REPORT_SECONDS = 0.05, 0.1
 #: Seconds after which a bar appears.
@@ -50,6 +50,20 @@ def count_threads() -> int:
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+class Watch(Protocol):
+    """Who looks at steps.
+
+    Attributes:
+        terms: As `Record` has them.
+    """
+
+    terms: NDArray[np.void] | None
+
+    def look(self, record: Record) -> None:
+        """Look at the steps of a call, in the thread that made them; stop members of these."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -161,13 +175,13 @@ def _advance(going: _Going, first: int, last: int) -> Iterator[float]:
     work, run, record = going.stepper.first_work, going.run, None
     if going.watch is not None:
         n, degree = len(run.state), going.stepper.degree
-        record = Record.make(n, degree, RECORDED // (n * (degree + 1)))
+        record = Record.make(n, degree, RECORDED // (n * (degree + 1)), going.watch.terms)
     while not going.stop.is_set():
         begun = time.perf_counter()
         on = going.stepper.advance(run, first, last, work, record)
         took = max(time.perf_counter() - begun, 1e-9)
         if going.watch is not None and record is not None:
-            going.watch(record)
+            going.watch.look(record)
             record.clear()
             on = int((run.status[first:last] == Status.GOES_ON).sum())
         if not on:

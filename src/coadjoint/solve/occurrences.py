@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.events import TIME, Event, observe
+from coadjoint.solve.events import TIME, Event, explain_unknown
+from coadjoint.solve.surroundings import observe
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,15 +133,7 @@ class Occurrences:
                 rows: Array = values()[quantities.rows(name)]
                 return rows
             names += quantities.components
-        from coadjoint.spec.core.faults import did_you_mean, list_names  # of specs
-
-        hint = did_you_mean(name, names)
-        raise KernelArgumentError(
-            f"{name!r} is not known at events; expected one of {list_names(names)} or 'time'. "
-            f"{hint}".rstrip(),
-            found=name,
-            expected=names,
-        )
+        raise explain_unknown(name, names)
 
     def __repr__(self) -> str:
         name, many = self.event.name, len(self)

@@ -8,13 +8,15 @@ Read next: `coadjoint.solve.lookout`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.solve.dense_output import Dense, move_onto_constraints
+from coadjoint.solve.enclosures import Enclosure
 from coadjoint.solve.ensemble import Status
 from coadjoint.solve.lookout import (
     Ending,
@@ -23,14 +25,16 @@ from coadjoint.solve.lookout import (
     list_occurrences,
     take_below,
 )
+from coadjoint.solve.terms import write_terms
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.driving import Signal
     from coadjoint.solve.ensemble import Ensemble, Record
-    from coadjoint.solve.events import Sought, Surroundings
+    from coadjoint.solve.events import Sought
     from coadjoint.solve.occurrences import Events
+    from coadjoint.solve.surroundings import Surroundings
 
     Array = NDArray[np.float64]
     Places = NDArray[np.intp]
@@ -75,52 +79,27 @@ class Polynomials:
             place=np.arange(len(which)),
         )
 
-    def evaluate(self, rows: Places, after: Array) -> Array:
-        """As `Steps.evaluate`, by Horner."""
-        path = self.path[self.place[rows]].transpose(2, 1, 0)
-        return _evaluate(np.ascontiguousarray(path), after)
+    def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
+        """As `Steps.follow`, by Horner."""
+        places = self.place[rows]
+        path = self.path[places] if only is None else self.path[places[:, np.newaxis], only]
+        return partial(_evaluate, np.ascontiguousarray(path.transpose(2, 1, 0)))
 
-    def bound(self, row: int) -> tuple[Array, Array]:
-        """As `Steps.bound`: the value at the start, and the sum of all later terms."""
-        path = self.path[self.place, row]
-        reach, power = np.zeros(len(self.size)), np.ones(len(self.size))
-        for k in range(1, self.degree + 1):
-            power = power * np.abs(self.size)
-            reach += np.abs(path[:, k]) * power
-        return path[:, 0], reach
-
-    def narrow(self, only: Places) -> Narrow:
-        """As `Steps.narrow`."""
-        return Narrow(self.path, self.place, only)
-
-
-@dataclass
-class Narrow:
-    """Some components of steps.
-
-    Attributes:
-        path: As `Polynomials` has it.
-        place: Likewise.
-        only: The components.
-    """
-
-    path: Array
-    place: Places
-    only: Places
-
-    def __call__(self, rows: Places, after: Array) -> Array:
-        """As `Polynomials.evaluate`."""
-        path = self.path[self.place[rows][:, np.newaxis], self.only]
-        return _evaluate(np.ascontiguousarray(path.transpose(2, 1, 0)), after)
+    def enclose(self, row: int) -> Enclosure:
+        """As `Steps.enclose`."""
+        path = np.ascontiguousarray(self.path[self.place, row].T)
+        return Enclosure.of_polynomial(path, self.size)
 
 
 def _evaluate(table: Array, after: Array) -> Array:
-    """Polynomials ``(degree + 1, m, R)`` at ``(R, K)``, by Horner; ``(m, R, K)``."""
-    total = np.broadcast_to(table[-1][..., np.newaxis], (table.shape[1], *after.shape))
+    """Polynomials ``(degree + 1, m, R)`` at ``(..., R)``, by Horner; ``(m, ..., R)``."""
+    shape = (table.shape[1], *(1,) * (after.ndim - 1), table.shape[2])
+    total = np.repeat(table[-1], len(after) if after.ndim > 1 else 1, axis=0)
+    total = total.reshape(table.shape[1], *after.shape)
     for coefficient in table[-2::-1]:
-        total = total * after
-        total += coefficient[..., np.newaxis]
-    return np.ascontiguousarray(total)
+        total *= after
+        total += coefficient.reshape(shape)
+    return total
 
 
 class Recording:
@@ -133,6 +112,9 @@ class Recording:
         sought: The events.
         surroundings: What the names of their formulas mean.
         keeps: Whether steps are kept.
+
+    Attributes:
+        terms: What has to be recorded, as `Record` has it; None for every step.
     """
 
     def __init__(
@@ -146,6 +128,7 @@ class Recording:
             atol=run.atol,
             members=run.state.shape[1],
         )
+        self.terms = None if keeps else write_terms(sought, surroundings)
         self._endings: list[Ending] = []
         self._kept: list[Polynomials] = []
 

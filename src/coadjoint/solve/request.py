@@ -19,9 +19,10 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
-from coadjoint.solve.choices import GENERATED, Choice, choose_order
+from coadjoint.solve.choices import GENERATED, Choice
+from coadjoint.solve.costs import choose_order
 from coadjoint.solve.reconstruct import is_asked
-from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER
+from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,7 +91,7 @@ class Request:
     def choice(self) -> Choice:
         """The generated method."""
         order = _ORDER.get(self.method) or choose_order(self.rtol)
-        kind = RECONSTRUCTION if is_asked(self.reconstruct) else SOLVER
+        kind = find_kind(self.reconstruct)
         return Choice(self.method, order, kind=kind)
 
 
@@ -263,6 +264,29 @@ def check_dense(dense: Any) -> bool:
             f"dense is {str(dense)[:80]!r}; expected True or False.", found=str(dense)[:80]
         )
     return bool(dense)
+
+
+def find_kind(reconstruct: Any) -> SolverKind:
+    """What is integrated: with what is reconstructed below the state where that is asked for."""
+    return RECONSTRUCTION if is_asked(reconstruct) else SOLVER
+
+
+def prefers_dop853(
+    system: System, kind: SolverKind, method: Any, step: float | None, rtol: float, obstacle: str
+) -> bool:
+    """Whether ``"auto"`` is ``dop853`` with tolerances that are `SHARE` of those given.
+
+    Args:
+        system: The System.
+        kind: What is integrated.
+        method: As given.
+        step: As given.
+        rtol: As given, or the default.
+        obstacle: Why generated solvers do not apply or their polynomials are asked for, or "".
+    """
+    if _normal(method) != "auto" or step is not None or obstacle:
+        return False
+    return system._solvers.find_costs(kind).is_dop853_faster(rtol)
 
 
 def choose_method(

@@ -1,8 +1,8 @@
 """Roots of functions along steps: pieces on which a function has a known form, and root finding.
 
 Comes in: a function of the part of a step, 0 to 1, for many steps. Goes out: `Knots`, between which
-the function is monotone or keeps its sign, so that no root and no double root lies unseen between
-two of them.
+the function is monotone, keeps its sign or has one root, so that no other root and no double root
+lies unseen between two of them.
 
 On each piece the function is interpolated at Chebyshev points, ``g = c_0 + c_1 T_1 + ... + c_N
 T_N`` on [-1, 1]. There ``|T_k| <= 1``, ``|T_k'| <= k^2`` and ``|T_k''| <= k^2 (k^2 - 1) / 3``. So g
@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
     Places = NDArray[np.intp]
 
-#: The value and the size of its terms, ``(R, K)``, of rows ``(R,)`` at parts of a step ``(R, K)``.
-Function = Callable[["Places", "Array"], tuple["Array", "Array"]]
+#: The value and the size of its terms, ``(..., R)``, at parts ``(..., R)`` of the steps ``(R,)``.
+Function = Callable[["Places"], Callable[["Array"], tuple["Array", "Array"]]]
 #: The least degree of an interpolation.
 DEGREE: Final = 16
 #: Halvings of a step at the most, at kinks and poles: a piece is then a 10^-13 of it.
@@ -56,7 +56,7 @@ class Knots:
         part: The part of it that has passed.
         value: The function there; NaN where it is not finite.
         piece: A number for each piece: between two knots of one piece the function is monotone,
-            or keeps its sign.
+            keeps its sign, or has one root.
     """
 
     row: Places
@@ -125,22 +125,24 @@ def _divide(
         if not open_.row.size:
             break
         row, left, width = open_
-        values, sizes = function(row, left[:, np.newaxis] + width[:, np.newaxis] * nodes)
+        values, sizes = function(row)(left + width * nodes[:, np.newaxis])
         if not depth:
-            largest = np.fmax.reduce(sizes, axis=1, initial=0.0)
+            largest = np.fmax.reduce(sizes, axis=0, initial=0.0)
             band = band_of(largest)
-        finite: Mask = np.asarray(np.isfinite(values).all(axis=1))
+        finite: Mask = np.asarray(np.isfinite(values).all(axis=0))
         with np.errstate(all="ignore"):
             forms = _Forms(_transform(values, matrix))
             known = np.asarray(forms.size <= band[row - first])
             known |= forms.variation <= NOISE * largest[row - first]
             known |= forms.is_clear(band[row - first]) | forms.is_monotone | forms.is_bent
         many = np.bincount(row - first)[row - first] > OPEN
-        lost = ~np.isfinite(values).any(axis=1)
+        lost = ~np.isfinite(values).any(axis=0)
         done = (finite & known) | lost | many | (depth == DEPTH)
         chosen = _Pieces(row[done], left[done], width[done])
         bent = (finite & forms.is_bent & ~forms.is_monotone)[done]
-        ends = np.where(finite[:, np.newaxis], values[:, [0, -1]], np.nan)[done]
+        ends = np.where(finite, values[[0, -1]], np.nan)[:, done]
+        beyond = np.abs(ends) > band[row - first][done]
+        bent &= ~(beyond.all(axis=0) & (np.sign(ends[0]) == -np.sign(ends[1])))  # one root
         lots.append(_list_knots(function, chosen, ends, forms.coefficients[:, done], bent))
         open_ = _halve(_Pieces(row[~done], left[~done], width[~done]))
     return lots, band
@@ -171,16 +173,16 @@ def _list_knots(
         own = coefficients[:, place]
         minus, plus = np.full(place.size, -1.0), np.ones(place.size)
 
-        def slope(active: Places, x: Array) -> Array:
-            return _slope(own[:, active], x)
+        def slope(active: Places) -> Callable[[Array], Array]:
+            return partial(_slope, own[:, active])
 
-        found = find_roots(slope, minus, plus, slopes[0, place], slopes[1, place], plus * 0.0)
+        found, _ = find_roots(slope, minus, plus, slopes[0, place], slopes[1, place], plus * 0.0)
         inner = left[place] + width[place] * ((found + 1.0) / 2.0)
-        values = function(row[place], inner[:, np.newaxis])[0][:, 0]
+        values = function(row[place])(inner)[0]
     return Knots(
         np.concatenate([row, row, row[place]]),
         np.concatenate([left, left + width, inner]),
-        np.concatenate([ends[:, 0], ends[:, 1], values]),
+        np.concatenate([ends[0], ends[1], values]),
         np.concatenate([number, number, place]),
     )
 
@@ -201,10 +203,10 @@ def _chebyshev(degree: int) -> tuple[Array, Array]:
 
 
 def _transform(values: Array, matrix: Array) -> Array:
-    """Coefficients ``(N + 1, R)`` of values ``(R, N + 1)``."""
-    total = np.zeros(values.shape[::-1])
-    for node, column in enumerate(matrix.T):
-        total += column[:, np.newaxis] * values[:, node]
+    """Coefficients ``(N + 1, R)`` of values ``(N + 1, R)``."""
+    total = np.zeros(values.shape)
+    for value, column in zip(values, matrix.T, strict=True):
+        total += column[:, np.newaxis] * value
     return total
 
 
@@ -265,54 +267,63 @@ def _slope(coefficients: Array, x: Array) -> Array:
 
 
 def find_roots(
-    function: Callable[[Places, Array], Array],
+    function: Callable[[Places], Callable[[Array], Array]],
     left: Array,
     right: Array,
     at_left: Array,
     at_right: Array,
     close: Array,
-) -> Array:
+) -> tuple[Array, Array]:
     """The roots of functions in intervals at whose ends they have other signs, or are zero.
 
     By the method of T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145: inverse
-    quadratic interpolation where that is safe, else bisection.
+    quadratic interpolation where that is safe, else bisection. The first place is that of a line.
 
     Args:
-        function: The values of some functions, by number, each at a place.
+        function: Some of the functions, by number, each of a place.
         left: Where the intervals begin, ``(R,)``.
         right: Where they end.
         at_left: The values there.
         at_right: Likewise.
         close: How close the place has to be, at the least to the last digits.
+
+    Returns:
+        The roots, and the values there.
     """
-    root = np.where(np.abs(at_left) < np.abs(at_right), left, right)
-    a, b, fa, fb = right.copy(), left.copy(), at_right.copy(), at_left.copy()
-    c, fc = a.copy(), fa.copy()
-    t = np.full(a.shape, 0.5)
+    nearer = np.abs(at_left) < np.abs(at_right)
+    root, value = np.where(nearer, left, right), np.where(nearer, at_left, at_right)
     active = np.flatnonzero((at_left != 0) & (at_right != 0) & np.isfinite(at_left * at_right))
+    # the best interval ends at a and b, and c was an end before
+    a, b, fa, fb, near = (each[active] for each in (right, left, at_right, at_left, close))
+    evaluate, going = function(active), np.ones(a.shape, bool)
     with np.errstate(all="ignore"):
+        t = np.minimum(np.maximum(fa / (fa - fb), 2.0**-10), 1.0 - 2.0**-10)
         while active.size:
-            x = a[active] + t[active] * (b[active] - a[active])
-            fx = function(active, x)
-            same = np.sign(fx) == np.sign(fa[active])
-            moved = active[~same]
-            c[active], fc[active] = a[active], fa[active]
-            c[moved], fc[moved] = b[moved], fb[moved]
-            b[moved], fb[moved] = a[moved], fa[moved]
-            a[active], fa[active] = x, fx
-            root[active] = np.where(np.abs(fx) < np.abs(fb[active]), x, b[active])
-            digits = 4.0 * np.finfo(float).eps * np.maximum(np.abs(root[active]), 2.0**-40)
-            limit = np.maximum(digits, close[active]) / np.abs(b[active] - a[active])
-            t[active] = _next_part(a, b, c, fa, fb, fc, active, limit)
-            active = active[(limit < 0.5) & (fx != 0) & np.isfinite(fx)]
-    return root
+            x = a + t * (b - a)
+            fx = evaluate(x)
+            same = (fx > 0) == (fa > 0)
+            c, fc = np.where(same, a, b), np.where(same, fa, fb)
+            b, fb = np.where(same, b, a), np.where(same, fb, fa)
+            a, fa = x, fx
+            nearer = np.abs(fx) < np.abs(fb)
+            found, there = np.where(nearer, x, b), np.where(nearer, fx, fb)
+            root[active[going]], value[active[going]] = found[going], there[going]
+            digits = 4.0 * np.finfo(float).eps * np.maximum(np.abs(found), 2.0**-40)
+            limit = np.maximum(digits, near) / np.abs(b - a)
+            t = _next_part((a, b, c), (fa, fb, fc), limit)
+            going &= (limit < 0.5) & (fx != 0) & np.isfinite(fx)
+            if 2 * int(going.sum()) < going.size:  # those that are found cost no more
+                a, b, fa, fb, near, t = (each[going] for each in (a, b, fa, fb, near, t))
+                active, going = active[going], going[going]
+                evaluate = function(active)
+    return root, value
 
 
 def _next_part(
-    a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, active: Places, limit: Array
+    places: tuple[Array, Array, Array], values: tuple[Array, Array, Array], limit: Array
 ) -> Array:
     """The part of each interval at which the next value is taken."""
-    a, b, c, fa, fb, fc = (each[active] for each in (a, b, c, fa, fb, fc))
+    (a, b, c), (fa, fb, fc) = places, values
     xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
     safe = (phi * phi < xi) & ((1.0 - phi) * (1.0 - phi) < 1.0 - xi)
     guess = fa / (fb - fa) * (fc / (fb - fc))

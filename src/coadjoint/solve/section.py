@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.events import TIME, explain_unknown
 from coadjoint.solve.plot import COLOURS, begin_figure, finish, unit_label
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.occurrences import Events, Occurrences
+    from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
 
@@ -79,17 +81,37 @@ def _check_axes(drawn: Sequence[Occurrences], axes: Sequence[str] | None) -> tup
     """
     if axes is None:
         return _choose_axes(drawn)
+    system = drawn[0].system
+    return check_axes(system, axes, followed=len(drawn[0].state) > system.STATE.size)
+
+
+def check_axes(system: System, axes: Sequence[str], *, followed: bool) -> tuple[str, str]:
+    """The names of two components, for axes.
+
+    Args:
+        system: Whose they are.
+        axes: As given.
+        followed: Whether something is reconstructed.
+
+    Raises:
+        KernelArgumentError: There are not two, or one is no component.
+    """
     if isinstance(axes, str) or len(axes) != 2:
         raise KernelArgumentError(
             f"axes is {axes!r}; expected the names of two components.", found=str(axes)[:80]
         )
+    tables = [system.STATE, *([system.RECONSTRUCTED] if followed else []), system.OBSERVABLES]
+    known = [name for table in tables for name in table.components]
+    vectors = {name: each for table in tables for name, each in table.items() if each.shape}
     for name in axes:
-        values = drawn[0][name]
-        if values.ndim > 1:
+        if name in vectors and name not in known:
             raise KernelArgumentError(
-                f"{name!r} has {len(values)} components; expected one of them for an axis.",
+                f"{name!r} has {len(vectors[name].components)} components; expected one of them "
+                "for an axis.",
                 found=name,
             )
+        if name not in known and name not in TIME:
+            raise explain_unknown(name, known)
     return axes[0], axes[1]
 
 

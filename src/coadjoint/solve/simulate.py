@@ -17,11 +17,12 @@ from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.choices import GENERATED
 from coadjoint.solve.constraints import Constraints
+from coadjoint.solve.costs import SHARE, find_rounding
 from coadjoint.solve.course import Course, Start
-from coadjoint.solve.dense_output import Trail, make_driving
+from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
-from coadjoint.solve.events import Surroundings, read_events
+from coadjoint.solve.events import read_events
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.occurrences import Events
@@ -39,9 +40,12 @@ from coadjoint.solve.request import (
     check_state,
     check_steps,
     choose_method,
+    find_kind,
     list_times,
+    prefers_dop853,
 )
 from coadjoint.solve.solution import Solution
+from coadjoint.solve.surroundings import Driven, Surroundings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -91,6 +95,10 @@ def simulate(
     obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
     if stepwise and not obstacle:
         obstacles["taylor"] = f"it needs rates of all orders, and {stepwise}"
+    name = choose_method(system, method, step, obstacles, tolerances=tolerances)
+    within = "the path within steps is asked for" if events or dense else obstacle or stepwise
+    if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
+        name, rtol, atol = "dop853", rtol * SHARE, max(atol * SHARE, find_rounding(initial))
     request = Request(
         state=initial,
         start=start,
@@ -98,7 +106,7 @@ def simulate(
         samples=int(samples) if times.size == 1 else times.size,
         parameters=parameters,
         inputs=inputs,
-        method=choose_method(system, method, step, obstacles, tolerances=tolerances),
+        method=name,
         rtol=float(rtol),
         atol=float(atol),
         step=None if step is None else float(step),
@@ -190,7 +198,8 @@ def _make_trail(
     system: System, parameters: Array, driving: Driving, request: Request, followed: int
 ) -> Trail:
     """Who looks at the steps."""
-    surroundings = Surroundings(system, parameters, make_driving(driving.signal), followed)
+    driven = None if driving.signal is None else Driven(driving.signal)
+    surroundings = Surroundings(system, parameters, driven, followed)
     lookout = None
     if request.events:
         lookout = Lookout(request.events, surroundings, request.rtol, request.atol, 1)

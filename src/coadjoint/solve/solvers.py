@@ -15,8 +15,10 @@ from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.targets.c.loader import FLAGS
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.calls import CStepper
 from coadjoint.solve.comparison import compare_steps, count_rows
+from coadjoint.solve.costs import Costs, read_costs
 from coadjoint.solve.ensemble import Ensemble, Record
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.ready import make_pack
@@ -76,12 +78,20 @@ class Solvers:
         self.pack = make_pack(system.PARAMETERS)
         self._loaded: dict[tuple[Choice, str], Stepper] = {}
         self._there: dict[SolverKind, bool] = {}
+        self._costs: dict[SolverKind, Costs] = {}
 
     def has_files(self, kind: SolverKind) -> bool:
         """Whether the folder of the system has the files of a kind of solvers."""
         if kind not in self._there:
             self._there[kind] = all((self.system.folder / file).is_file() for file in kind.files)
         return self._there[kind]
+
+    def find_costs(self, kind: SolverKind) -> Costs:
+        """What steps of a kind of solvers cost."""
+        if kind not in self._costs:
+            rows = self.system.rows(kind.rates[-1]).size
+            self._costs[kind] = read_costs(KernelModule(self.system, kind.files[2]), rows)
+        return self._costs[kind]
 
     def get(self, choice: Choice, target: str, members: int = LANES) -> Stepper:
         """The solver of a method; its NumPy twin, which is said, where a compiler cannot make it.

@@ -198,10 +198,10 @@ class Taylor:
         return _larger(self.rtol * _norm(path[:, 0]), np.full(path.shape[2], self.atol))
 
     def _choose(self, path: Array) -> Array:
-        """The step in which the last two orders are a sixteenth of what the tolerances allow."""
+        """The step in which the last two orders are a 64th of what the tolerances allow."""
         order, size = self.order, rough_log2(self._tolerance(path))
-        one = (size - 4.0 - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
-        two = (size - 4.0 - rough_log2(_norm(path[:, order]))) * (1.0 / order)
+        one = (size - 6.0 - rough_log2(_norm(path[:, order - 1]))) * (1.0 / (order - 1))
+        two = (size - 6.0 - rough_log2(_norm(path[:, order]))) * (1.0 / order)
         octaves = _smaller(one, two) - 0.7 / (order - 1) * 1.4426950408889634
         if self.branches:
             most = size - rough_log2(self.rtol * _norm(path[:, 1])) + 2.0
@@ -263,18 +263,33 @@ def _smaller(a: Array, b: Array) -> Array:
 # -- Runge and Kutta ----------------------------------------------------------------------------
 
 
+def _check_end(
+    rates: Callable[[Lanes, Array, Array], Array], lanes: Lanes, h: Array, state: Array
+) -> Array:
+    """A state at which the rates are not finite is none: the motion ends before it."""
+    finite = np.isfinite(rates(lanes, h, state)).all(axis=0)
+    return np.where(finite, state, np.nan)
+
+
 class RungeKutta4:
     """The classical method of order 4 with a fixed step.
 
     Args:
         rates: Rates of lanes, at states some time later.
         size: The step.
+        branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
     tries_again = False
 
-    def __init__(self, rates: Callable[[Lanes, Array, Array], Array], size: float) -> None:
-        self.rates, self.size = rates, size
+    def __init__(
+        self,
+        rates: Callable[[Lanes, Array, Array], Array],
+        size: float,
+        *,
+        branches: bool = False,
+    ) -> None:
+        self.rates, self.size, self.branches = rates, size, branches
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `Method.try_step`."""
@@ -304,7 +319,7 @@ class RungeKutta4:
 
         return Attempt(
             took=h,
-            state=end,
+            state=_check_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
             path=path,
             coefficients=coefficients,
@@ -319,6 +334,7 @@ class DormandPrince8:
         rtol: Relative tolerance.
         atol: Absolute tolerance.
         size: A fixed step, or 0.
+        branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
     def __init__(
@@ -327,7 +343,10 @@ class DormandPrince8:
         rtol: float,
         atol: float,
         size: float = 0.0,
+        *,
+        branches: bool = False,
     ) -> None:
+        self.branches = branches
         self.rates, self.table, self.tries_again = rates, dop853(), not size > 0
         self.rtol, self.atol, self.size = rtol, atol, size
 
@@ -344,6 +363,8 @@ class DormandPrince8:
         for stage in range(STAGES):
             k.append(self.rates(lanes, self.table.nodes[stage] * h, x))
             x = lanes.state + h * self._add(k, stage + 1)
+        if self.branches:
+            x = _check_end(self.rates, lanes, h, x)
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
             accepted = self._control(lanes, h, most, k, x)

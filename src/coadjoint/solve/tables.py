@@ -26,6 +26,7 @@ from coadjoint.solve.carried import (
     name_axes,
     rebuild,
 )
+from coadjoint.solve.step_tables import as_json, describe_dense
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,8 +63,10 @@ def to_csv(solution: Solution, path: Path) -> None:
 
 def write_table(solution: Solution, file: IO[str]) -> None:
     """Write the table to an open file."""
-    for name, value in _describe(solution).items():
-        file.write(f"# {name}: {json.dumps(value)}\n")
+    said, steps = _describe(solution), describe_dense(solution.dense)
+    said |= {} if steps is None else {"dense": steps}
+    for name, value in said.items():
+        file.write(f"# {name}: {json.dumps(value, default=as_json)}\n")
     units, batch = list_components(solution), list_batch(solution)
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow([*name_axes(batch, units), "time", *units])

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from coadjoint.solve.enclosures import Enclosure
+
     Array = NDArray[np.float64]
     Places = NDArray[np.intp]
 
@@ -48,31 +50,27 @@ class Steps(Protocol):
         """As above."""
         ...
 
-    def evaluate(self, rows: Places, after: Array) -> Array:
-        """States ``(n, R, K)`` of the steps ``rows``, some time ``(R, K)`` after their starts."""
-        ...
+    def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
+        """States ``(n, ..., R)`` of the steps ``rows``, some time ``(..., R)`` after their starts.
 
-    def narrow(self, only: Places) -> Callable[[Places, Array], Array]:
-        """The same for some components alone."""
-        ...
-
-    def bound(self, row: int) -> tuple[Array, Array] | None:
-        """A value of a component on each step, and how far others are from it at the most.
-
-        None where no such bounds are known.
+        Args:
+            rows: The steps, ``(R,)``.
+            only: The components that are wanted; None for all.
         """
         ...
 
+    def enclose(self, row: int) -> Enclosure | None:
+        """The enclosure of a component over all steps; None where none is known."""
+        ...
 
-class Bounds(NamedTuple):
-    """Bounds of a function on steps, each ``(S,)``.
+
+class Enclosed(NamedTuple):
+    """What is known of a function over steps.
 
     Attributes:
-        middle: One of its values.
-        reach: How far others are from it at the most.
-        size: What the size of its terms is at the most.
+        value: Its enclosure.
+        size: What the size of its terms is at the most, ``(S,)``.
     """
 
-    middle: Array
-    reach: Array
+    value: Enclosure
     size: Array

@@ -50,10 +50,9 @@ class NumpyStepper:
         self._kernel = NumpyKernel(system, "kernel.py")
         functions = (*choice.kind.rates, "domain", "projection")
         self._sizes = {name: system.rows(name).size for name in functions}
-        if choice.name == "taylor":
-            module = KernelModule(system, choice.kind.files[2])
-            self._expansion = module.function("expand")
-            self._branches = bool(module.value("BRANCHES"))
+        module = KernelModule(system, choice.kind.files[2])
+        self._expansion = module.function("expand")
+        self._branches = bool(module.value("BRANCHES"))
         self._limits = Limits(
             domain=partial(self._evaluate, ("domain",)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
@@ -85,8 +84,10 @@ class NumpyStepper:
                 branches=self._branches,
             )
         if self._choice.name == "dop853":
-            return DormandPrince8(self._rates, run.rtol, run.atol, run.size)
-        return RungeKutta4(self._rates, run.size)
+            return DormandPrince8(
+                self._rates, run.rtol, run.atol, run.size, branches=self._branches
+            )
+        return RungeKutta4(self._rates, run.size, branches=self._branches)
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""

@@ -19,8 +19,9 @@ from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.dense import apply, determinant, dot, inverse
 from coadjoint.exact.ranks import witness_regular
 from coadjoint.spec import Formula
@@ -117,6 +118,23 @@ class Mechanics:
             )
             raise fault(self.setting, self._formula, message, named[0])
 
+    def check_smooth(self) -> None:
+        """Momenta do not jump.
+
+        Raises:
+            DerivationError: The Lagrangian has a kink in a velocity.
+        """
+        field, names = self.setting.field, {*self.frame.velocities}
+        for known in map(field.adjoined.__getitem__, sorted(field.functions_in(self.lagrangian))):
+            turning = sorted(field.reach(field[known.generator]) & names)
+            if ELEMENTARY[known.function].is_locally_constant and turning:
+                message = (
+                    f"the Lagrangian has a kink where {element_text(field, known.argument)} is 0; "
+                    "expected one that is smooth in the velocities, so that momenta do not jump. "
+                    "Write abs, sign, min and max of positions and parameters alone."
+                )
+                raise fault(self.setting, self._formula, message, turning[0])
+
     @property
     def _formula(self) -> Formula:
         """What was declared, for messages."""
@@ -146,7 +164,9 @@ UNKNOWN = "has a determinant that may be 0 everywhere: no point was found where 
 @once
 def mechanics(setting: Setting) -> Mechanics:
     """The declared Lagrangian with its derivatives."""
-    return Mechanics(setting, setting.lagrangian)
+    result = Mechanics(setting, setting.lagrangian)
+    result.check_smooth()
+    return result
 
 
 def declared_energy(setting: Setting) -> Element | None:

@@ -88,20 +88,23 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
     if not setting.momenta:  # velocities are themselves state
         return mechanics(setting).energy, ()
     transform = legendre(setting)
-    if not transform.curved:
-        return transform.energy, transform.solves
+    if transform.curved:
+        return _write_out(setting, transform), transform.solves
+    return transform.energy, transform.solves
+
+
+def _write_out(setting: Setting, transform: LegendreTransform) -> Element:
+    """The energy in momenta alone, where velocities are not linear in them."""
     field, curved = setting.field, dict(transform.curved)
     velocities = {name: curved.pop(name) for name in setting.velocities if name in curved}
-    pairs = zip(
-        setting.momenta, setting.weights, momenta_at_rest(setting, transform.momenta), strict=True
-    )
+    still = momenta_at_rest(setting, transform.momenta)
     momenta = {
-        mu: (field[y] + still) * w
-        for i, (mu, w, still) in enumerate(pairs)
+        mu: (field[y] + rest) * w
+        for i, (mu, w, rest) in enumerate(zip(setting.momenta, setting.weights, still, strict=True))
         if (y := forward_name(i)) in curved
     }
-    energy = field.substitute(field.substitute(transform.energy, momenta), velocities)
-    return field.substitute(simplify_roots(field, energy), curved), transform.solves
+    h = field.substitute(field.substitute(transform.energy, momenta), velocities)
+    return field.substitute(simplify_roots(field, h), curved)
 
 
 def legendre_transform(of: Mechanics) -> LegendreTransform:

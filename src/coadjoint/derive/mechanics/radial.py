@@ -41,12 +41,13 @@ def radial_solution(
         values: y.
         invert: Inverts K, or raises a DerivationError.
 
+    >>> from coadjoint.exact.dense import inverse
     >>> field = Field(["v", "w", "m", "p", "r"], slots=2, positive=["m"])
     >>> v, w, m = (field[name] for name in "vwm")
     >>> slopes = field.gradient(-m * field.call("sqrt", 1 - v**2 - w**2), "vw")
     >>> x, _ = radial_solution(field, slopes, "vw", (field["p"], field["r"]), inverse)
     >>> field.to_sympy(x)
-    p/(m*sqrt(1 + p**2/m**2 + r**2/m**2))
+    p/(m*sqrt((m**2 + p**2 + r**2)/m**2))
     """
     rest = dict.fromkeys(names, field.zero)
     x = tuple(field[name] for name in names)

@@ -14,6 +14,7 @@ from contextlib import suppress
 
 from coadjoint.derive import setting as settings
 from coadjoint.derive.setting import Setting, fault, list_components, once
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.signs import sign
@@ -60,7 +61,8 @@ def _list_divisors(setting: Setting, part: Element) -> Iterator[Element]:
     field = setting.field
     roots = {each.generator for each in field.adjoined.values() if each.function == "sqrt"}
     called = (field.adjoined[name] for name in sorted(field.functions_in(part)))
-    yield from (each.argument for each in called if each.function == "log")
+    edged = (each for each in called if not ELEMENTARY[each.function].has_edge)
+    yield from (inside for each in edged if (inside := field.domain_of(each)) is not None)
     for factor, _ in field.fraction(part.combine())[1] if part.parts else ():
         divisor = field.from_polynomial(factor)
         (name, *others) = field.names_in(divisor)

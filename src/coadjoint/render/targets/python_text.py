@@ -14,8 +14,9 @@ from fractions import Fraction
 from functools import lru_cache
 from math import isfinite
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Symbol
+from coadjoint.lower.program import Call, Negate, Node, Number, Symbol
 from coadjoint.render.targets.body import Body, failure, join
 from coadjoint.render.targets.loops import TABLES, Loops
 
@@ -28,13 +29,17 @@ def _parse(text: str) -> ast.Module:
     return ast.parse(text)
 
 
+#: Functions by their names in NumPy.
+NUMPY_FUNCTIONS = {entry.numpy_name: name for name, entry in ELEMENTARY.items()}
+
+
 class Reader:
     """Reads one function of a Python kernel.
 
     Args:
         file: The name of the file, for messages.
         name: The function.
-        called: The name of an elementary function as the target writes it, or None.
+        called: The elementary function that an expression names, or None.
     """
 
     def __init__(self, file: str, name: str, called: Callable[[ast.expr], str | None]) -> None:
@@ -111,10 +116,10 @@ class Reader:
                 sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}.get(type(operator))
                 if sign:
                     return join(self.node(left), sign, self.node(right))
-            case ast.Call(function, [argument], []):
+            case ast.Call(function, arguments, []):
                 called = self._called(function)
-                if called in FUNCTIONS:
-                    return Call(called, self.node(argument))
+                if called and len(arguments) == ELEMENTARY[called].arity:
+                    return Call(called, *map(self.node, arguments))
         raise self.refusal("is not a form of a Program", tree)
 
 

@@ -15,7 +15,7 @@ from coadjoint.spec.core.tree import Binary, Call, Index, Name, Negate, Node, Nu
 #: Functions that are linear in each argument, so that degrees add up.
 _MULTILINEAR = ("dot", "cross", "outer", "commutator")
 #: Functions that are linear in all arguments together.
-_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector")
+_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector", "complex")
 
 
 def degree_in(tree: Node, names: Sequence[str]) -> int | None:

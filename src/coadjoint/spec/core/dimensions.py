@@ -376,6 +376,22 @@ def _ratio(asking: _Asking, *parts: Measured) -> Measured:
     return scalar(ONE)
 
 
+def _complex(asking: _Asking, a: Measured, b: Measured) -> Measured:
+    """A real matrix of two parts of one unit."""
+    one = asking.same((*a.entries, *b.entries))
+    return Measured((2 * a.shape[0], 2 * a.shape[1]), (one,) * (4 * len(a.entries)))
+
+
+def _any_power(asking: _Asking, base: Measured, exponent: Measured) -> Measured:
+    """A power with any exponent: of a pure number, unless the exponent is a literal one."""
+    match asking.node:
+        case tree.Call(arguments=(_, tree.Number(value=value))):
+            entry = base.entries[0]
+            return scalar(None if entry is None else entry**value)
+    _of_number(asking, base)
+    return _of_number(asking, exponent)
+
+
 _PURE = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan")
 #: The units of a value from those of the arguments, for every function of the language.
 _RULES: Mapping[str, Callable[..., Measured]] = MappingProxyType(
@@ -394,6 +410,8 @@ _RULES: Mapping[str, Callable[..., Measured]] = MappingProxyType(
         "rows": _stack,
         "vector": _stack,
         "sqrt": lambda asking, a: scalar(_root(a.entries[0])),
+        "complex": _complex,
+        "pow": _any_power,
         **dict.fromkeys(_PURE, _of_number),
         **dict.fromkeys(("abs", "min", "max"), _like),
         **dict.fromkeys(("sign", "atan2"), _ratio),

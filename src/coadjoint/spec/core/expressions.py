@@ -8,8 +8,8 @@ the text is ever executed, evaluated or passed on: numbers become fractions, nam
     term     = unary {("*" | "/") unary}
     unary    = ("+" | "-") unary | power
     power    = atom [("^" | "**") exponent]        so that -x^2 is -(x^2)
-    exponent = ["-"] INTEGER | "(" ["-"] INTEGER ")"
-    atom     = NUMBER | NAME ["[" INTEGER ["," INTEGER] "]"]
+    exponent = ["-"] atom                          an integer is a product, all else pow(base, it)
+    atom     = NUMBER | "pi" | NAME ["[" INTEGER ["," INTEGER] "]"]
              | FUNCTION "(" sum {"," sum} ")" | "(" sum ")"
 
 Read next: `coadjoint.spec.core.shapes`, which says what the names and functions mean.
@@ -147,27 +147,41 @@ class _Reader:
         if self.next.kind not in _POWERS:
             return base
         self._take()
-        exponent = self._exponent()
+        is_integer = self._is_integer()
+        exponent = self._integer() if is_integer else self._exponent()
         if self.next.kind in _POWERS:
             problem = "a power of a power is ambiguous"
             hint = "Write (a^b)^c, or multiply the exponents out."
             raise self._fault(problem, base.start, self.next.end, "parentheses", hint)
         end = self.tokens[self.at - 1].end
-        return self._count(Power(base=base, exponent=exponent, start=base.start, end=end))
+        if isinstance(exponent, int):
+            return self._count(Power(base=base, exponent=exponent, start=base.start, end=end))
+        both = (base, exponent)
+        return self._count(Call(function="pow", arguments=both, start=base.start, end=end))
 
-    def _exponent(self) -> int:
+    def _is_integer(self) -> bool:
+        """Whether a literal integer is next, perhaps with a minus, perhaps in parentheses."""
+        kinds = [token.kind for token in self.tokens[self.at : self.at + 4]]
+        for form in (["number"], ["-", "number"], ["(", "number", ")"], ["(", "-", "number", ")"]):
+            if kinds[: len(form)] == form:
+                return "." not in self.tokens[self.at + form.index("number")].text
+        return False
+
+    def _exponent(self) -> Node:
+        """An exponent that is not a literal integer: an atom, perhaps with a minus."""
+        if self.next.kind != "-":
+            return self._atom()
+        sign = self._take()
+        operand = self._atom()
+        return self._count(Negate(operand, start=sign.start, end=operand.end))
+
+    def _integer(self) -> int:
         """A literal integer, perhaps with a minus, perhaps in parentheses."""
-        first = self.next
-        closing = self._take() if first.kind == "(" else None
+        closing = self._take() if self.next.kind == "(" else None
         sign = -1 if self.next.kind == "-" else 1
         if sign < 0:
             self._take()
-        number = self._take() if self.next.kind == "number" else None
-        complete = closing is None or self.next.kind == ")"
-        if number is None or "." in number.text or not complete:
-            problem, end = "the exponent is not a literal integer", max(first.end, self.next.end)
-            hint = "Roots and other powers are sqrt(x) and exp(y*log(x))."
-            raise self._fault(problem, first.start, end, "an integer such as 2 or (-1)", hint)
+        number = self._take()
         if closing is not None:
             self._take()
         if len(number.text) > 9 or int(number.text) > limits.EXPONENT:
@@ -202,6 +216,8 @@ class _Reader:
 
     def _read_name(self, name: _Token) -> Node:
         """A name, a component of it, or a function of something."""
+        if name.text == "pi":
+            return self._circle_constant(name)
         if self.next.kind == "(":
             return self._call(name)
         if name.text in self.functions:
@@ -210,6 +226,13 @@ class _Reader:
         if self.next.kind == "[":
             return self._index(name)
         return self._count(Name(name.text, start=name.start, end=name.end))
+
+    def _circle_constant(self, name: _Token) -> Node:
+        """The number pi, as what it is exactly: ``4*atan(1)``."""
+        start, end = name.start, name.end
+        one, four = (Number(Fraction(number), start=start, end=end) for number in (1, 4))
+        part = Call(function="atan", arguments=(one,), start=start, end=end)
+        return self._count(Binary(operator="*", left=four, right=part, start=start, end=end))
 
     def _call(self, name: _Token) -> Node:
         if name.text not in self.functions:

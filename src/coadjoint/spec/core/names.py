@@ -34,7 +34,7 @@ _TARGETS = reserved_words()
 _OURS = _words("state parameters inputs out target time t drift") | set(KERNEL_FUNCTIONS)
 _OURS_PATTERN = re.compile(r"(casimir|integral)\d+(_\d+)?|COADJOINT(_.*)?")
 
-_BETTER = MappingProxyType({"lambda": "lam", "t": "tau", "norm": "length", "np": "n_p"})
+_BETTER = MappingProxyType({"lambda": "lam", "t": "tau", "norm": "length", "np": "n_p", "pi": "p"})
 _MODULES = sys.stdlib_module_names | _words(
     "numpy scipy sympy mpmath jinja2 pydantic click rich coadjoint"
 )
@@ -54,6 +54,7 @@ def refusal(name: str) -> tuple[str, str, str] | None:
         problem = f"{name!r} has {len(name)} characters"
         return problem, f"at most {NAME_CHARACTERS} (NAME_CHARACTERS)", ""
     kind = "a function of the expression language" if name in FUNCTIONS else _TARGETS.get(name)
+    kind = "a number of the expression language" if name == "pi" else kind
     if kind is None and (name in _OURS or _OURS_PATTERN.fullmatch(name)):
         kind = "a name that generated code or results use"
     if kind is not None:

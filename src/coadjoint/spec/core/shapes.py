@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, fault_at, list_names
 from coadjoint.spec.core.tree import (
@@ -26,8 +27,10 @@ from coadjoint.spec.core.tree import (
     evaluate_nodes,
 )
 
-#: The functions that are adjoined to the field, by their own names.
-ELEMENTARY = ("sqrt", "sin", "cos", "tan", "exp", "log")
+#: Functions of scalars by how many they take: those of kernels, and what is written by these.
+SCALAR = {each.name: each.arity for each in ELEMENTARY.values()} | {"tan": 1}
+#: Functions of scalars that are linear between kinks, where an argument or a difference is 0.
+PIECEWISE = ("abs", "min", "max")
 #: Determinants and inverses are written out; larger systems are solved inside the kernel.
 LARGEST_INVERSE = 3
 
@@ -51,13 +54,14 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "transpose": lambda a: a[::-1] if len(a) == 2 else None,
         "det": lambda a: () if _is_small_square(a) else None,
         "inverse": lambda a: a if _is_small_square(a) else None,
+        "complex": lambda a, b: (2 * a[0], 2 * a[1]) if len(a) == 2 and a == b else None,
         "hat": lambda a: (3, 3) if a == (3,) else None,
         "diag": lambda a: a * 2 if len(a) == 1 else a[:1] if _is_square(a) else None,
         "norm": lambda a: () if len(a) == 1 else None,
         "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
         "rows": lambda *a: (len(a), *a[0]) if len(a[0]) == 1 and set(a) == {a[0]} else None,
         "vector": lambda *a: None if any(a) else (len(a),),
-        **dict.fromkeys(ELEMENTARY, lambda a: () if a == () else None),
+        **dict.fromkeys((*SCALAR, *PIECEWISE, "pow"), lambda *a: None if any(a) else ()),
     }
 )
 
@@ -87,6 +91,9 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "transpose": Function(1, "a matrix", "A_ji"),
         "det": Function(1, _SMALL, "determinant"),
         "inverse": Function(1, _SMALL, "inverse matrix"),
+        "complex": Function(
+            2, "two matrices of one size", "A + iB as the real matrix of A, -B; B, A"
+        ),
         "hat": Function(1, "a 3-vector", "the matrix with hat(a)*b = a x b"),
         "diag": Function(
             1, "a vector or a square matrix", "diagonal matrix of a vector, or the reverse"
@@ -95,12 +102,12 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "vector": Function(0, "scalars", "vector of these components"),
         "rows": Function(0, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, "a vector", "sqrt(dot(a, a))"),
-        "sqrt": Function(1, "a scalar", "square root"),
-        "sin": Function(1, "a scalar", "sine"),
-        "cos": Function(1, "a scalar", "cosine"),
         "tan": Function(1, "a scalar", "tangent"),
-        "exp": Function(1, "a scalar", "exponential"),
-        "log": Function(1, "a scalar", "natural logarithm"),
+        "pow": Function(2, "two scalars", "power with any exponent, of a positive base: a^b"),
+        "abs": Function(1, "a scalar", "absolute value"),
+        "min": Function(2, "two scalars", "the smaller one"),
+        "max": Function(2, "two scalars", "the larger one"),
+        **{e.name: Function(e.arity, e.takes, e.meaning) for e in ELEMENTARY.values()},
     }
 )
 

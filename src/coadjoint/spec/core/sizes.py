@@ -9,15 +9,16 @@ Read next: `coadjoint.spec.reader`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import comb, factorial
+from math import ceil, comb, factorial
 
 from coadjoint import limits
+from coadjoint.elementary import ELEMENTARY, has_constant_value
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.shapes import ELEMENTARY, shapes
+from coadjoint.spec.core.shapes import PIECEWISE, SCALAR, shapes
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -50,6 +51,11 @@ class Size:
     diagonal: bool = False
     constant: Fraction | None = None
     fixed: bool = False
+
+
+#: Functions that have values at all numbers, none of them large.
+OF_NUMBERS = ("sin", "cos", "tan", "tanh", "atan")
+_BY_NAME: dict[str, Callable[..., Fraction]] = {"abs": abs, "min": min, "max": max}
 
 
 def check_size(tree: Node, scope: Mapping[str, Shape]) -> int:
@@ -104,8 +110,12 @@ def _size(node: Node, below: list[Size], shape: list[Shape]) -> Size:
             return _sum(below[0], _negate(below[1]) if operator == "-" else below[1])
         case Component():
             return replace(below[0], diagonal=False, constant=None)
-        case Call(function=function) if function in ELEMENTARY:
-            return _function(node, function, below[0])
+        case Call(function="pow"):
+            return _any_power(node, *below)
+        case Call(function=function) if function in PIECEWISE:
+            return _piecewise(function, below)
+        case Call(function=function) if function in SCALAR:
+            return _function(node, function, below)
         case Call(function=function):
             return _tensor(node, function, below, shape)
     return Size(degree=1)
@@ -180,19 +190,45 @@ def _power(node: Node, base: Size, exponent: int, shape: Shape) -> Size:
     )
 
 
-def _function(node: Node, function: str, argument: Size) -> Size:
+def _any_power(node: Node, base: Size, exponent: Size) -> Size:
+    """A power by a root, or by an exponential and a logarithm."""
+    if base.constant is not None and base.constant <= 0:
+        raise _no_value(node, f"a power of {base.constant}", "a positive base")
+    number = exponent.constant
+    if number is not None and abs(number) > limits.EXPONENT:
+        raise _refusal(node, "EXPONENT", f"the exponent is {number}")
+    if number is not None and number.denominator <= 2:
+        return _power(node, replace(base, constant=None), ceil(abs(number)), ())
+    return Size(fixed=base.fixed and exponent.fixed, degree=base.degree + 1)
+
+
+def _piecewise(function: str, arguments: Sequence[Size]) -> Size:
+    """An absolute value, a minimum or a maximum: a sum of products with signs."""
+    known = [each.constant for each in arguments if each.constant is not None]
+    if len(known) == len(arguments):
+        return _constant(_BY_NAME[function](*known))
+    return _product(_largest(list(arguments)), Size(terms=2, degree=1))
+
+
+def _function(node: Node, function: str, arguments: Sequence[Size]) -> Size:
     """An elementary function: a new name; a constant argument must be within the limits."""
-    if argument.fixed:
-        value = argument.constant
-        if value is None or abs(value) > limits.FUNCTION_ARGUMENT:
-            raise _refusal(
-                node, "FUNCTION_ARGUMENT", f"{function} of a constant that is not a small rational"
-            )
-        if (value < 0 and function == "sqrt") or (value <= 0 and function == "log"):
-            problem = f"{function} of {value} is not a real number"
-            raise _no_value(node, problem, "a positive argument")
+    if not all(argument.fixed for argument in arguments):
+        return Size(degree=1)
+    if function in OF_NUMBERS:
         return Size(fixed=True)
-    return Size(degree=1)
+    values = tuple(argument.constant or Fraction(0) for argument in arguments)
+    if any(each.constant is None for each in arguments) or max(map(abs, values)) > (
+        limits.FUNCTION_ARGUMENT
+    ):
+        raise _refusal(
+            node, "FUNCTION_ARGUMENT", f"{function} of a constant that is not a small rational"
+        )
+    if function in ELEMENTARY and not has_constant_value(function, values):
+        problem = f"{function} of {', '.join(map(str, values))} is not a real number"
+        if function in ("asin", "acos") and abs(values[0]) == 1:
+            problem = f"{function} of {values[0]} is written without a function"
+        raise _no_value(node, problem, ELEMENTARY[function].expects)
+    return Size(fixed=True)
 
 
 def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) -> Size:
@@ -203,7 +239,7 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             return _product(a, below[1], n)
         case "outer":
             return _product(a, below[1])
-        case "rows" | "vector":
+        case "rows" | "vector" | "complex":
             return _largest(below)
         case "cross":
             return _product(a, below[1], 2)

@@ -40,6 +40,12 @@ class _Algebra(Part):
     matrices: dict[str, Matrix] | None = Field(
         None, description="a matrix for each name of the basis", json_schema_extra=name_pattern()
     )
+    imaginary: Annotated[dict[str, Matrix], Field(min_length=1)] | None = Field(
+        None,
+        description="imaginary parts B of the matrices, whose real parts are A: the algebra is "
+        "that of the real matrices [[A, -B], [B, A]]; what one table leaves out is 0 there",
+        json_schema_extra=name_pattern(),
+    )
     bracket: str | None = Field(
         None,
         description="the bracket of two matrices X and Y of their span, such as 'X*N*Y - Y*N*X'; "
@@ -72,6 +78,8 @@ class _Algebra(Part):
             raise ValueError(f"exactly one of {', '.join(WAYS)}")
         if self.brackets is not None and self.basis is None:
             raise ValueError("a basis with the brackets, as basis = ['e1', 'e2', 'e3']")
+        if self.imaginary is not None and self.matrices is None:
+            raise ValueError("imaginary parts only with matrices, which are the real ones")
         if self.bracket is not None and self.matrices is None:
             raise ValueError("a bracket of X and Y only with matrices")
         if self.name is not None and (self.basis is not None or self.blocks is not None):

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 from coadjoint.algebra import (
     LieAlgebra,
@@ -54,6 +53,7 @@ from coadjoint.spec.sections.matrices import (
     places_of,
     point_at_faults,
     read_matrices,
+    real_form,
     representation_of,
 )
 from coadjoint.spec.sections.matrix_brackets import read_bracket
@@ -126,12 +126,12 @@ class _Algebras:
         if way == "name":
             return self._find_by_name(declared, key)
         if way in ("brackets", "matrices"):
-            basis = tuple(part.basis or declared)
+            basis = tuple(part.basis or {**declared, **(part.imaginary or {})})
             check_basis_names(self.source, (*key, "basis"), basis)
             algebra = (
                 self._by_brackets(declared, inner, basis)
                 if way == "brackets"
-                else self._by_matrices(declared, inner, basis, part.bracket)
+                else self._by_matrices(part, inner, basis)
             )
         else:
             algebra = getattr(self, f"_{way}")(declared, inner)
@@ -175,12 +175,19 @@ class _Algebras:
 
     def _by_matrices(
         self,
-        tables: Mapping[str, list[list[Any]]],
+        part: AlgebraPart | OperandPart,
         key: KeyPath,
         basis: tuple[str, ...],
-        bracket: str | None,
     ) -> LieAlgebra:
+        tables, bracket = part.matrices or {}, part.bracket
         matrices, size = read_matrices(self.source, key, tables, basis, self.scalars)
+        if part.imaginary is not None:
+            inner = (*key[:-1], "imaginary")
+            parts = read_matrices(self.source, inner, part.imaginary, basis, self.scalars)
+            if parts[1] != size:
+                problem = f"the imaginary parts have {parts[1]} rows"
+                raise self.source.fault(inner, problem, str(parts[1]), f"{size}, as the real ones")
+            matrices, size = real_form(matrices, parts[0], size), 2 * size
         for name in basis:
             if name not in matrices:
                 problem = f"the matrix of {name!r} is missing"

@@ -138,6 +138,26 @@ def _read_matrix(
     return {place: value for place, value in entries.items() if value != 0}
 
 
+def real_form(
+    real: Mapping[str, SparseMatrix], imaginary: Mapping[str, SparseMatrix], size: int
+) -> dict[str, SparseMatrix]:
+    """Complex matrices ``A + iB`` as the real ones ``[[A, -B], [B, A]]``, of twice the size.
+
+    >>> real_form({}, {"J": {(0, 0): Fraction(1)}}, 1)
+    {'J': {(1, 0): Fraction(1, 1), (0, 1): Fraction(-1, 1)}}
+    """
+    result = dict[str, SparseMatrix]()
+    for name in {**real, **imaginary}:
+        a, b = real.get(name, {}), imaginary.get(name, {})
+        result[name] = {
+            **a,
+            **{(r + size, c + size): value for (r, c), value in a.items()},
+            **{(r + size, c): value for (r, c), value in b.items()},
+            **{(r, c + size): value * Fraction(-1) for (r, c), value in b.items()},
+        }
+    return result
+
+
 def by_matrices(
     source: Source,
     key: KeyPath,

@@ -47,7 +47,19 @@ class VectorPrinter(CPrinter):
             return super().assignment(node, to, column, comment)
         return f"{to} = all({C.text(node)});"
 
+    def argument(self, node: Node) -> str:
+        """``node`` as the argument of a function of vectors.
 
-C: Final = CPrinter("")
-VECTORS: Final = VectorPrinter("", "_of")
+        >>> from fractions import Fraction
+        >>> from coadjoint.lower.program import Call, Number
+        >>> VECTORS.text(Call("atan2", Symbol("y"), Number(Fraction(1))))
+        'atan2_of(y, all(1.0))'
+        """
+        if any(isinstance(each, Symbol) for each in walk(node)):
+            return self.text(node)
+        return f"all({C.text(node)})"
+
+
+C: Final = CPrinter("", ends_with_comma=False)
+VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False)
 FILTERS: Final = {"c_assignment": C.assignment, "vector_assignment": VECTORS.assignment}

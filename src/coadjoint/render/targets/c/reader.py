@@ -11,12 +11,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import isfinite
 
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import FUNCTIONS, Call, Negate, Node, Number, Program, Symbol
+from coadjoint.lower.program import Call, Negate, Node, Number, Program, Symbol
 from coadjoint.render.targets.body import Body, failure, join
 
 _TOKEN = re.compile(
-    r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/()\[\]])",
+    r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/(),\[\]])",
     re.DOTALL,
 )
 _ZEROS = re.compile(
@@ -197,13 +198,29 @@ class Reader:
         if kind == "name" and self.tokens[self.at][1] != "(":
             return Symbol(text)
         called = text.removesuffix(self.suffix)
-        if text == "(" or (called in FUNCTIONS and text.endswith(self.suffix)):
-            self.at += text != "("
+        if called in ELEMENTARY and text.endswith(self.suffix):
+            return Call(called, *self.read_arguments(ELEMENTARY[called].arity))
+        if text == "(":
             inner = self.sum()
             if self.take() != ")":
                 raise self.refusal()
-            return inner if text == "(" else Call(called, inner)
+            return inner
         raise self.refusal()
+
+    def read_arguments(self, count: int) -> list[Node]:
+        """The arguments of a function, in parentheses."""
+        found = list[Node]()
+        for mark in ("(", *"," * (count - 1)):
+            if self.take() != mark:
+                raise self.refusal()
+            found.append(self.read_argument())
+        if self.take() != ")":
+            raise self.refusal()
+        return found
+
+    def read_argument(self) -> Node:
+        """One argument of a function."""
+        return self.sum()
 
     def take(self) -> str:
         """The next token."""

@@ -72,13 +72,29 @@ class VectorReader(Reader):
 
     token = re.compile(
         r"\s+|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)"
-        r"|(?P<name>[A-Za-z_]\w*(?:\[(?:\d+|_k(?: [-+] 1)?|_m|_k - _m)\])?)|(?P<mark>[-+*/()])"
+        r"|(?P<name>[A-Za-z_]\w*(?:\[(?:\d+|_k(?: [-+] 1)?|_m|_k - _m)\])?)|(?P<mark>[-+*/(),])"
     )
     suffix = "_of"
 
     def __init__(self, text: str, name: str, file: str) -> None:
         self.file = file
         super().__init__(text, name)
+
+    def read_argument(self) -> Node:
+        """One argument; a number goes to all lanes."""
+        if self.tokens[self.at][1] != "all":
+            return self.sum()
+        self.take()
+        self.suffix, own = "", self.suffix
+        (inner,) = self.read_arguments(1)
+        self.suffix = own
+        return inner
+
+
+class NumberReader(VectorReader):
+    """Reads a number that goes to all lanes."""
+
+    suffix = ""
 
 
 def read_function(text: str, function: str, file: str) -> SolverBody:
@@ -242,8 +258,9 @@ class _Reading:
         if not found:
             raise self._refusal(line)
         constant = re.fullmatch(r"all\((.*)\)", found[3])
+        reader = NumberReader if constant else VectorReader
         text = constant[1] if constant else found[3]
-        value = VectorReader(text, self.function, self.file).whole()
+        value = reader(text, self.function, self.file).whole()
         return found[1] or "", found[2], value
 
     def _refusal(self, line: str) -> Exception:

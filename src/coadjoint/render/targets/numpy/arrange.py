@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from coadjoint.lower.program import FUNCTIONS
+from coadjoint.elementary import ELEMENTARY
 
 _OPERATORS: Final = {
     ast.Add: "add",
@@ -74,7 +74,7 @@ def arrange(module: str, name: str) -> Arranged | None:
     code = [*_define("share", given, share), *_define("single", "state, shared, out", single)]
     code += _define("many", "state, shared, out, rows", many.lines)
     scope: dict[str, Any] = {"np": np, "_root": math.sqrt, "_float": float}
-    called = (*_OPERATORS.values(), *FUNCTIONS, "copyto")
+    called = (*_OPERATORS.values(), *(each.numpy_name for each in ELEMENTARY.values()), "copyto")
     scope |= {f"_{each}": getattr(np, each) for each in called}
     exec(compile("\n".join(code), f"{name} of kernel.py", "exec"), scope)  # noqa: S102 (names alone)
     parts = {part: scope[part] for part in ("share", "single", "many")}
@@ -156,8 +156,8 @@ class _Lines:
                 return ast.BinOp(self._mark(left), operator, self._mark(right))
             case ast.UnaryOp(operator, operand):
                 return ast.UnaryOp(operator, self._mark(operand))
-            case ast.Call(ast.Attribute(ast.Name("np")) as function, [argument], []):
-                return ast.Call(function, [self._mark(argument)], [])
+            case ast.Call(ast.Attribute(ast.Name("np")) as function, arguments, []):
+                return ast.Call(function, list(map(self._mark, arguments)), [])
         raise _UnknownFormError
 
 
@@ -179,8 +179,8 @@ def _write_number(value: ast.expr) -> str:
             return f"(-{_write_number(operand)})"
         case ast.Call(ast.Attribute(attr="sqrt"), [argument]):
             return f"_root({_write_number(argument)})"
-        case ast.Call(ast.Attribute(attr=called), [argument]):
-            return f"_float(_{called}({_write_number(argument)}))"
+        case ast.Call(ast.Attribute(attr=called), arguments):
+            return f"_float(_{called}({', '.join(map(_write_number, arguments))}))"
     return ast.unparse(value)
 
 
@@ -260,6 +260,8 @@ class _Writer:
                 self._text.append(f"_negative({self._write(operand, place)}, {place})")
             case ast.Call(ast.Attribute(attr=called), [argument]):
                 self._text.append(f"_{called}({self._write(argument, place)}, {place})")
+            case ast.Call(ast.Attribute(attr=called), [left, right]):
+                return self._write_pair(left, right, called, place)
         return place
 
     def _write_pair(self, left: ast.expr, right: ast.expr, operator: str, place: str) -> str:

@@ -13,7 +13,13 @@ from fractions import Fraction
 from coadjoint.lower.program import Node, Number, Program
 from coadjoint.render.targets.body import Body
 from coadjoint.render.targets.loops import unroll
-from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, is_table
+from coadjoint.render.targets.python_text import (
+    NUMPY_FUNCTIONS,
+    Functions,
+    LoopReader,
+    Reader,
+    is_table,
+)
 
 #: What functions that loop over a table call.
 HELPERS = """
@@ -79,7 +85,7 @@ def _called_name(function: ast.expr) -> str | None:
     """``sqrt`` of ``np.sqrt``."""
     match function:
         case ast.Attribute(ast.Name("np"), called):
-            return called
+            return NUMPY_FUNCTIONS.get(called)
     return None
 
 

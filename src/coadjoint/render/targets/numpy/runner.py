@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 #: of it takes a tenth of the time of `numpy.errstate`.
 _QUIET: Final = Context()
 _QUIET.run(np.seterr, all="ignore")
-#: So many numbers are between rows, which are then not multiples of a page apart: loads would wait
-#: for stores.
-_APART: Final = 24
 
 
 class _Shared(NamedTuple):
@@ -106,7 +103,7 @@ class Runner:
 
     def _make_rows(self, members: int) -> list[Array]:
         """Rows to write to."""
-        return list(np.empty((self._arranged.rows, members + _APART))[:, :members])
+        return list(np.empty((self._arranged.rows, members)))
 
     def _share(self, given: Sequence[Array | Buffer]) -> _Shared:
         """What members share."""

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.targets.body import Loop, SolverBody, failure
-from coadjoint.render.targets.python_text import Reader
+from coadjoint.render.targets.python_text import NUMPY_FUNCTIONS, Reader
 
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
 _BODY = re.compile(r"^    _parts = .*?^    return path$", re.DOTALL | re.MULTILINE)
@@ -86,8 +86,8 @@ def _is_allowed(item: ast.stmt) -> bool:
     match item:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
-        case ast.Assign(targets=[ast.Name(id="ID" | "BRANCHES" | "MEMBERS")], value=ast.Constant()):
-            return True
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
+            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
             return name.startswith(("TABLE_", "STAR_"))
     return False
@@ -97,7 +97,7 @@ def _called(function: ast.expr) -> str | None:
     """``sqrt`` of ``np.sqrt``."""
     match function:
         case ast.Attribute(ast.Name("np"), called):
-            return called
+            return NUMPY_FUNCTIONS.get(called)
     return None
 
 

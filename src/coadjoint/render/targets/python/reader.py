@@ -61,7 +61,7 @@ def read(text: str, program: Program, system: str) -> list[Body]:
 
 def _called_name(function: ast.expr) -> str | None:
     """``sqrt`` of ``sqrt``."""
-    return function.id if isinstance(function, ast.Name) else None
+    return function.id if isinstance(function, ast.Name) and function.id in FUNCTIONS else None
 
 
 def _is_allowed(item: ast.stmt) -> bool:
