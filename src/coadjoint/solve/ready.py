@@ -97,7 +97,7 @@ def make_pack(quantities: Quantities) -> Callable[[Any], array[float] | None]:
     The numbers are copied: nobody can change them while a kernel reads them. An array of the same
     bits as the last one gives the same copy.
     """
-    last: tuple[bytes, array[float]] = (b"", array("d"))
+    last: tuple[bytes | None, array[float]] = (None, array("d"))  # of no bits yet
     size, positive = quantities.size, quantities.positive
     single = (size,)
     defaults = [quantities.defaults.get(name) for name in quantities.components]
