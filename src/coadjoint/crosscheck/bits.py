@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
-from coadjoint.crosscheck.subject import Subject, work
+from coadjoint.crosscheck.subject import Subject
 from coadjoint.lower.program import run
 from coadjoint.render.kernels import CHUNK
 from coadjoint.render.targets import BUILDS
@@ -109,9 +109,9 @@ def _expect(
     subject: Subject, function: str, target: str, batch: Batch, numpy: Array
 ) -> tuple[Batch, Array]:
     """The members of a batch that a target computes, and what it is to have there."""
-    language, program = BUILDS[target], subject.programs[function]
+    language = BUILDS[target]
     if language.is_slow:
-        most = max(1, SLOW_WORK // work(program))
+        most = max(1, SLOW_WORK // subject.work[function])
         batch, numpy = batch.take(slice(most)), numpy[:, :most]
     if language.stops_at_poles:
         numpy = np.where(_has_numbers(subject, function, batch), numpy, np.nan)

@@ -44,7 +44,6 @@ from coadjoint.crosscheck.solver_exact import (
     find_steps,
 )
 from coadjoint.crosscheck.solver_objects import CHOICES, ORDER
-from coadjoint.crosscheck.subject import work
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -99,7 +98,7 @@ def check_steps(solvers: Solvers, batch: Batch, size: float) -> dict[str, dict[s
 
 def _take_few(solvers: Solvers, batch: Batch) -> Batch:
     """The members that are compared with 60 digits."""
-    most = ORACLE_OPERATIONS // work(solvers.subject.programs["rhs"])
+    most = ORACLE_OPERATIONS // solvers.subject.work["rhs"]
     return batch.take(slice(min(ORACLE_MEMBERS, max(1, most))))
 
 

@@ -88,6 +88,11 @@ class Subject:
     targets: tuple[str, ...]
 
     @cached_property
+    def work(self) -> dict[str, int]:
+        """How much each function computes."""
+        return {name: work(program) for name, program in self.programs.items()}
+
+    @cached_property
     def elementary(self) -> bool:
         """Whether functions beyond sqrt are called anywhere."""
         return bool(elementary_functions(self.programs.values()))
