@@ -287,6 +287,7 @@ def test_a_route_that_is_not_declared_is_added_as_advised():
 
 #: Advice that is followed in other tests.
 ELSEWHERE = {
+    "Write abs, sign, min and max of positions and parameters alone": "test_words.py",
     "Add the kinetic energy of every velocity that the constraints allow": "test_variational.py",
     "Divide the constraint, as in vz == x*vy": "test_variational.py",
     "Write it in simpler functions": "where no normal form decides whether something is zero",

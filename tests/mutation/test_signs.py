@@ -39,10 +39,12 @@ def whole(name):
 
 
 ON_ALGEBRAS = [name for name in SYSTEMS if shipped(name).algebra is not None]
+#: Balls of one moment of inertia in space axes, whose motion is the same from either side.
+ALIKE = ("ball_in_sphere", "ball_on_turntable")
 BY_SIDE = [
     (name, route)
     for name in SYSTEMS
-    if whole(name).algebra is not None
+    if whole(name).algebra is not None and name not in ALIKE
     for route in bare(shipped(name)).routes
 ]
 BY_LIE_POISSON = [name for name, route in BY_SIDE if route == "lie-poisson" and name in ON_ALGEBRAS]

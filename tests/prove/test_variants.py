@@ -18,7 +18,10 @@ from tests.specs import prove_claims, unitless
 
 FOLDER = Path(derivations_folder())
 #: Tables that a changed motion need not satisfy, or that only routes without forces read.
-DROPPED = ("transformations", "newton", "lax", "clebsch", "forces", "dissipation")
+DROPPED = (
+    *("transformations", "charts", "newton", "lax", "clebsch"),
+    *("forces", "dissipation"),
+)
 DRIVES = ("damped", "driven", "forced")
 
 

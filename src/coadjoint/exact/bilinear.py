@@ -12,18 +12,18 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from sympy.polys.domains import QQ
 
-from coadjoint.exact.element import Element
-
-
-def sum_products(terms: Sequence[tuple[Any, Any, Any]]) -> Element | None:
+def sum_products(terms: Sequence[tuple[Any, Any, Any]]) -> Any:
     """``sum c x y`` over terms ``(c, x, y)``; None unless all are polynomials and numbers."""
     if not terms or not all(
         isinstance(c, int | Fraction) and _is_polynomial(x) and _is_polynomial(y)
         for c, x, y in terms
     ):
         return None
+    from sympy.polys.domains import QQ  # plain numbers need no SymPy
+
+    from coadjoint.exact.element import Element
+
     factors, known = terms[0][1].factors, dict[Any, Any]()
     multiply = factors.ring.monomial_mul
     for c, x, y in terms:
@@ -38,4 +38,5 @@ def sum_products(terms: Sequence[tuple[Any, Any, Any]]) -> Element | None:
 
 def _is_polynomial(value: Any) -> bool:
     """Whether a value is an element without denominators that is not zero."""
-    return isinstance(value, Element) and len(value.parts) == 1 and not value.parts[0].powers
+    parts: Any = getattr(value, "parts", ())
+    return len(parts) == 1 and not parts[0].powers

@@ -11,11 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from coadjoint.render.targets.modules import KernelModule
 
 #: The least and the greatest order of the method of Taylor.
@@ -76,11 +72,6 @@ class Costs:
         other = RATES * self.operations + SUMS * self.rows
         length = math.sqrt(math.sqrt(math.sqrt(tolerance / LOOSEST)))
         return taylor * length > other
-
-
-def find_rounding(state: NDArray[np.float64]) -> float:
-    """What rounding leaves of states, below which no error can be seen."""
-    return 2.0**-48 * float(np.abs(state).max())
 
 
 def read_costs(module: KernelModule, rows: int) -> Costs:

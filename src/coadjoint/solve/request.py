@@ -284,9 +284,10 @@ def prefers_dop853(
         rtol: As given, or the default.
         obstacle: Why generated solvers do not apply or their polynomials are asked for, or "".
     """
-    if _normal(method) != "auto" or step is not None or obstacle:
+    solvers = system._solvers
+    if _normal(method) != "auto" or step is not None or obstacle or not solvers.has_files(kind):
         return False
-    return system._solvers.find_costs(kind).is_dop853_faster(rtol)
+    return solvers.find_costs(kind).is_dop853_faster(rtol)
 
 
 def choose_method(

@@ -17,7 +17,7 @@ from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.choices import GENERATED
 from coadjoint.solve.constraints import Constraints
-from coadjoint.solve.costs import SHARE, find_rounding
+from coadjoint.solve.costs import SHARE
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
@@ -98,7 +98,7 @@ def simulate(
     name = choose_method(system, method, step, obstacles, tolerances=tolerances)
     within = "the path within steps is asked for" if events or dense else obstacle or stepwise
     if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
-        name, rtol, atol = "dop853", rtol * SHARE, max(atol * SHARE, find_rounding(initial))
+        name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
     request = Request(
         state=initial,
         start=start,

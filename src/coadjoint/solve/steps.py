@@ -262,6 +262,9 @@ def _smaller(a: Array, b: Array) -> Array:
 
 # -- Runge and Kutta ----------------------------------------------------------------------------
 
+#: The part of the largest component below which no error can be seen.
+ROUNDING = 2.0**-48
+
 
 def _check_end(
     rates: Callable[[Lanes, Array, Array], Array], lanes: Lanes, h: Array, state: Array
@@ -409,7 +412,12 @@ class DormandPrince8:
 
     def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
-        unit = 1.0 / (self.atol + self.rtol * _larger(np.abs(lanes.state), np.abs(end)))
+        sizes, top = _larger(np.abs(lanes.state), np.abs(end)), np.zeros(h.shape)
+        for row in sizes:
+            top = _larger(row, top)
+        # below the roundings of the largest component no error can be seen
+        least = _larger(np.full(h.shape, self.atol), ROUNDING * top)
+        unit = 1.0 / (least + self.rtol * sizes)
         five, three = (_square(self._add(k, row) * unit) for row in (FIFTH, THIRD))
         part, rest = h * five, (five + 0.01 * three) * float(len(end))
         accepted: Mask = (part * part < rest) | (rest == 0.0)

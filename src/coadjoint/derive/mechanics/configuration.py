@@ -97,26 +97,10 @@ class Mechanics:
 
         Empty exactly where l is quadratic in the velocities.
         """
-        names, reach = self.frame.velocities, self.setting.field.reach
+        names = self.frame.velocities
         rows = zip(names, self.mass, strict=True)
-        named = {
-            name: {*names}.intersection({x for e in row for x in reach(e)}) for name, row in rows
-        }
-        return {name: sorted(found) for name, found in named.items() if found}
-
-    def check_quadratic(self, hint: str) -> None:
-        """The mass matrix may depend on anything but velocities.
-
-        Raises:
-            DerivationError: It depends on some, with the hint.
-        """
-        for name, named in self.bending.items():
-            message = (
-                f"the Lagrangian is not quadratic in the velocities: its second derivative by "
-                f"{name} depends on {', '.join(named)}; expected a kinetic energy quadratic in "
-                f"the velocities. {hint}"
-            )
-            raise fault(self.setting, self._formula, message, named[0])
+        named = ((name, reached(self.setting.field, [row], names)) for name, row in rows)
+        return {name: found for name, found in named if found}
 
     def check_smooth(self) -> None:
         """Momenta do not jump.

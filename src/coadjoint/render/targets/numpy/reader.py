@@ -72,7 +72,7 @@ def read_expression(text: str, name: str) -> Node:
     """A node from a Python expression; ``name`` is the function it stands in, for messages.
 
     >>> read_expression("-np.sqrt(a)", "rhs")
-    Negate(operand=Call(function='sqrt', argument=Symbol(name='a')))
+    Negate(operand=Call(function='sqrt', argument=Symbol(name='a'), other=None))
     """
     return _reader(name).node(ast.parse(text.strip(), mode="eval").body)
 
