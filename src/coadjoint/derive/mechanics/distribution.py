@@ -232,7 +232,7 @@ def _check_rank(distribution: Distribution) -> None:
             continue
         equation = distribution.equations[count - 1]
         inconsistent = _rank(distribution, whole[:count]) == count
-        constraint = _constraint_of(distribution, equation)
+        constraint = constraint_of(distribution, equation)
         others = ", ".join(each.name for each in distribution.equations[: count - 1])
         problem = (
             f"contradicts the constraints before it ({others}): it asks for another value of the "
@@ -254,7 +254,8 @@ def _rank(distribution: Distribution, rows: Sequence[Mapping[int, Element]]) -> 
     return generic_rank(distribution.setting.field, nonzero)
 
 
-def _constraint_of(distribution: Distribution, equation: Equation) -> Constraint:
+def constraint_of(distribution: Distribution, equation: Equation) -> Constraint:
+    """The declared constraint of which a scalar equation is a component."""
     spec = distribution.setting.spec
     declared = (*spec.constraints, *spec.variational)
     return next(each for each in declared if equation.name in each.components)

@@ -25,6 +25,7 @@ from coadjoint.derive.mechanics.configuration import conjugates
 from coadjoint.derive.mechanics.distribution import (
     Distribution,
     Equation,
+    constraint_of,
     variational_distribution,
 )
 from coadjoint.derive.mechanics.solver import Definition
@@ -143,10 +144,7 @@ def _solve(of: Distribution) -> dict[str, Element]:
                 f"no velocity has a constant factor in {equation.name}; expected one that it gives "
                 "at every point. Divide the constraint, as in vz == x*vy."
             )
-            constraint = next(
-                each for each in setting.spec.variational if equation.name in each.components
-            )
-            raise fault(setting, constraint.left, message, equation.name)
+            raise fault(setting, constraint_of(of, equation).left, message, equation.name)
         name, slope = given[-1]
         value = field[name] - residual / slope
         known = {n: field.substitute(v, {name: value}) for n, v in known.items()}

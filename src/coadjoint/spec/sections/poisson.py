@@ -215,6 +215,6 @@ def pairing_weights(count: int, form: str) -> list[Fraction]:
 POISSON = Table[Poisson | None](
     "poisson",
     PoissonPart,
-    "a Poisson bracket of coordinates, where there is no algebra",
+    "a Poisson bracket of coordinates, for systems without an algebra",
     read_poisson,
 )
