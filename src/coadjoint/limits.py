@@ -90,6 +90,8 @@ C_STATEMENTS = 1000
 NEIGHBOURS = 4
 #: Members that an index counts: a state of three components each has 2.4 GB.
 FAMILY_MEMBERS = 100_000_000
+#: Members up to which a claim is proved that does not follow for every number of them.
+PROVED_MEMBERS = 12
 
 # -- children -------------------------------------------------------------------------------------
 

@@ -14,7 +14,7 @@ Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,13 +22,16 @@ from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.families import Index
 from coadjoint.spec.core.components import Named, component_names
-from coadjoint.spec.core.faults import list_names
-from coadjoint.spec.core.members import Members, member_name
+from coadjoint.spec.core.faults import ExpressionError, list_names
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.members import Members, has_sum, member_name, split_sums
 from coadjoint.spec.core.positions import KeyPath, Positions
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.tree import Name, Sum, walk
 from coadjoint.spec.core.values import POISSON_PATTERN
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra
+from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.matrices import block_places
 
 if TYPE_CHECKING:
@@ -63,6 +66,9 @@ class Windows:
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
         windows: The spec written out for two numbers of members, the smaller first.
+        of_members: The claims of what each member conserves, as statements.
+        loaded: The spec written out for all members, with the claims that are not proved for every
+            number of them; None without such claims.
     """
 
     index: Index
@@ -74,11 +80,8 @@ class Windows:
     pairs: bool
     least: int
     windows: tuple[Spec, Spec]
-
-    @property
-    def scope(self) -> str:
-        """For which numbers of members claims are proved, in words."""
-        return f"every number of members N >= {self.least}"
+    of_members: frozenset[str] = frozenset()
+    loaded: Spec | None = None
 
 
 def read_windows(
@@ -102,14 +105,14 @@ def read_windows(
     index = _choose(source, file, sizes)
     _check(source, file, index)
     reach, width, pairs = _measure(source, file, index)
-    least = 2 if pairs else 1 if index.periodic else max(2 * reach, 1)
+    first = _first_window(index, reach, width, pairs=pairs)
+    least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
         if pairs:
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         return read(*_write_out(source, file, index, size))
-    first = _first_window(index, reach, width, pairs=pairs)
     small, large = (read(*_write_out(source, file, index, first + more)) for more in (0, 1))
     parameters = {name: part.index is not None for name, part in file.parameters.items()}
     family = Windows(
@@ -127,7 +130,109 @@ def read_windows(
         least=least,
         windows=(small, large),
     )
+    return _with_family(source, file, read, family)
+
+
+def _with_family(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows
+) -> Spec:
+    """The larger window, with the claims that hold for every number of members.
+
+    Raises:
+        SpecError: The energy or an observable is no sum over members.
+    """
+    large, index = family.windows[1], family.index
+    assert large.hamiltonian is not None, large.name
+    for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
+        _check_total(source, formula)
+    kinds = [_kind_of(large, claim) for claim in large.conserved]
+    members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
+    loaded = None
+    if "other" in kinds:
+        place = kinds.index("other")
+        loaded = _read_loaded(source, file, read, family, place)
+        loaded = _select(loaded, [n for n, kind in enumerate(kinds) if kind == "other"])
+    kept = [n for n, kind in enumerate(kinds) if kind != "other"]
+    small, large = (_select(each, kept) for each in family.windows)
+    family = replace(
+        family,
+        windows=(small, large),
+        of_members=frozenset(f"{each.formula.in_one_line} is conserved" for each in members),
+        loaded=loaded,
+    )
     return replace(large, family=family, index=(index,))
+
+
+def _select(spec: Spec, places: Sequence[int]) -> Spec:
+    """A Spec with some of its claims of what is conserved."""
+    key = ("claims", "conserved")
+    accepted = {each for each in spec.accepted if each[:2] != key}
+    accepted |= {(*key, n) for n, place in enumerate(places) if (*key, place) in spec.accepted}
+    claims = tuple(spec.conserved[place] for place in places)
+    return replace(spec, conserved=claims, accepted=frozenset(accepted))
+
+
+def _kind_of(spec: Spec, claim: Integral) -> str:
+    """What a claim is about: a ``total``, each ``member``, or something ``other``."""
+    tree = claim.formula.sums
+    assert tree is not None, claim.formula.key
+    if claim.where:
+        return "other"
+    if isinstance(tree, Name):
+        return "total" if not _counts_pairs(spec, tree.name) else "other"
+    if not has_sum(tree):
+        named = {node.name for node in walk(tree) if isinstance(node, Name)}
+        emitted = {"energy", *(each.name for each in spec.observables)}
+        return "other" if named & emitted else "member"
+    try:
+        sums = split_sums(tree)
+    except ExpressionError:
+        return "other"
+    return "other" if any(len(each.indices) > 1 for each, _ in sums) else "total"
+
+
+def _counts_pairs(spec: Spec, name: str) -> bool:
+    """Whether an observable is a sum over pairs; the energy is kept all the same."""
+    trees = [each.formula.sums for each in spec.observables if each.name == name]
+    return any(
+        isinstance(node, Sum) and len(node.indices) > 1
+        for tree in trees
+        if tree is not None
+        for node in walk(tree)
+    )
+
+
+def _read_loaded(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows, place: int
+) -> Spec:
+    """The spec with all its members, for claims that are proved for their number alone.
+
+    Raises:
+        SpecError: The number is not known.
+        LimitError: It is too large for that.
+    """
+    size, key = family.index.size, ("claims", "conserved", place)
+    problem = "this claim is not proved for every number of members"
+    if size is None:
+        expected = "an observable or a sum over members, or a size for which it is proved"
+        raise source.fault(key, problem, "", expected, "Give the index a size.")
+    if size > limits.PROVED_MEMBERS:
+        raise source.too_many(key, f"{problem}, and there are {size}", size, "PROVED_MEMBERS")
+    return read(*_write_out(source, file, family.index, size))
+
+
+def _check_total(source: Source, formula: Formula) -> None:
+    """An energy or an observable is a sum of sums over members."""
+    assert formula.sums is not None, formula.key
+    try:
+        sums = split_sums(formula.sums)
+        if not sums:
+            length = len(formula.text)
+            expected = "a sum over members, as sum(i, ...)"
+            problem = "the value is that of no sum over members"
+            raise ExpressionError(problem, 0, length, formula.in_one_line, expected)
+    except ExpressionError as error:
+        raise source.expression_fault(formula.path, error) from None
 
 
 def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
@@ -135,7 +240,7 @@ def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
     if pairs:
         return 2
     whole = reach + max(width, reach)
-    return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach, 1)
+    return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
 
 
 def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
