@@ -6,14 +6,14 @@ from coadjoint.errors import ClaimError, LimitError, SpecError
 from coadjoint.prove import prove
 from coadjoint.prove.certificate import Verdict
 from coadjoint.spec.reader import read_spec_text
+from tests.conftest import FAMILIES
 from tests.families import CHAIN, RING, VORTICES, read, write_chain, write_ring, write_vortices
 from tests.specs import shipped
 
 TEXTS = {"ring": (RING, write_ring), "chain": (CHAIN, write_chain)}
-NAMES = ("heisenberg_lattice", "point_vortices", "toda_lattice", "n_body")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", FAMILIES)
 def test_every_claim_is_proved_for_every_number_of_members(name):
     """No claim names a number alone, and the certificate is not empty."""
     spec = shipped(name)

@@ -21,7 +21,7 @@ def tidy(value: sympy.Expr, groups: Sequence[Group]) -> sympy.Expr:
 
     >>> r, s, m = sympy.symbols("r s m")
     >>> tidy(sympy.sqrt(r**2 - 2 * r * s + s**2 + m), [(r, s)])
-    sqrt(m + (r - s)**2)
+    sqrt(m + (-r + s)**2)
     """
     if not value.args:
         return value

@@ -40,7 +40,7 @@ from coadjoint.spec.core.members import (
     reach,
     split_sums,
 )
-from coadjoint.spec.windows import Windows
+from coadjoint.spec.model import Windows
 
 
 def derive_family(equations: Equations) -> Family:

@@ -22,8 +22,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
-from coadjoint.spec import Spec
-from coadjoint.spec.windows import Windows
+from coadjoint.spec.model import Spec, Windows
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
@@ -46,9 +46,6 @@ from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
 from coadjoint.spec.sections.variables import Variable, state_of
-
-if TYPE_CHECKING:
-    from coadjoint.spec.windows import Windows
 
 __all__ = [
     "FORMS",
@@ -118,6 +115,38 @@ class Reduction(Submanifold):
     """
 
     whole: Spec = field(kw_only=True)
+
+
+@dataclass(frozen=True)
+class Windows:
+    """What is known of a system of equal members apart from a few of them.
+
+    Attributes:
+        index: The index, with its size if that is known.
+        variables: Names of the variables that each member has, in declared order.
+        shared: Names of the parameters that all members share.
+        indexed: Names of the parameters that each member has.
+        defaults: Defaults of indexed parameters that differ from member to member, for all N.
+        reach: How many members further the energy couples.
+        pairs: Whether it couples every two members.
+        least: The number of members from which on the claims are proved.
+        windows: The spec written out for two numbers of members, the smaller first.
+        of_members: The claims of what each member conserves, as statements.
+        loaded: The spec written out for all members, with the claims that are not proved for every
+            number of them; None without such claims.
+    """
+
+    index: Index
+    variables: tuple[str, ...]
+    shared: tuple[str, ...]
+    indexed: tuple[str, ...]
+    defaults: Mapping[str, tuple[Any, ...]]
+    reach: int
+    pairs: bool
+    least: int
+    windows: tuple[Spec, Spec]
+    of_members: frozenset[str] = frozenset()
+    loaded: Spec | None = None
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,7 @@ def read_spec_text(
         raise file_fault(os.fspath(path), refused[0], *refused[1:], found=name)
     check_bytes(os.fspath(path), len(data))
     plain = text.replace("\r\n", "\n")
-    source = Source(os.fspath(path), plain, scan(plain))
+    source = Source(path=os.fspath(path), text=plain, positions=scan(plain))
     file: Any = validate(source)
     read = partial(_read, path=Path(path), sha256=sha256(data).hexdigest())
     if file.index:

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
@@ -28,10 +28,8 @@ from coadjoint.spec.core.members import has_sum, split_sums
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Name, Sum, walk
+from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
-
-if TYPE_CHECKING:
-    from coadjoint.spec.model import Spec
 
 #: Tables that a spec with an index may have.
 TABLES = (
@@ -46,38 +44,6 @@ TABLES = (
     "claims",
 )
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
-
-
-@dataclass(frozen=True)
-class Windows:
-    """What is known of a system of equal members apart from a few of them.
-
-    Attributes:
-        index: The index, with its size if that is known.
-        variables: Names of the variables that each member has, in declared order.
-        shared: Names of the parameters that all members share.
-        indexed: Names of the parameters that each member has.
-        defaults: Defaults of indexed parameters that differ from member to member, for all N.
-        reach: How many members further the energy couples.
-        pairs: Whether it couples every two members.
-        least: The number of members from which on the claims are proved.
-        windows: The spec written out for two numbers of members, the smaller first.
-        of_members: The claims of what each member conserves, as statements.
-        loaded: The spec written out for all members, with the claims that are not proved for every
-            number of them; None without such claims.
-    """
-
-    index: Index
-    variables: tuple[str, ...]
-    shared: tuple[str, ...]
-    indexed: tuple[str, ...]
-    defaults: Mapping[str, tuple[Any, ...]]
-    reach: int
-    pairs: bool
-    least: int
-    windows: tuple[Spec, Spec]
-    of_members: frozenset[str] = frozenset()
-    loaded: Spec | None = None
 
 
 def read_windows(
