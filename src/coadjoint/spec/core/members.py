@@ -196,7 +196,8 @@ def _check_sum(node: Sum, members: Members) -> None:
         if part.shift and len(node.indices) > 1:
             problem = "a sum over pairs names a neighbour"
             expected = f"{part.name}[{part.index}] without a shift"
-            raise fault_at(part, problem, str(part.shift), expected, "Write two sums.")
+            hint = f"Write {part.name}[{part.index}]."
+            raise fault_at(part, problem, str(part.shift), expected, hint)
     missing = set(node.indices) - {part.index for part in inside}
     if missing:
         problem = f"the term of the sum does not name a member {min(missing)!r}"
