@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
+from coadjoint.families import Index
 from coadjoint.spec.core.components import (
     FORMS,
     Components,
@@ -45,6 +46,9 @@ from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
 from coadjoint.spec.sections.variables import Variable, state_of
+
+if TYPE_CHECKING:
+    from coadjoint.spec.windows import Windows
 
 __all__ = [
     "FORMS",
@@ -162,6 +166,8 @@ class Spec:
         inputs: What drives the system from outside, in declared order.
         time: The time, if formulas name it.
         records: What tables gave that have no attribute here, by their keys.
+        index: The index that counts equal members, in a spec with one.
+        family: What is known of the other members, where a few stand for all of them.
         units: The units of all names, as far as the spec tells them.
     """
 
@@ -205,6 +211,8 @@ class Spec:
     inputs: tuple[Input, ...] = ()
     time: Time | None = None
     records: Mapping[str, Any] = field(default_factory=dict)
+    index: tuple[Index, ...] = ()
+    family: Windows | None = field(default=None, repr=False)
     units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
 
     def having_role(self, role: str) -> tuple[Variable, ...]:

@@ -1,0 +1,495 @@
+"""Windows: a spec with an index, written out for two small numbers of members.
+
+Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
+spec has, with all that is known of the others in its attribute ``family``. The numbers are those
+from which the claims follow for every other number (docs/decisions/families.md):
+
+* a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
+* an open chain: w and w + 1, and enough for a member with all its neighbours;
+* pairs: 2 and 3.
+
+Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from coadjoint import limits
+from coadjoint.errors import CoadjointError
+from coadjoint.families import Index
+from coadjoint.spec.core.components import Named, component_names
+from coadjoint.spec.core.faults import ExpressionError, list_names
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.members import Members, has_sum, member_name, split_sums
+from coadjoint.spec.core.positions import KeyPath, Positions
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.tree import Name, Sum, walk
+from coadjoint.spec.core.values import POISSON_PATTERN
+from coadjoint.spec.sections.algebra_keys import OperandPart
+from coadjoint.spec.sections.algebras import read_algebra
+from coadjoint.spec.sections.claims import Integral
+from coadjoint.spec.sections.matrices import block_places
+
+if TYPE_CHECKING:
+    from coadjoint.spec.model import Spec
+
+#: Tables that a spec with an index may have.
+TABLES = (
+    "index",
+    "algebra",
+    "poisson",
+    "variables",
+    "parameters",
+    "definitions",
+    "hamiltonian",
+    "observables",
+    "claims",
+)
+_PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
+
+
+@dataclass(frozen=True)
+class Windows:
+    """What is known of a system of equal members apart from a few of them.
+
+    Attributes:
+        index: The index, with its size if that is known.
+        variables: Names of the variables that each member has, in declared order.
+        shared: Names of the parameters that all members share.
+        indexed: Names of the parameters that each member has.
+        defaults: Defaults of indexed parameters that differ from member to member, for all N.
+        reach: How many members further the energy couples.
+        pairs: Whether it couples every two members.
+        least: The number of members from which on the claims are proved.
+        windows: The spec written out for two numbers of members, the smaller first.
+        of_members: The claims of what each member conserves, as statements.
+        loaded: The spec written out for all members, with the claims that are not proved for every
+            number of them; None without such claims.
+    """
+
+    index: Index
+    variables: tuple[str, ...]
+    shared: tuple[str, ...]
+    indexed: tuple[str, ...]
+    defaults: Mapping[str, tuple[Any, ...]]
+    reach: int
+    pairs: bool
+    least: int
+    windows: tuple[Spec, Spec]
+    of_members: frozenset[str] = frozenset()
+    loaded: Spec | None = None
+
+
+def read_windows(
+    source: Source,
+    file: Any,
+    read: Callable[[Source, Any], Spec],
+    sizes: Mapping[str, int],
+) -> Spec:
+    """A spec with an index.
+
+    Args:
+        source: The text of the spec.
+        file: Its checked tables.
+        read: How a file without an index becomes a Spec.
+        sizes: Chosen sizes by the name of their index.
+
+    Raises:
+        SpecError: A size is unknown, a table or a variable does not go with an index.
+        LimitError: There are too many members.
+    """
+    index = _choose(source, file, sizes)
+    _check(source, file, index)
+    reach, width, pairs = _measure(source, file, index)
+    first = _first_window(index, reach, width, pairs=pairs)
+    least = 1 if index.periodic and not pairs else first
+    size = index.size
+    if size is not None and size < least:
+        if pairs:
+            problem = f"the index {index.name!r} counts one member"
+            raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
+        return read(*_write_out(source, file, index, size))
+    small, large = (read(*_write_out(source, file, index, first + more)) for more in (0, 1))
+    parameters = {name: part.index is not None for name, part in file.parameters.items()}
+    family = Windows(
+        index=index,
+        variables=tuple(file.variables),
+        shared=tuple(name for name, own in parameters.items() if not own),
+        indexed=tuple(name for name, own in parameters.items() if own),
+        defaults={
+            name: tuple(part.default)
+            for name, part in file.parameters.items()
+            if part.index is not None and isinstance(part.default, list)
+        },
+        reach=reach,
+        pairs=pairs,
+        least=least,
+        windows=(small, large),
+    )
+    return _with_family(source, file, read, family)
+
+
+def _with_family(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows
+) -> Spec:
+    """The larger window, with the claims that hold for every number of members.
+
+    Raises:
+        SpecError: The energy or an observable is no sum over members.
+    """
+    large, index = family.windows[1], family.index
+    assert large.hamiltonian is not None, large.name
+    for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
+        _check_total(source, formula)
+    kinds = [_kind_of(large, claim) for claim in large.conserved]
+    members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
+    loaded = None
+    if "other" in kinds:
+        place = kinds.index("other")
+        loaded = _read_loaded(source, file, read, family, place)
+        loaded = _select(loaded, [n for n, kind in enumerate(kinds) if kind == "other"])
+    kept = [n for n, kind in enumerate(kinds) if kind != "other"]
+    small, large = (_select(each, kept) for each in family.windows)
+    family = replace(
+        family,
+        windows=(small, large),
+        of_members=frozenset(f"{each.formula.in_one_line} is conserved" for each in members),
+        loaded=loaded,
+    )
+    return replace(large, family=family, index=(index,))
+
+
+def _select(spec: Spec, places: Sequence[int]) -> Spec:
+    """A Spec with some of its claims of what is conserved."""
+    key = ("claims", "conserved")
+    accepted = {each for each in spec.accepted if each[:2] != key}
+    accepted |= {(*key, n) for n, place in enumerate(places) if (*key, place) in spec.accepted}
+    claims = tuple(spec.conserved[place] for place in places)
+    return replace(spec, conserved=claims, accepted=frozenset(accepted))
+
+
+def _kind_of(spec: Spec, claim: Integral) -> str:
+    """What a claim is about: a ``total``, each ``member``, or something ``other``."""
+    tree = claim.formula.sums
+    assert tree is not None, claim.formula.key
+    if claim.where:
+        return "other"
+    if isinstance(tree, Name):
+        return "total" if not _counts_pairs(spec, tree.name) else "other"
+    if not has_sum(tree):
+        named = {node.name for node in walk(tree) if isinstance(node, Name)}
+        emitted = {"energy", *(each.name for each in spec.observables)}
+        return "other" if named & emitted else "member"
+    try:
+        sums = split_sums(tree)
+    except ExpressionError:
+        return "other"
+    return "other" if any(len(each.indices) > 1 for each, _ in sums) else "total"
+
+
+def _counts_pairs(spec: Spec, name: str) -> bool:
+    """Whether an observable is a sum over pairs; the energy is kept all the same."""
+    trees = [each.formula.sums for each in spec.observables if each.name == name]
+    return any(
+        isinstance(node, Sum) and len(node.indices) > 1
+        for tree in trees
+        if tree is not None
+        for node in walk(tree)
+    )
+
+
+def _read_loaded(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows, place: int
+) -> Spec:
+    """The spec with all its members, for claims that are proved for their number alone.
+
+    Raises:
+        SpecError: The number is not known.
+        LimitError: It is too large for that.
+    """
+    size, key = family.index.size, ("claims", "conserved", place)
+    problem = "this claim is not proved for every number of members"
+    if size is None:
+        expected = "an observable or a sum over members, or a size for which it is proved"
+        raise source.fault(key, problem, "", expected, "Give the index a size.")
+    if size > limits.PROVED_MEMBERS:
+        raise source.too_many(key, f"{problem}, and there are {size}", size, "PROVED_MEMBERS")
+    return read(*_write_out(source, file, family.index, size))
+
+
+def _check_total(source: Source, formula: Formula) -> None:
+    """An energy or an observable is a sum of sums over members."""
+    assert formula.sums is not None, formula.key
+    try:
+        sums = split_sums(formula.sums)
+        if not sums:
+            length = len(formula.text)
+            expected = "a sum over members, as sum(i, ...)"
+            problem = "the value is that of no sum over members"
+            raise ExpressionError(problem, 0, length, formula.in_one_line, expected)
+    except ExpressionError as error:
+        raise source.expression_fault(formula.path, error) from None
+
+
+def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
+    """The smaller of two numbers of members from which claims follow for all."""
+    if pairs:
+        return 2
+    whole = reach + max(width, reach)
+    return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
+
+
+def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
+    """The index with the size that is chosen."""
+    name, part = next(iter(file.index.items()))
+    for other, size in sizes.items():
+        if other != name:
+            problem = f"a size is chosen for {other!a}, which is no index"
+            raise source.at_key(("index", name), problem, other, f"the index {name!r}")
+        if isinstance(size, bool) or not isinstance(size, int) or size < 1:
+            problem = f"the size {size!r} is chosen for {name!r}"
+            raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
+    return Index(name, sizes.get(name, part.size), part.periodic)
+
+
+def _check(source: Source, file: Any, index: Index) -> None:
+    """Every table goes with an index, every variable has it, and there is room for all members."""
+    for table in type(file).model_fields:
+        named = getattr(file, table)
+        if hasattr(file, table) and table not in (*TABLES, *_HEAD) and named not in (None, {}):
+            problem = f"there is a table [{table}] in a spec with [index]"
+            expected = f"the tables {list_names(TABLES)}"
+            raise source.at_key((table,), problem, table, expected, f"Remove [{table}].")
+    quantities = [("variables", n, part) for n, part in file.variables.items()]
+    quantities += [("parameters", n, part) for n, part in file.parameters.items()]
+    for table, name, part in quantities:
+        if name == index.name:
+            problem, expected = f"{name!r} is the index, too", "names that differ"
+            raise source.at_key((table, name), problem, name, expected, "Rename one of them.")
+        if part.index not in (None, index.name):
+            key = (table, name, "index")
+            problem = f"there is no index {part.index!a}"
+            raise source.unknown(key, problem, part.index, [index.name])
+        if table == "variables" and part.index is None:
+            problem = f"the variable {name!r} has no index"
+            hint = f'Add index = "{index.name}".'
+            expected = f"the index {index.name!r} of every variable"
+            raise source.at_key((table, name), problem, name, expected, hint)
+        default = part.default
+        per_member = table == "parameters" and part.index is not None and isinstance(default, list)
+        if per_member and len(default) != index.size:
+            problem = f"the default of {name!r} has {len(default)} entries"
+            expected = f"a number for all members, or {index.size or 'N'} entries"
+            raise source.fault((table, name, "default"), problem, len(default), expected)
+    if index.size is not None and index.size > limits.FAMILY_MEMBERS:
+        problem = f"the index {index.name!r} counts {index.size} members"
+        raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
+
+
+_HEAD = ("title", "source", "description", "license", "routes")
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts in the tables that hold formulas."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for each in value.values():
+            yield from _texts(each)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from _texts(each)
+    elif hasattr(type(value), "model_fields"):
+        for name in type(value).model_fields:
+            yield from _texts(getattr(value, name))
+
+
+def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
+    """How far the energy couples, the width of what is claimed, and whether pairs are coupled.
+
+    The widths are bounds: the span of all shifts in the texts concerned.
+    """
+    shift = re.compile(rf"\[\s*{index.name}\s*([-+]\s*\d{{1,6}})?\s*[\],]")
+
+    def span(texts: Iterable[str]) -> int:
+        found = [int((m[1] or "0").replace(" ", "")) for t in texts for m in shift.finditer(t)]
+        return max([0, *found]) - min([0, *found])
+
+    shared = list(_texts(file.definitions))
+    energy = [*shared, *_texts(file.hamiltonian), *_texts(file.poisson)]
+    reach = span(energy)
+    width = span([*shared, *_texts(file.observables), *_texts(file.claims)])
+    pairs = any(_PAIRS.search(text) for text in [*energy, *_texts(file.observables)])
+    if pairs and (reach or width):
+        problem = "there are sums over pairs, and sums that name neighbours"
+        expected = "one of them in a spec"
+        raise source.fault(("hamiltonian",), problem, "pairs and neighbours", expected)
+    most = limits.NEIGHBOURS
+    if max(reach, width) > 2 * most:
+        problem = f"members that are {max(reach, width)} apart stand in one formula"
+        raise source.too_many(("hamiltonian",), problem, max(reach, width), "NEIGHBOURS")
+    return reach, width, pairs
+
+
+# -- writing out ----------------------------------------------------------------------------------
+
+
+def _write_out(source: Source, file: Any, index: Index, count: int) -> tuple[Source, Any]:
+    """The file and its source for so many members."""
+    places = _Places(source.positions)
+    variables = _write_variables(source, file, index, count, places)
+    parameters = dict[str, Any]()
+    for name, part in file.parameters.items():
+        if part.index is None:
+            parameters[name] = part
+            continue
+        for k in range(count):
+            default = part.default
+            if isinstance(default, list):
+                default = default[k % len(default)]
+            own = part.model_copy(update={"index": None, "default": default})
+            parameters[member_name(name, k)] = own
+            places.repeat(("parameters", name), ("parameters", member_name(name, k)))
+    update = {"index": {}, "variables": variables, "parameters": parameters}
+    if file.algebra is not None and count > 1:
+        update["algebra"] = _repeat_algebra(file.algebra, count)
+    bound: dict[KeyPath, int] = {}
+    if file.poisson is not None:
+        update["poisson"] = _write_poisson(source, file, count, places, bound)
+    indexed = [*file.variables, *(n for n, p in file.parameters.items() if p.index is not None)]
+    members = Members(
+        index=index.name,
+        count=count,
+        periodic=index.periodic,
+        names=frozenset(indexed),
+        bound=bound,
+    )
+    return replace(source, positions=places.all, members=members), file.model_copy(update=update)
+
+
+class _Places:
+    """Where the keys of members stand: where the one key of the spec stands."""
+
+    def __init__(self, positions: Positions) -> None:
+        self.all = replace(
+            positions,
+            keys=dict(positions.keys),
+            values=dict(positions.values),
+            characters=dict(positions.characters),
+        )
+
+    def repeat(self, old: KeyPath, new: KeyPath) -> None:
+        """Let a key, and all below it, stand where another one stands."""
+        for table in (self.all.keys, self.all.values, self.all.characters):
+            found: dict[KeyPath, Any] = {
+                (*new, *path[len(old) :]): value
+                for path, value in table.items()
+                if path[: len(old)] == old
+            }
+            table.update(found)  # type: ignore[arg-type]
+
+
+def _write_variables(
+    source: Source, file: Any, index: Index, count: int, places: _Places
+) -> dict[str, Any]:
+    """The variables of all members: the first one of each, then the second one."""
+    blocks = _Blocks(source, file, count)
+    variables = dict[str, Any]()
+    for name, part in file.variables.items():
+        for k in range(count):
+            own = member_name(name, k)
+            update: dict[str, Any] = {"index": None, "block": blocks.of(name, part, k)}
+            if part.of is not None:
+                update["of"] = member_name(part.of, k)
+            variables[own] = part.model_copy(update=update)
+            places.repeat(("variables", name), ("variables", own))
+    return variables
+
+
+class _Blocks:
+    """Which vectors of the basis the variables of a member span."""
+
+    def __init__(self, source: Source, file: Any, count: int) -> None:
+        self.source, self.count, self.algebra = source, count, None
+        if file.algebra is not None:
+            self.algebra = read_algebra(source, file.algebra, "member")
+            whole = file.algebra if count == 1 else _repeat_algebra(file.algebra, count)
+            self.basis = read_algebra(source, whole, "members").basis
+
+    def of(self, name: str, part: Any, member: int) -> Any:
+        """Names of the basis, for the key ``block``."""
+        if self.algebra is None or part.role not in ("momentum", "velocity"):
+            return part.block
+        own = tuple(range(self.algebra.dimension))
+        if part.block is not None:
+            own = block_places(self.source, ("variables", name, "block"), part.block, self.algebra)
+        start = member * self.algebra.dimension
+        return [self.basis[start + place] for place in own]
+
+
+def _repeat_algebra(part: Any, count: int) -> Any:
+    """The direct sum of equal algebras."""
+    ways = {name: getattr(part, name) for name in OperandPart.model_fields}
+    operand = OperandPart.model_construct(**ways)
+    update = dict.fromkeys(OperandPart.model_fields) | {"direct_sum": [operand] * count}
+    return part.model_copy(update=update)
+
+
+def _write_poisson(
+    source: Source, file: Any, count: int, places: _Places, bound: dict[KeyPath, int]
+) -> Any:
+    """The brackets of each member; those of different members are zero."""
+    part = file.poisson
+    for way in ("nambu", "magnetic"):
+        if getattr(part, way) is not None:
+            problem = f"there is {way!r} in a spec with [index]"
+            raise source.fault(("poisson", way), problem, way, "brackets or canonical")
+    if part.canonical is not None:
+        pairs = [[member_name(n, k) for n in pair] for pair in part.canonical for k in range(count)]
+        return part.model_copy(update={"canonical": pairs})
+    brackets = {}
+    for key, text in part.brackets.items():
+        match = re.match(POISSON_PATTERN, key)
+        if match is None:
+            problem, expected = f"{key!a} is not a bracket", "a key such as '{x, y}'"
+            raise source.at_key(("poisson", "brackets", key), problem, key, expected)
+        for k in range(count):
+            left, right = (_component_of(file, name, k) for name in match.groups())
+            own = f"{{{left}, {right}}}"
+            brackets[own] = text
+            bound["poisson", "brackets", own] = k
+            places.repeat(("poisson", "brackets", key), ("poisson", "brackets", own))
+    return part.model_copy(update={"brackets": brackets})
+
+
+def _component_of(file: Any, component: str, member: int) -> str:
+    """The component of a member by that of the generic one."""
+    for name, part in file.variables.items():
+        shape = tuple(part.shape or ())
+        names = component_names(name, shape, part.form or "")
+        if component in names:
+            own = component_names(member_name(name, member), shape, part.form or "")
+            return own[names.index(component)]
+    return component
+
+
+def rows_of(quantity: Named, size: int) -> tuple[str, ...]:
+    """Names of the rows of a quantity of all members, component by component.
+
+    >>> from coadjoint.spec.core.components import Argument
+    >>> rows_of(Argument("S", (2,)), 3)
+    ('S1[0]', 'S1[1]', 'S1[2]', 'S2[0]', 'S2[1]', 'S2[2]')
+    """
+    return tuple(f"{name}[{k}]" for name in quantity.components for k in range(size))
+
+
+def name_fault(source: Source, key: KeyPath, index: str) -> CoadjointError:
+    """A quantity with an index where none is declared."""
+    problem, name = f"{key[1]!r} has the index {index!a}", str(key[1])
+    expected = "a table [index] that declares it"
+    hint = f"Write [index] and below it {index} = {{ size = 100 }}."
+    return source.fault((*key, "index"), problem, name, expected, hint)
