@@ -23,6 +23,7 @@ from typing import Any
 
 import sympy
 
+from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
 from coadjoint.errors import DerivationError
@@ -55,8 +56,9 @@ def derive_family(equations: Equations) -> Family:
     reader = _Reader(equations)
     declared = reader.declared
     small = 2 * declared.reach
-    pairs = list(reader.pair_sums) if declared.pairs else []
-    rates = reader.rates_with(pairs) if declared.pairs else reader.rates_of(reader.middle)
+    pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
+    rates = reader.rates_with_pairs if declared.pairs else reader.rates_of(reader.middle)
+    rates = tuple(rates)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
     named |= {
@@ -73,8 +75,8 @@ def derive_family(equations: Equations) -> Family:
         shared=tuple(map(sympy.Symbol, reader.shared)),
         indexed=reader.indexed,
         partners=reader.partners,
-        rates=tuple(rates),
-        pair_sums=tuple(pairs),
+        rates=rates,
+        pair_sums=pairs,
         ends=reader.ends,
         totals=totals,
         small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
@@ -194,7 +196,19 @@ class _Reader:
                 "as sums over members.",
                 found=names,
             )
-        return value.xreplace(new)
+        return tidy(value.xreplace(new), self.groups)
+
+    @cached_property
+    def groups(self) -> list[list[sympy.Symbol]]:
+        """Symbols of each component of the state: of member i, its neighbours and its partner."""
+        groups = {each: [each] for each in self.states}
+        for (each, _), seen in self.neighbours.items():
+            if each in groups:
+                groups[each].append(seen)
+        for each, seen in self.partners.items():
+            if each in groups:
+                groups[each].append(seen)
+        return list(groups.values())
 
     @property
     def middle(self) -> int:
@@ -332,19 +346,23 @@ class _Reader:
             for row in rows
         ]
 
-    @property
-    def pair_sums(self) -> Iterator[Sum]:
-        """What the partners add to the rates of a member, a sum for each component that has one."""
-        field = self.equations.setting.field
+    @cached_property
+    def pair_sums(self) -> dict[sympy.Symbol, Sum]:
+        """What the partners add to the rates of a member, by the components to which they add."""
+        field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
         flows = zip(*map(self._flow, self.pair_energies), strict=True)
         for state, parts in zip(self.states, flows, strict=True):
-            symbol = sympy.Symbol(f"{state.name}_pairs")
-            yield Sum(symbol=symbol, term=self._see_pair(field.sum(parts)), over="partners")
+            term = field.sum(parts)
+            if not field.is_zero(term):
+                symbol = sympy.Symbol(f"{state.name}_pairs")
+                sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
+        return sums
 
-    def rates_with(self, pairs: Sequence[Sum]) -> list[sympy.Expr]:
+    @property
+    def rates_with_pairs(self) -> Iterator[sympy.Expr]:
         """The rates of a member with sums over its partners.
 
-        What is left of a rate without the partners of the window is the member's own share.
+        What the energy of one member gives is the member's own share.
         """
         spec, field = self.equations.spec, self.equations.setting.field
         assert spec.hamiltonian is not None, spec.name
@@ -355,7 +373,7 @@ class _Reader:
                 flow = self._flow(*self.value(placed))
                 own = [a + b for a, b in zip(own, flow, strict=True)]
         new = self.rename(0, 0, 0)
-        return [
-            self.see(self.write(value), new) + pair.symbol
-            for value, pair in zip(own, pairs, strict=True)
-        ]
+        for state, value in zip(self.states, own, strict=True):
+            total = self.see(self.write(value), new)
+            pairs = self.pair_sums.get(state)
+            yield total if pairs is None else total + pairs.symbol

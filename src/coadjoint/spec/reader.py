@@ -104,7 +104,7 @@ def read_spec_text(
     check_bytes(os.fspath(path), len(data))
     plain = text.replace("\r\n", "\n")
     source = Source(os.fspath(path), plain, scan(plain))
-    file = validate(source)
+    file: Any = validate(source)
     read = partial(_read, path=Path(path), sha256=sha256(data).hexdigest())
     if file.index:
         read_indices(Reading(source, file, name, TABLES), file.index)

@@ -3,7 +3,7 @@
 Comes in: a tree with sums over members and with quantities of a member. Goes out: the same tree for
 N members, without sums and with a name for each quantity of each member. So the rest of a spec's
 way is that of any other spec: the equations of the generic member are read off from a few of them,
-and what is proved for a few is proved for all by the lemmas in docs/decisions/families.md.
+and what is proved for a few is proved for all by the lemmas in docs/decisions/windows.md.
 Read next: `coadjoint.spec.windows`.
 """
 
