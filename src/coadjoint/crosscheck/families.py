@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.derive import Equations
+    from coadjoint.spec.windows import Windows
 
     Array = NDArray[np.float64]
 
@@ -66,24 +67,21 @@ class _Window:
         size: Its number of members.
         state: Names of its components in the order of a family: component after component.
         parameters: Likewise.
+        totals: Names of the rows of the function ``observables``.
     """
 
     reference: Reference
     size: int
     state: tuple[str, ...]
     parameters: tuple[str, ...]
+    totals: tuple[str, ...]
 
     @classmethod
-    def of(cls, equations: Equations, family: Any) -> _Window:
-        """The window of Equations.
-
-        Args:
-            equations: Of a few members.
-            family: What is known of the others, as a spec has it.
-        """
+    def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
+        """The window of Equations of a few members."""
         spec = equations.spec
         known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        size = len(spec.state) // len(family.variables)
+        size = len(spec.state) // len(declared.variables)
 
         def rows(names: Sequence[str]) -> tuple[str, ...]:
             return tuple(
@@ -95,12 +93,13 @@ class _Window:
                 for name in same
             )
 
-        shared = tuple(c for each in family.shared for c in known[each].components)
+        shared = tuple(c for each in declared.shared for c in known[each].components)
         return cls(
             reference=Reference(equations),
             size=size,
-            state=rows(family.variables),
-            parameters=(*shared, *rows(family.indexed)),
+            state=rows(declared.variables),
+            parameters=(*shared, *rows(declared.indexed)),
+            totals=tuple(each.name for each in family.totals),
         )
 
     def evaluate(self, function: str, state: Array, parameters: Array) -> list[Any]:
@@ -116,11 +115,16 @@ class _Window:
         if function in ("rhs", "jacobian_vector"):
             by_name = dict(zip(own, values, strict=True))
             values = [by_name[name] for name in self.state]
+        if function == "observables":
+            labels = [label for label, _ in self.reference.equations.exact.observables]
+            by_name = dict(zip(labels, values, strict=True))
+            values = [by_name[name] for name in self.totals]
         return values
 
 
 def crosscheck_family(
     windows: Sequence[Equations],
+    declared: Windows,
     family: Family,
     context: FamilyContext,
     texts: Mapping[str, str],
@@ -131,6 +135,7 @@ def crosscheck_family(
 
     Args:
         windows: The Equations of two small numbers of members.
+        declared: What the spec says of the others.
         family: Those of the generic member.
         context: What the texts say.
         texts: The rendered files by name.
@@ -149,7 +154,7 @@ def crosscheck_family(
             raise _fail(system.name, f"the target {target} was not loaded from this text", 3)
     figures: dict[str, dict[str, Figures]] = {name: {} for name in loops}
     for equations in windows:
-        window = _Window.of(equations, _declared(windows))
+        window = _Window.of(equations, declared, family)
         for name, each in loops.items():
             _check_window(window, name, each, system, chosen, figures[name])
     equal = {
@@ -170,11 +175,6 @@ def crosscheck_family(
         together={},
         solvers={},
     )
-
-
-def _declared(windows: Sequence[Equations]) -> Any:
-    """What is known of the members beyond those of a window."""
-    return next(each.spec.family for each in windows if each.spec.family is not None)
 
 
 def _calls(loops: Loops) -> bool:

@@ -147,11 +147,10 @@ def lower_family(family: Family) -> dict[str, Loops]:
     lowering = _Lowering(family)
     functions = [lowering.rates("rhs"), lowering.rates("jacobian_vector")]
     energies = [total for total in family.totals if total.name == "energy"]
-    others = [total for total in family.totals if total.name != "energy"]
     if energies:
         functions.append(lowering.totals("energy", energies, ()))
-    if others:
-        functions.append(lowering.totals("observables", others, (len(others),)))
+    if family.totals:
+        functions.append(lowering.totals("observables", family.totals, (len(family.totals),)))
     return {each.name: each for each in functions}
 
 
@@ -178,6 +177,8 @@ class _Lowering:
         rows = {symbol: ("state", 0, n) for n, symbol in enumerate(family.states)}
         first = len(family.shared)
         rows |= {symbol: ("parameters", first, n) for n, symbol in enumerate(family.indexed)}
+        #: Symbols of member i, and not of its partner or of all.
+        self._own = frozenset((*rows, *family.neighbours.values()))
         naming = _Names()
         self._reads: dict[Symbol, Read] = {}
         for symbol, row in rows.items():
@@ -277,7 +278,8 @@ class _Lowering:
         """
         graph = Graph()
         names = {symbol: read.name for symbol, read in self._reads.items()} | dict(sums)
-        values = list(_Inserting(graph, names, trees).nodes())
+        gathered = [_gather(tree, self.family.states) for tree in trees]
+        values = list(_Inserting(graph, names, self._own, gathered).nodes())
         if slopes is not None:
             along = self._differentiate(graph, values, {sums[each]: slopes[each] for each in sums})
             values = [*values, *along] if keeps else along
@@ -313,8 +315,14 @@ class _Inserting:
     A denominator that several quotients share becomes one reciprocal.
     """
 
-    def __init__(self, graph: Graph, names: Mapping[Symbol, str], trees: Sequence[Tree]) -> None:
-        self.graph, self._names, self._trees = graph, names, trees
+    def __init__(
+        self,
+        graph: Graph,
+        names: Mapping[Symbol, str],
+        own: frozenset[Symbol],
+        trees: Sequence[Tree],
+    ) -> None:
+        self.graph, self._names, self._own, self._trees = graph, names, own, trees
         self._quotients: dict[Tree, set[Tree]] = {}
         for tree in trees:
             for each in sympy.preorder_traversal(tree):
@@ -334,7 +342,7 @@ class _Inserting:
         if tree.is_Rational:
             return graph.number(_as_fraction(tree))
         if tree.is_NumberSymbol:
-            return graph.number(Fraction(str(tree.evalf(_DIGITS))))
+            return graph.number(_as_fraction(tree))
         if tree.is_Add:
             return graph.sum(map(self.node, tree.as_ordered_terms()))
         if tree.is_Mul or tree.is_Pow:
@@ -346,7 +354,9 @@ class _Inserting:
     def _quotient(self, tree: Tree) -> int:
         """A product, perhaps over another one."""
         graph, (number, above, below) = self.graph, _split(tree)
-        node = graph.product([graph.number(abs(number)), *map(self._power, above)])
+        # what all lanes share comes first: it is computed once for them
+        ordered = sorted(above, key=lambda factor: bool(factor.free_symbols & self._own))
+        node = graph.product([graph.number(abs(number)), *map(self._power, ordered)])
         if below:
             divisor = graph.product(map(self._power, below))
             if len(self._quotients[below]) > 1:
@@ -357,7 +367,7 @@ class _Inserting:
 
     def _power(self, factor: Tree) -> int:
         """A factor, of which the exponent is positive and a multiple of 1/2."""
-        base, exponent = factor.as_base_exp()
+        base, exponent = (factor, 1) if factor.is_Function else factor.as_base_exp()
         if exponent == 1:
             return self.node(factor)
         assert (2 * exponent).is_Integer, factor
@@ -367,16 +377,32 @@ class _Inserting:
 
 
 def _as_fraction(number: Tree) -> Fraction:
-    return Fraction(int(number.p), int(number.q))
+    """A rational number as it is, another one to many digits."""
+    if number.is_Rational:
+        return Fraction(int(number.p), int(number.q))
+    return Fraction(str(number.evalf(_DIGITS)))
 
 
 def _split(tree: Tree) -> tuple[Fraction, tuple[Tree, ...], tuple[Tree, ...]]:
     """The number, the factors and the divisors of a product; a sum or function is one factor."""
     if not (tree.is_Mul or tree.is_Pow):
         return Fraction(1), (tree,), ()
-    number, rest = tree.as_coeff_Mul()
-    factors = sympy.Mul.make_args(rest)
-    powers = [factor.as_base_exp() for factor in factors]
-    below = tuple(base**-exponent for base, exponent in powers if exponent.is_negative)
-    above = tuple(f for f, (_, e) in zip(factors, powers, strict=True) if not e.is_negative)
-    return _as_fraction(number), above, below
+    number = Fraction(1)
+    above, below = list[Tree](), list[Tree]()
+    for factor in sympy.Mul.make_args(tree):
+        base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
+        if base.is_Rational or base.is_NumberSymbol:
+            assert exponent.is_Integer, factor
+            number *= _as_fraction(base) ** int(exponent)
+        elif exponent.is_negative:
+            below.append(base**-exponent)
+        else:
+            above.append(factor)
+    return number, tuple(above), tuple(below)
+
+
+def _gather(tree: Tree, own: Sequence[Symbol]) -> Tree:
+    """A sum of products with what its terms share before it: fewer operations."""
+    if not tree.is_Add or len(tree.args) < 3:
+        return tree
+    return sympy.factor_terms(sympy.collect(tree, own))

@@ -7,8 +7,8 @@ Read next: `coadjoint.render.kernels`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
@@ -249,6 +249,8 @@ class FamilyContext:
         indexed: Quantities of the parameters of a member, in order.
         observables: Quantities that the function ``observables`` returns, in order.
         loops: The functions by name.
+        defaults: Of indexed parameters that differ from member to member: a number for each of the
+            members of the declared size.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
     """
@@ -265,6 +267,7 @@ class FamilyContext:
     indexed: tuple[Quantity, ...]
     observables: tuple[Quantity, ...]
     loops: dict[str, Loops]
+    defaults: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     supported: int = 0
     unit_of_time: str = "s"
 
