@@ -90,9 +90,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     return Rendered(first, certificate, programs, texts)
 
 
-def _render_family(
-    spec: Spec, routes: Sequence[Equations], progress: Progress
-) -> Rendered:
+def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:
     """The same for a system of equal members, whose functions are loops over them."""
     declared, first = spec.family, routes[0]
     assert declared is not None, spec.name

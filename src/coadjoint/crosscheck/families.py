@@ -51,8 +51,8 @@ if TYPE_CHECKING:
 
 #: Points of each window, for each function and target; half of them have parameters of their own.
 POINTS: Final = 24
-#: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors have,
-#: and no multiple of them.
+#: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors
+#: have, and no multiple of them.
 SIZES: Final = (7, 17, 64)
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
@@ -210,7 +210,11 @@ def _check_window(
     largest = _threshold(loops, window.size)
     states = list(_points(source, rows, POINTS))
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
-    exact = {n: value for n in range(POINTS) for value in _evaluate(window, name, states[n], parameters[n])}
+    exact = {
+        n: value
+        for n in range(POINTS)
+        for value in _evaluate(window, name, states[n], parameters[n])
+    }
     if not exact:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
@@ -240,9 +244,7 @@ def _evaluate(window: _Window, name: str, state: Array, parameters: Array) -> li
         return []
 
 
-def _compare_bits(
-    system: Any, name: str, small: int, targets: Sequence[str]
-) -> dict[str, int]:
+def _compare_bits(system: Any, name: str, small: int, targets: Sequence[str]) -> dict[str, int]:
     """Points at which exact targets have the bits of NumPy, for several numbers of members."""
     equal = dict.fromkeys((t for t in targets if t != "numpy" and t in BUILDS[t].exact), 0)
     for size in (small, small + 1, *SIZES):
@@ -274,4 +276,3 @@ def _fail(system: str, message: str, rung: int) -> CrossCheckError:
         rung=rung,
         system=system,
     )
-

@@ -1,8 +1,8 @@
 """Cross-check, texts of families: what each target prints of a part reads back as it was lowered.
 
-Comes in: what the texts of a family say, and the texts. Goes out: how many lines were compared, or a
-`CrossCheckError`. Places of names are read as arithmetic: a place has to lead to the right row for
-several numbers of members, and every member.
+Comes in: what the texts of a family say, and the texts. Goes out: how many lines were compared, or
+a `CrossCheckError`. Places of names are read as arithmetic: a place has to lead to the right row
+for several numbers of members, and every member.
 Read next: `coadjoint.crosscheck.families`.
 """
 
@@ -182,8 +182,10 @@ def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
     """One statement of C: a place, a value, a statement or a result; others belong to the loop."""
     if place := re.fullmatch(r"const double \*const _at_(\w+) = (.*)", line):
         where = _C_PLACE.fullmatch(place[2])
-        if not where or (where[1] == "state") != (where[3] == "stride") or (
-            (where[1] == "parameters") != bool(where[4])
+        if (
+            not where
+            or (where[1] == "state") != (where[3] == "stride")
+            or ((where[1] == "parameters") != bool(where[4]))
         ):
             raise failure(f"kernel.c: {part}: {line!r} is no place", name)
         row = where[2].replace("_run.", "").replace("_j", "j")

@@ -1,4 +1,4 @@
-"""Lowering, families: the equations of the generic member become loops over members, no language yet.
+"""Lowering, families: the equations of the generic member become loops over members.
 
 Comes in: a `coadjoint.families.Family`. Goes out: a `Loops` for each function, whose parts are
 Programs of one member, of a pair of members, or of sums, with a note where each name is read. Texts
@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Final, Literal
+from typing import Final
 
 import sympy
 
@@ -51,7 +51,7 @@ class Read:
     """
 
     name: str
-    array: Literal["state", "parameters"]
+    array: str
     rows: int
     blocks: int
     shift: int | None = 0
@@ -173,7 +173,6 @@ class _Lowering:
 
     def __init__(self, family: Family) -> None:
         self.family = family
-        components = (*family.states, *family.indexed)
         rows = {symbol: ("state", 0, n) for n, symbol in enumerate(family.states)}
         first = len(family.shared)
         rows |= {symbol: ("parameters", first, n) for n, symbol in enumerate(family.indexed)}
@@ -367,7 +366,7 @@ class _Inserting:
 
     def _power(self, factor: Tree) -> int:
         """A factor, of which the exponent is positive and a multiple of 1/2."""
-        base, exponent = (factor, 1) if factor.is_Function else factor.as_base_exp()
+        base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
         if exponent == 1:
             return self.node(factor)
         assert (2 * exponent).is_Integer, factor

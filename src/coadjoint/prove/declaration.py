@@ -79,7 +79,7 @@ def family_context(
     declared = spec.family
     assert declared is not None, spec.name
     first, *others = spec.routes
-    known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+    known: dict[str, Any] = {each.name: each for each in (*spec.variables, *spec.parameters)}
     kept = {each.name: each for each in equations.exact.emitted}
 
     def name_generic(name: str) -> Quantity:
@@ -104,12 +104,13 @@ def family_context(
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),
-        defaults={
-            name: tuple(map(float, values)) for name, values in declared.defaults.items()
-        },
+        defaults={name: tuple(map(float, values)) for name, values in declared.defaults.items()},
         observables=tuple(
             _observable(equations, kept[name])
-            for name in (*(["energy"] if spec.hamiltonian else []), *(o.name for o in spec.observables))
+            for name in (
+                *(["energy"] if spec.hamiltonian else []),
+                *(o.name for o in spec.observables),
+            )
         ),
         loops=loops,
         supported=supported,

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.families import Index
-from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.kernels import (

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.declared import Quantity
@@ -20,6 +22,7 @@ from coadjoint.solve.system import System
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import numpy as np
     from numpy.typing import NDArray
 
 #: Bytes of memory for each row of the state and of the parameters: its name and its place among
@@ -40,6 +43,8 @@ class FamilySystem(System):
         index: The index, with N as its size.
         small: The fewest members for which the equations hold.
     """
+
+    stepwise = "the kernels of a family are loops over its members"
 
     def __init__(
         self,
@@ -79,12 +84,12 @@ class FamilySystem(System):
         """N, the number of members."""
         return self.index.size or self.small
 
-    @property
-    def fixed(self) -> Mapping[str, NDArray[Any]]:
+    @cached_property
+    def fixed(self) -> Mapping[str, NDArray[np.float64]]:  # type: ignore[override]
         """N, as kernels take it."""
         import numpy as np
 
-        return {"sizes": np.array([float(self.size)])}
+        return MappingProxyType({"sizes": np.array([float(self.size)])})
 
     def resize(self, sizes: Mapping[str, int]) -> FamilySystem:
         """The system with another number of members.
@@ -121,6 +126,22 @@ class FamilySystem(System):
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
         return f"<System {self.name}: {members}; state {state}; parameters {parameters or 'none'}>"
+
+
+def resize(system: System, sizes: Mapping[str, int]) -> FamilySystem:
+    """A system with other numbers of members, by the name of their index.
+
+    Raises:
+        KernelArgumentError: It has no such index, or too few members are asked for.
+        ResourceError: So many members do not fit into memory.
+    """
+    if isinstance(system, FamilySystem):
+        return system.resize(sizes)
+    raise KernelArgumentError(
+        f"sizes of {system.name} are {dict(sizes)!r}, and it has no index; expected none. Leave "
+        "sizes out, or declare [index] in the spec.",
+        found=list(sizes),
+    )
 
 
 def _find_resized(

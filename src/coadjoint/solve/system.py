@@ -106,11 +106,6 @@ class System(Functions):
                 return Quantities(*self.STATE.values(), *map(_name_below, self.STATE.values()))
         return self.STATE
 
-    @property
-    def fixed(self) -> Mapping[str, Array]:
-        """Arrays that kernels take beyond those that a person passes, by name: N of a family."""
-        return {}
-
     def sizes(self, function: str) -> dict[str, int]:
         """How many rows each array has that a function takes."""
         driving = {"inputs": self.INPUTS.size, "time": self.TIME.size}

@@ -50,9 +50,11 @@ class NumpyStepper:
         self._kernel = NumpyKernel(system, "kernel.py")
         functions = (*choice.kind.rates, "domain", "projection")
         self._sizes = {name: system.rows(name).size for name in functions}
-        module = KernelModule(system, choice.kind.files[2])
-        self._expansion = module.function("expand")
-        self._branches = bool(module.value("BRANCHES"))
+        self._expansion, self._branches = None, bool(system.stepwise)
+        if not system.stepwise:
+            module = KernelModule(system, choice.kind.files[2])
+            self._expansion = module.function("expand")
+            self._branches = bool(module.value("BRANCHES"))
         self._limits = Limits(
             domain=partial(self._evaluate, ("domain",)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
@@ -91,6 +93,7 @@ class NumpyStepper:
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
+        assert self._expansion is not None, self._choice.name
         path: Array = self._expansion(
             lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order
         )

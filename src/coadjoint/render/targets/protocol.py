@@ -36,7 +36,7 @@ class Generated(Protocol):
 
     @property
     def fixed(self) -> Mapping[str, NDArray[Any]]:
-        """Arrays that every function takes beyond these."""
+        """Arrays that every function takes beyond these, by name."""
         ...
 
     def sizes(self, function: str) -> Mapping[str, int]:
