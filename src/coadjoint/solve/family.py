@@ -85,7 +85,7 @@ class FamilySystem(System):
         return self.index.size or self.small
 
     @cached_property
-    def fixed(self) -> Mapping[str, NDArray[np.float64]]:  # type: ignore[override]
+    def fixed(self) -> Mapping[str, NDArray[np.float64]]:
         """N, as kernels take it."""
         import numpy as np
 

@@ -237,7 +237,7 @@ def _has_no_series(path: Array) -> Mask:
 def _norm(rows: Array) -> Array:
     """The largest row; a row that is no number is left out, unless it is the first."""
     sizes = np.abs(rows)
-    return np.where(np.isnan(sizes[0]), sizes[0], np.fmax.reduce(sizes, axis=0))
+    return np.asarray(np.where(np.isnan(sizes[0]), sizes[0], np.fmax.reduce(sizes, axis=0)))
 
 
 def _free(lanes: Lanes, step: Array, most: Array) -> Array:
