@@ -58,6 +58,11 @@ class RenderedFamily:
     family: Family
     context: FamilyContext
 
+    @property
+    def printed(self) -> dict[str, str]:
+        """What the templates print, once more."""
+        return render_family(self.context)
+
 
 @dataclass(frozen=True)
 class Rendered:
@@ -121,6 +126,6 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
     with load_texts(rendered.texts) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
-            return crosscheck_family(*given, rendered.texts, system)
+            return crosscheck_family(*given, rendered.texts, own.printed, system)
         reference = Reference(rendered.equations)
         return crosscheck(rendered.programs, rendered.texts, reference, system)

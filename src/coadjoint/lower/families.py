@@ -266,7 +266,7 @@ class _Lowering:
         *,
         keeps: bool = False,
     ) -> Part:
-        """Trees as a Program.
+        """Trees as a Program, in the form that takes the fewest operations.
 
         Args:
             name: Of the function.
@@ -275,10 +275,24 @@ class _Lowering:
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
             keeps: Whether the trees are wanted, too: their derivatives follow them.
         """
+        own, shared = self.family.states, self.family.shared
+        forms = ([form(tree, own, shared) for tree in trees] for form in (_factor_whole, _factor))
+        parts = [self._lower(name, form, sums, slopes, keeps=keeps) for form in forms]
+        return min(parts, key=lambda part: sum(part.program.operation_counts().values()))
+
+    def _lower(
+        self,
+        name: str,
+        trees: Sequence[Tree],
+        sums: Mapping[Symbol, str],
+        slopes: Mapping[Symbol, str] | None,
+        *,
+        keeps: bool,
+    ) -> Part:
+        """Trees as a Program, in the form that they have."""
         graph = Graph()
         names = {symbol: read.name for symbol, read in self._reads.items()} | dict(sums)
-        gathered = [_gather(tree, self.family.states) for tree in trees]
-        values = list(_Inserting(graph, names, self._own, gathered).nodes())
+        values = list(_Inserting(graph, names, self._own, trees).nodes())
         if slopes is not None:
             along = self._differentiate(graph, values, {sums[each]: slopes[each] for each in sums})
             values = [*values, *along] if keeps else along
@@ -400,8 +414,15 @@ def _split(tree: Tree) -> tuple[Fraction, tuple[Tree, ...], tuple[Tree, ...]]:
     return number, tuple(above), tuple(below)
 
 
-def _gather(tree: Tree, own: Sequence[Symbol]) -> Tree:
-    """A sum of products with what its terms share before it: fewer operations."""
-    if not tree.is_Add or len(tree.args) < 3:
-        return tree
-    return sympy.factor_terms(sympy.collect(tree, own))
+def _factor(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
+    """A sum over the components of a member, and sums within it over the parameters."""
+    if tree.is_Add and len(tree.args) > 2:
+        tree = sympy.collect(tree, own)
+    return tree.replace(
+        lambda part: part.is_Add and len(part.args) > 1, lambda part: sympy.collect(part, shared)
+    )
+
+
+def _factor_whole(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
+    """The same with what all terms share before the sum."""
+    return sympy.factor_terms(_factor(tree, own, shared))
