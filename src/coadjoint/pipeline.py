@@ -35,7 +35,7 @@ from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.system import load_texts
 from coadjoint.spec import Spec
-from coadjoint.spec.windows import Windows
+from coadjoint.spec.model import Windows
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]

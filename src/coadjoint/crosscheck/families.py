@@ -276,7 +276,7 @@ def _compare_targets(
                             f"{name} of {target} for {size} members differs from NumPy in {row}",
                             5,
                         )
-                    equal[target] += int(np.isfinite(one).any()) * int(np.prod(batch, dtype=int))
+                    equal[target] += int(_has_values(one).sum())
     nothing = [target for target, count in equal.items() if not count]
     if nothing:
         raise _fail(system.name, f"nothing of {name} was compared with {nothing[0]}", 5)
@@ -286,13 +286,20 @@ def _compare_targets(
 def _find_differences(one: Array, other: Array, *, exact: bool) -> NDArray[np.bool_]:
     """Where two results differ: in a bit, or by more than roundings of numbers of the size of 1.
 
-    A ring of one member has results that cancel to 0, but for the roundings of what cancels.
+    A ring of one member has results that cancel to 0, but for the roundings of what cancels. Where
+    one row has no value, some targets give none of the others.
     """
     if exact:
         return find_differing_bits(one, other)
     most = np.abs(one[np.isfinite(one)]).max(initial=1.0)
-    close = np.isclose(one, other, rtol=0.0, atol=ROUNDINGS * most, equal_nan=True)
-    return np.asarray(~close)
+    close = np.isclose(one, other, rtol=0.0, atol=ROUNDINGS * most)
+    lacks_values = ~np.isfinite(other).all(axis=0)
+    return np.asarray(~np.where(_has_values(one), close, lacks_values))
+
+
+def _has_values(result: Array) -> NDArray[np.bool_]:
+    """Of each member of a batch, whether all rows have a value."""
+    return np.asarray(np.isfinite(result).all(axis=0))
 
 
 def _fail(system: str, message: str, rung: int) -> CrossCheckError:
