@@ -1,4 +1,4 @@
-/* A ring of N spins in C by hand: dS_i/dt = J (S_(i-1) + S_(i+1)) x S_i.
+/* A ring of N spins in C by hand: dS_i/dt = S_i x J (S_(i-1) + S_(i+1)).
 
    The fields are sums of neighbours, J multiplies them once, and the two ends of the ring stand
    apart, so that the loop over the others has no remainder of a division. */
@@ -8,9 +8,9 @@ static void turn(size_t i, size_t b, size_t a, size_t n, const double *restrict 
 {
     const double *restrict y = s + n, *restrict z = s + 2 * n;
     const double fx = J * (s[b] + s[a]), fy = J * (y[b] + y[a]), fz = J * (z[b] + z[a]);
-    out[i] = fy * z[i] - fz * y[i];
-    out[n + i] = fz * s[i] - fx * z[i];
-    out[2 * n + i] = fx * y[i] - fy * s[i];
+    out[i] = y[i] * fz - z[i] * fy;
+    out[n + i] = z[i] * fx - s[i] * fz;
+    out[2 * n + i] = s[i] * fy - y[i] * fx;
 }
 
 void spins(size_t n, const double *restrict state, const double *restrict parameters, double *restrict out)
@@ -26,8 +26,8 @@ void spins(size_t n, const double *restrict state, const double *restrict parame
 #pragma GCC ivdep
     for (size_t i = first; i < n - 1; ++i) {
         const double fx = J * (x[i - 1] + x[i + 1]), fy = J * (y[i - 1] + y[i + 1]), fz = J * (z[i - 1] + z[i + 1]);
-        dx[i] = fy * z[i] - fz * y[i];
-        dy[i] = fz * x[i] - fx * z[i];
-        dz[i] = fx * y[i] - fy * x[i];
+        dx[i] = y[i] * fz - z[i] * fy;
+        dy[i] = z[i] * fx - x[i] * fz;
+        dz[i] = x[i] * fy - y[i] * fx;
     }
 }

@@ -264,11 +264,12 @@ def _compare_targets(
             state = source.normal(size=(sized.rows(name).size, *batch))
             for shape in dict.fromkeys(((), batch)):
                 parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
-                one = np.atleast_1d(sized.evaluate(name, state, parameters, target="numpy"))
+                one = sized.evaluate(name, state, parameters, target="numpy")
+                one = np.reshape(one, (-1, *batch))  # the energy has no rows
                 for target in equal:
                     other = sized.evaluate(name, state, parameters, target=target)
                     exact = target in BUILDS[target].exact and not calls
-                    different = _find_differences(one, np.atleast_1d(other), exact=exact)
+                    different = _find_differences(one, np.reshape(other, one.shape), exact=exact)
                     if different.any():
                         row = np.argwhere(different)[0].tolist()
                         raise _fail(
@@ -286,7 +287,8 @@ def _compare_targets(
 def _find_differences(one: Array, other: Array, *, exact: bool) -> NDArray[np.bool_]:
     """Where two results differ: in a bit, or by more than roundings of numbers of the size of 1.
 
-    A ring of one member has results that cancel to 0, but for the roundings of what cancels. Where
+    A ring of one member has results that cancel to 0, but for the roundings of what cancels, which
+    is of the order of 1, as states and parameters are. Where
     one row has no value, some targets give none of the others.
     """
     if exact:
