@@ -125,6 +125,23 @@ def test_two_vortices_turn_about_each_other():
     assert isclose((up - down) / 3, (2 + 5) / (2 * pi * 9))
 
 
+def test_two_vortices_on_a_sphere_turn_about_their_moment():
+    """At |M|/(2 pi R d^2) with the chord d between them (Newton)."""
+    family = family_of(shipped("sphere_vortices"))
+    (gamma,), R = family.indexed, 1.5
+    places = [(R, 0.0, 0.0), (0.0, R * 0.6, R * 0.8)]
+    strengths = [2.0, -5.0]
+    M = [sum(g * x[c] for g, x in zip(strengths, places, strict=True)) for c in range(3)]
+    d2 = sum((a - b) ** 2 for a, b in zip(*places, strict=True))
+    values = {(c, k): x[n] for k, x in enumerate(places) for n, c in enumerate(family.states)}
+    values |= {(gamma, k): g for k, g in enumerate(strengths)}
+    point = {member(c, k): v for (c, k), v in values.items()} | {sympy.Symbol("R"): R}
+    for place, rates in zip(places, rates_of_members(family, 2), strict=True):
+        found = [float(each.subs(point)) for each in rates]
+        turned = sympy.Matrix(M).cross(sympy.Matrix(place)) / (2 * pi * R * d2)
+        assert found == pytest.approx([float(each) for each in turned], abs=1e-12)
+
+
 def test_two_particles_of_toda_follow_the_closed_form():
     """exp(q1 - q2) = kappa^2/cosh(kappa t)^2, so that q1 - q2 has the second derivative -2 exp."""
     family = family_of(shipped("toda_lattice"))

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.derive import Equations
-    from coadjoint.spec.windows import Windows
+    from coadjoint.spec.model import Windows
 
     Array = NDArray[np.float64]
 
@@ -288,8 +288,8 @@ def _find_differences(one: Array, other: Array, *, exact: bool) -> NDArray[np.bo
     """Where two results differ: in a bit, or by more than roundings of numbers of the size of 1.
 
     A ring of one member has results that cancel to 0, but for the roundings of what cancels, which
-    is of the order of 1, as states and parameters are. Where
-    one row has no value, some targets give none of the others.
+    is of the order of 1, as states and parameters are. Where one row has no value, some targets
+    give none of the others.
     """
     if exact:
         return find_differing_bits(one, other)
