@@ -92,7 +92,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     progress("render")
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED))
     texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
-    return Rendered(first, certificate, programs, texts)
+    return Rendered(equations=first, certificate=certificate, programs=programs, texts=texts)
 
 
 def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:
@@ -116,7 +116,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
         certificate=certificate,
         programs={"rhs": replace(member.program, state=tuple(map(str, family.states)))},
         texts=texts,
-        family=RenderedFamily(windows, declared, family, context),
+        family=RenderedFamily(windows=windows, declared=declared, family=family, context=context),
     )
 
 

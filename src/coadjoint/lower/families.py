@@ -154,6 +154,12 @@ def lower_family(family: Family) -> dict[str, Loops]:
     return {each.name: each for each in functions}
 
 
+def _place(name: str, row: tuple[str, int, int]) -> Read:
+    """A name of member i."""
+    array, rows, blocks = row
+    return Read(name=name, array=array, rows=rows, blocks=blocks)
+
+
 class _Names:
     """Names of which none is given twice."""
 
@@ -181,15 +187,17 @@ class _Lowering:
         naming = _Names()
         self._reads: dict[Symbol, Read] = {}
         for symbol, row in rows.items():
-            self._reads[symbol] = Read(naming.find(symbol.name), *row)
+            self._reads[symbol] = _place(naming.find(symbol.name), row)
         for n, symbol in enumerate(family.shared):
-            self._reads[symbol] = Read(naming.find(symbol.name), "parameters", n, 0, shift=None)
+            self._reads[symbol] = replace(
+                _place(naming.find(symbol.name), ("parameters", n, 0)), shift=None
+            )
         for (component, shift), symbol in family.neighbours.items():
             name = naming.find(f"{component.name}_{'p' if shift > 0 else 'm'}{abs(shift)}")
-            self._reads[symbol] = Read(name, *rows[component], shift=shift)
+            self._reads[symbol] = replace(_place(name, rows[component]), shift=shift)
         for component, symbol in family.partners.items():
             name = naming.find(f"{component.name}_j")
-            self._reads[symbol] = Read(name, *rows[component], of_partner=True)
+            self._reads[symbol] = replace(_place(name, rows[component]), of_partner=True)
         #: The vector of a derivative, which stands below the state.
         self._vector = [
             replace(
