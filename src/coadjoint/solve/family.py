@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: Bytes of memory for each row of the state and of the parameters: its name and its place among
-#: them, and some arrays of a run (measured: docs/decisions/families.md).
+#: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
 ROW_BYTES: Final = 1000
 #: The largest part of the memory of a machine that a System may take.
 _SHARE: Final = 0.5
