@@ -199,11 +199,11 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         ),
         totals=tuple(
             TotalsText(
-                _arrange(each.part, loops.is_periodic, target, ""),
-                each.over,
-                each.before,
-                each.after,
-                first,
+                part=_arrange(each.part, loops.is_periodic, target, ""),
+                over=each.over,
+                before=each.before,
+                after=each.after,
+                first=first,
             )
             for each, first in zip(loops.totals, firsts, strict=True)
         ),
