@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.reconstruction import fixed_row
-from coadjoint.derive.mechanics.turning import rotation_relations
+from coadjoint.derive.mechanics.turning import rational_rotation, rotation_relations
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Shown, Verdict
@@ -83,8 +84,26 @@ def _integral(motion: Motion, claim: Integral) -> Decision:
     level += [defect for _, defects in _rotations(motion, claim) for defect in defects]
     kept, rates = (list(map(motion.rate, functions)) for functions in (level, parts))
     text = ", ".join(filter(None, (_vanishing(motion, claim), motion.where.text)))
+    written = list(map(motion.in_state, parts))
+    if _rotations(motion, claim) and (seen := _look_at_rotations(motion, rates, written)):
+        return seen
     where = motion.where.also(list(map(motion.in_state, level)), text)
-    return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
+    return _conserved_on(where, kept, rates, written)
+
+
+def _look_at_rotations(
+    motion: Motion, rates: Sequence[Element], parts: Sequence[Element]
+) -> Decision | None:
+    """A counterexample where attitudes are one rotation of rational entries; None without one."""
+    field, entries = motion.field, dict[str, Fraction]()
+    for each in motion.spec.turning:
+        entries |= rational_rotation(each)
+    at = {name: field.number(value) for name, value in entries.items()}
+    values = ([field.substitute(x, at) for x in elements] for elements in (rates, parts))
+    seen = decide_zero(next(values), field, motion.where, next(values))
+    if seen.verdict is not Verdict.REFUTED:
+        return None
+    return replace(seen, point={n: str(x) for n, x in entries.items()} | dict(seen.point or {}))
 
 
 def _conserved_on(

@@ -13,13 +13,14 @@ Read next: `coadjoint.prove.attitudes`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.algebra.attitudes import are_rotations
 from coadjoint.algebra.matrices import without_zero_places
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.exact.dense import Matrix, apply, determinant, dot, hat, product, transpose
+from coadjoint.exact.dense import Matrix, apply, determinant, dot, hat, identity, product, transpose
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec.core.components import kept_places
 from coadjoint.spec.model import Variable
@@ -49,6 +50,26 @@ def rotation_relations(
     unit = tuple(value - one for value, one in zip(values, ones, strict=True))
     name = f"rotation({variable.name})" if variable.turning == "pose" else variable.name
     return [(f"{product_text} = 1", unit), (f"det({name}) = 1", (determinant(R) - 1,))]
+
+
+def rational_rotation(variable: Variable) -> dict[str, Fraction]:
+    """A rotation in general position: turns in planes through neighbouring axes, one by one."""
+    if variable.turning == "quaternion":
+        entries: Sequence[Fraction] = [Fraction(n, 9) for n in (2, 4, -5, 6)]
+        return dict(zip(variable.components, entries, strict=True))
+    rows, columns = variable.shape
+    R: Matrix = identity(rows)
+    for n in range(2 * rows - 3):  # (m^2 - 1, 2m) are sides of a right-angled triangle
+        m, i = n + 2, n % (rows - 1)
+        c, s = Fraction(m * m - 1, m * m + 1), Fraction(2 * m, m * m + 1)
+        turn = [list(row) for row in identity(rows)]
+        turn[i][i], turn[i][i + 1], turn[i + 1][i], turn[i + 1][i + 1] = c, -s, s, c
+        R = product(R, tuple(map(tuple, turn)))
+    return {
+        variable.components[i * columns + j]: Fraction(R[i][j])
+        for i in range(rows)
+        for j in range(rows)
+    }
 
 
 def kinematics(setting: Setting) -> Iterator[tuple[str, dict[str, Element]]]:
