@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -9,9 +10,11 @@ from coadjoint.algebra import attitudes, catalogue
 from coadjoint.algebra.representation import Representation
 from coadjoint.derive import derive
 from coadjoint.errors import AlgebraError
+from coadjoint.spec import read_spec
 from tests.specs import prove_claims, spec
 from tests.turning import BY_QUATERNION, TIED, TOP
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 RIGHT = (
     ('name = "so(3)"', 'name = "so(3)"\ninvariance = "right"'),
     (', "newton-euler"', ""),
@@ -131,3 +134,21 @@ def test_a_transposed_matrix_is_caught():
     found = verdicts(spec(TOP, ("dot(Pi, Gamma)", "dot(Pi, R*vector(0, 0, 1))")))
     (refuted,) = (statement for statement, verdict in found.items() if verdict == "refuted")
     assert refuted.startswith("dot(Pi, R*vector(0, 0, 1)) is conserved where R*transpose(R) = 1")
+
+
+def test_a_body_with_an_oscillator_keeps_its_angular_momentum():
+    """Its square is a Casimir; that of the body alone is none, and neither is that of a slip."""
+    declared = read_spec(EXAMPLES / "body_with_oscillator.toml")
+    assert set(verdicts(declared).values()) == {"proved"}
+    text = declared.path.read_text(encoding="utf-8")
+    for wrong in ('K = "diag(I)*Omega"', 'K = "diag(I)*Omega - m*cross(place, moved)"'):
+        spoiled = spec(text, ('K = "diag(I)*Omega + m*cross(place, moved)"', wrong))
+        assert verdicts(spoiled)["dot(K, K) is a Casimir"] == "refuted"
+
+
+def test_an_orbiting_body_keeps_energy_and_angular_momentum():
+    """One potential gives force and torque."""
+    text = (EXAMPLES / "orbiting_body.toml").read_text(encoding="utf-8")
+    found = verdicts(spec(text, ('"lie-poisson", "hamilton-pontryagin", "poincare", ', "")))
+    assert set(found.values()) == {"proved"}
+    assert any(statement.startswith("L is conserved where") for statement in found)
