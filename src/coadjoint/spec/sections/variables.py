@@ -305,14 +305,16 @@ def _check_role(
     source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
 ) -> None:
     """Coordinates do without an algebra, advected quantities do not."""
+    hint = ""
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
+        hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
     elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
     problem = f"{key[-1]!r} has the role {part.role!r} {place}"
-    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}")
+    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}", hint)
 
 
 def check_elements(
