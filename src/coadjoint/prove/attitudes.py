@@ -9,10 +9,12 @@ Read next: `coadjoint.derive.mechanics.turning`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from functools import partial
 
-from coadjoint.derive.mechanics.turning import gram, kinematics
+from coadjoint.derive.mechanics.turning import gram, gram_matrix, kinematics, turned_back
 from coadjoint.exact import Element
+from coadjoint.exact.dense import add, identity, product, scale, subtract
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.model import Variable
@@ -28,12 +30,31 @@ def about_attitudes(motion: Motion) -> Iterator[Examined]:
     for variable in motion.spec.turning:
         text = f"{gram_name(variable)} = {describe_gram(motion.spec, variable)} is conserved"
         yield text, "attitude", partial(_stays, motion, variable)
+        if motion.equations.turning_back is not None:
+            yield (
+                f"the solvers move {variable.name} back: {gram_name(variable)} = 1 + D becomes "
+                "1 + D^2 (D - 3)/4",
+                "attitude",
+                partial(_is_moved_back, motion, variable),
+            )
 
 
 def _moves_so(motion: Motion, expected: Mapping[str, Element]) -> Decision:
     """The rates are those of the law."""
     rates = [motion.rate(motion.field[n]) - motion.in_state(x) for n, x in expected.items()]
     return decide_zero(rates, motion.field, motion.where)
+
+
+def _is_moved_back(motion: Motion, variable: Variable) -> list[Element]:
+    """The product after the step minus what it is to be, row by row."""
+    setting, moved = motion.setting, turned_back(motion.setting)
+    before = gram_matrix(setting, variable)
+    after = [motion.field.substitute(x, moved) for row in before for x in row]
+    one = identity(len(before))
+    defect = subtract(before, one)
+    change = product(product(defect, defect), subtract(defect, scale(3, one)))
+    expected = [x for row in add(one, scale(Fraction(1, 4), change)) for x in row]
+    return [x - y for x, y in zip(after, expected, strict=True)]
 
 
 def _stays(motion: Motion, variable: Variable) -> Decision:

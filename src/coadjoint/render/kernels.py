@@ -324,7 +324,8 @@ def _summary(context: KernelContext, program: Program) -> str:
     shape = ", ".join([*map(str, program.shape), "..."])
     function = KERNEL_FUNCTIONS[program.name]
     constrained = any(other.name == "constraint_residual" for other in context.programs)
-    text = (constrained and function.constrained) or function.summary
+    kind = function.turning if context.turning else constrained and function.constrained
+    text = kind or function.summary
     return f"{text}, shape ({shape})."
 
 
