@@ -12,7 +12,8 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import partial
 
-from coadjoint.derive.mechanics.turning import gram, gram_matrix, kinematics, turned_back
+from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.turning import gram, gram_matrix, kinematics
 from coadjoint.exact import Element
 from coadjoint.exact.dense import add, identity, product, scale, subtract
 from coadjoint.prove.motion import Motion
@@ -30,12 +31,13 @@ def about_attitudes(motion: Motion) -> Iterator[Examined]:
     for variable in motion.spec.turning:
         text = f"{gram_name(variable)} = {describe_gram(motion.spec, variable)} is conserved"
         yield text, "attitude", partial(_stays, motion, variable)
-        if motion.equations.turning_back is not None:
+        back = motion.equations.turning_back
+        if back is not None:
             yield (
                 f"the solvers move {variable.name} back: {gram_name(variable)} = 1 + D becomes "
                 "1 + D^2 (D - 3)/4",
                 "attitude",
-                partial(_is_moved_back, motion, variable),
+                partial(_is_moved_back, back, variable),
             )
 
 
@@ -45,11 +47,11 @@ def _moves_so(motion: Motion, expected: Mapping[str, Element]) -> Decision:
     return decide_zero(rates, motion.field, motion.where)
 
 
-def _is_moved_back(motion: Motion, variable: Variable) -> list[Element]:
+def _is_moved_back(back: Equations, variable: Variable) -> list[Element]:
     """The product after the step minus what it is to be, row by row."""
-    setting, moved = motion.setting, turned_back(motion.setting)
-    before = gram_matrix(setting, variable)
-    after = [motion.field.substitute(x, moved) for row in before for x in row]
+    setting, before = back.setting, gram_matrix(back.setting, variable)
+    moved = dict(zip(setting.state, back.exact.rates, strict=True))
+    after = [setting.field.substitute(x, moved) for row in before for x in row]
     one = identity(len(before))
     defect = subtract(before, one)
     change = product(product(defect, defect), subtract(defect, scale(3, one)))
