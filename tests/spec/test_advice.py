@@ -44,6 +44,7 @@ v = { role = "velocity", of = "q" }
 h = "v^2/2 + q^2/2"
 [claims]
 """
+WITH_ROTOR = 's = { role = "coordinate" }\nu = { role = "velocity", of = "s" }\n[parameters]'
 CANONICAL_ROUTE = 'routes = ["canonical"]'
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
@@ -566,6 +567,25 @@ ADVICE = [
             "[reconstruction]",
             'Omega = { role = "velocity", block = ["J1", "J2", "J3"] }\n[reconstruction]',
         ),
+    ),
+    # -- attitudes, and coordinates next to an algebra
+    (
+        RIGID_BODY.replace("so(3)", "sl(2,R)"),
+        write("Pi = {", 'g = { role = "attitude" }\nPi = {'),
+        'For another group write role = "advected" and representation = "attitude".',
+        write('role = "attitude"', 'role = "advected", representation = "attitude"'),
+    ),
+    (
+        RIGID_BODY,
+        write("Pi = {", 'q = { role = "quaternion", default = [1, 1, 0, 0] }\nPi = {'),
+        "Leave it out to begin at the identity.",
+        write(", default = [1, 1, 0, 0]", ""),
+    ),
+    (
+        RIGID_BODY.replace('Pi = { role = "momentum" }\n', "").replace("dot(Pi, Pi)", "Omega1"),
+        write("[parameters]", WITH_ROTOR),
+        'With velocities as the state it may: write routes = ["nonholonomic"] at the top.',
+        write(BOTH, 'routes = ["nonholonomic"]'),
     ),
     # -- form of the file
     (

@@ -19,6 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
+from coadjoint.prove.attitudes import about_attitudes
 from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
@@ -169,6 +170,7 @@ EXAMINATIONS = (
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
     Examination(about=about_motion_symmetries, applies=lacks_bracket),
     Examination(about=about_transformations),
+    Examination(about=about_attitudes),
     Examination(about=about_spatial),
     Examination(about=about_pairs, of_routes=True),
     Examination(

@@ -243,6 +243,11 @@ class Spec:
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
 
     @property
+    def turning(self) -> tuple[Variable, ...]:
+        """The attitudes, quaternions and poses of the state."""
+        return tuple(each for each in self.variables if each.turning)
+
+    @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:
         """The momenta of the independent velocities; empty where momenta are the state."""
         moving = [each for each in self.state if each.role == "velocity"]
@@ -282,6 +287,7 @@ class Spec:
                 block=(),
                 representation=None,
                 of="",
+                turning="",
             )
             for variable in self.variables
         )

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import prod
 from typing import Annotated, Literal
 
@@ -41,6 +42,7 @@ from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.matrices import block_places, representation_of
 from coadjoint.spec.sections.representations import REPRESENTATIONS
 from coadjoint.spec.sections.solved import find_solved_velocities
+from coadjoint.spec.sections.turning import TURNING, advect, find_shape, read_rotation
 
 #: Keys that say how large a variable is, and the variables that each is for.
 _OWN_KEYS = {
@@ -48,22 +50,29 @@ _OWN_KEYS = {
     "representation": "advected quantities",
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
+    "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
 }
 _KEYS_OF = {
-    "velocity": ("block", "of", "default"),
-    "momentum": ("block", "of", "default"),
-    "advected": ("representation", "block", "default"),
-    "coordinate": ("shape", "default"),
+    "velocity": ("block", "of", "form", "default"),
+    "momentum": ("block", "of", "form", "default"),
+    "advected": ("representation", "block", "form", "default"),
+    "coordinate": ("shape", "form", "default"),
+    "attitude": ("block", "default"),
+    "quaternion": ("block", "default"),
+    "pose": ("block", "default"),
 }
 
 
 class VariablePart(Part):
     """A velocity, a momentum, an advected quantity or a coordinate."""
 
-    role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
+    role: Literal[
+        "velocity", "momentum", "advected", "coordinate", "attitude", "quaternion", "pose"
+    ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
-        "with a 'velocity' or 'momentum' of it"
+        "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position"
     )
     block: Block | None = Field(
         None,
@@ -115,6 +124,7 @@ class Variable(Components):
             empty where the form says it all.
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
+        turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
     """
 
     name: str
@@ -129,6 +139,7 @@ class Variable(Components):
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
+    turning: str = ""
 
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -169,13 +180,17 @@ def _read_variable(
             raise _alien_key(source, (*key, alien), part)
     if part.default is not None and not _is_state(name, part, parts, solved):
         raise _alien_key(source, (*key, "default"), part)
+    turning = part.role if part.role in TURNING else ""
+    if turning and algebra is not None:
+        part = advect(part, algebra)
     block: tuple[int, ...] = ()
+    given: Shape = ()
     representation = None
     constrained = solved is not None
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
     if part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
-        if not constrained or part.role == "advected":
+        if not constrained or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
             part = _as_partner(source, key, part, parts)
@@ -195,6 +210,9 @@ def _read_variable(
             block = block_places(source, (*key, "block"), part.block, algebra)
         count, flat = len(block), len(block) > 1
     form = part.form or _own_form(part.representation, count)
+    if turning and representation is not None:
+        given = find_shape(source, key, turning, representation, invariance)
+        form = form if turning == "quaternion" else ""
     if form in FORMS and matrix_size(count, form) is None:
         raise misfit_form(source, (*key, "form"), count, form)
     elements: tuple[SparseMatrix, ...] = ()
@@ -204,6 +222,8 @@ def _read_variable(
     elif form == "antisymmetric" and block and algebra is not None:
         check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
+    read_start = partial(read_rotation, role=turning) if turning else read_default
+    shape = given or shape
     return Variable(
         name=name,
         role=part.role,
@@ -215,8 +235,9 @@ def _read_variable(
         form=form,
         of=part.of or "",
         elements=elements,
-        default=read_default(source, (*key, "default"), part.default, shape),
+        default=read_start(source, (*key, "default"), part.default, shape),
         independent=name not in solved if solved is not None and part.role == "velocity" else None,
+        turning=turning,
     )
 
 
@@ -284,14 +305,16 @@ def _check_role(
     source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
 ) -> None:
     """Coordinates do without an algebra, advected quantities do not."""
+    hint = ""
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
-    elif part.role == "advected" and algebra is None:
+        hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
+    elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
     problem = f"{key[-1]!r} has the role {part.role!r} {place}"
-    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}")
+    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}", hint)
 
 
 def check_elements(
