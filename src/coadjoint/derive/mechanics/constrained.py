@@ -234,7 +234,10 @@ def emit_motion(
         emitted=list_emitted(setting, energy, reduced_momenta(of)),
         poisson_tensor=almost_poisson(setting),
         solves=solves,
-        residuals=tuple((each.name, each.residual) for each in of.equations),
+        residuals=(
+            *((each.name, each.residual) for each in of.equations),
+            *(() if of.frame.touch is None else of.frame.touch.residuals),
+        ),
     )
     shown = tuple(step for step in steps(exact) if step.lines)
     return Equations(setting=setting, route=route, exact=exact, steps=shown, distribution=of)
