@@ -35,7 +35,7 @@ from coadjoint.derive.mechanics.kinematics import (
     rate_name,
 )
 from coadjoint.derive.mechanics.relaxed import relaxed
-from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
+from coadjoint.derive.mechanics.solver import Definition, Solve, definitions_under, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, write_entries, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
@@ -262,7 +262,8 @@ def _check_regular(
             found=len(solve.block),
         )
     known: dict[str, Element] = {}
-    for name, value in definitions:
+    entries = [entry for row in solve.matrix for entry in row]
+    for name, value in definitions_under(setting.field, definitions, entries):
         known[name] = setting.field.substitute(value, known)
     matrix = [[setting.field.substitute(e, known) for e in row] for row in solve.matrix]
     for k in range(1, len(matrix) + 1):

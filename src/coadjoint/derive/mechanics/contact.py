@@ -5,18 +5,19 @@ and G of F, seen from the body too, the normals are opposite: :math:`G = -\mu g`
 contact moves by the same :math:`\dot s` along both surfaces, and the normals stay opposite:
 
 .. math::
-    Q \dot s = g \times \Omega \ \text{in the tangent plane}, \qquad
-    Q = \nabla^2 f + \nabla^2 F / \mu, \qquad \mu = -\frac{g \cdot G}{g \cdot g},
+    Q \dot s = k\, g \times \Omega \ \text{in the tangent plane}, \qquad
+    Q = k \nabla^2 f + g^2 \nabla^2 F, \qquad k = -g \cdot G = \mu g^2,
 
 with the angular velocity of the body relative to the surface. In a plane such an equation has the
 solution
 
 .. math::
-    \dot s = \frac{g \times Q (g^2\, \Omega - g\, (g \cdot \Omega))}{g \cdot \mathrm{adj}(Q)\, g},
+    \dot s = k\, \frac{g \times Q (g^2\, \Omega - g\, (g \cdot \Omega))}
+        {g \cdot \mathrm{adj}(Q)\, g},
 
 which divides by the product of the relative principal curvatures, up to factors that are positive.
 It is what Montana (1988) writes with curvature forms in charts. A ball of radius r has
-:math:`g = -G` and :math:`Q = |G|/r + \nabla^2 F`.
+:math:`g = -G`, :math:`Q = |G|/r + \nabla^2 F` and k = 1.
 Comes in: a Setting with [rolling] on a surface. Goes out: the rates of s and X along an angular
 velocity, and what a surface that turns adds to them.
 Read next: `coadjoint.derive.mechanics.frames`; `coadjoint.prove.rolling` proves what they keep.
@@ -54,6 +55,7 @@ class Bend:
         G: The same, seen as velocities are.
         g: Normal to the body.
         Q: How the normals change along both surfaces.
+        k: By what Q is larger than that.
         product: ``g . adj(Q) g``: that of the relative curvatures, times what is positive.
     """
 
@@ -61,6 +63,7 @@ class Bend:
     G: Vector
     g: Vector
     Q: Matrix
+    k: Element
     product: Element
 
     def turn(self, turning: Vector) -> Vector:
@@ -70,7 +73,7 @@ class Bend:
 
     def move(self, turned: Vector) -> Vector:
         """ds/dt, from what `turn` gives."""
-        return scale(1 / self.product, cross(self.g, turned))
+        return scale(self.k / self.product, cross(self.g, turned))
 
     def solve(self, normal: Vector) -> Vector:
         """The step in the tangent plane by which the normals change by a vector of this plane."""
@@ -167,8 +170,8 @@ class Touch:
         if self.contact.radius is not None:
             across = self.length / self.setting.formula(self.contact.radius)
             return add(diagonal((across, across, across)), whole)
-        share = -dot(g, g) / dot(g, G)
-        return add(self._hessian(self.g, self.point), scale(share, whole))
+        own = scale(-dot(g, G), self._hessian(self.g, self.point))
+        return add(own, scale(dot(g, g), whole))
 
     def _bend(self, keep: Keep) -> Bend:
         field = self.setting.field
@@ -183,7 +186,8 @@ class Touch:
         if field.is_zero(product):
             raise self._flat()
         (product,) = keep((product,))
-        return Bend(whole=whole, G=G, g=g, Q=Q, product=product)
+        k = field.one if self.contact.body is None else -dot(g, G)
+        return Bend(whole=whole, G=G, g=g, Q=Q, k=k, product=product)
 
     def _flat(self) -> Exception:
         message = (
@@ -224,6 +228,19 @@ class Touch:
             for row in zip(*self._columns, strict=True)
         )
         return self.spread(tuple(moved))
+
+    def along(self, turning: Sequence[Element], function: Element) -> Element:
+        """How points of contact change a function, along an angular velocity."""
+        field = self.setting.field
+        in_space, in_body = (field.gradient(function, n) for n in (self.place, self.point))
+        slopes = self.from_body(in_space)
+        if in_body:
+            slopes = add(slopes, in_body)
+        if not any(slopes):
+            return field.zero
+        return field.sum(
+            dot(slopes, column) * w for column, w in zip(self._columns, turning, strict=True) if w
+        )
 
     @cached_property
     def _columns(self) -> tuple[Vector, ...]:

@@ -72,6 +72,11 @@ class Frame:
 
     def rates(self, vector: Sequence[Element]) -> dict[str, Element]:
         """``X z`` of every position z, along a vector of the frame; without `drift`."""
+        moved = self.rates_apart(vector)
+        return moved if self.touch is None else moved | self.touch.rates(self.turning(vector))
+
+    def rates_apart(self, vector: Sequence[Element]) -> dict[str, Element]:
+        """The same of all but points of contact."""
         setting, moved = self.setting, dict[str, Element]()
         for variable in setting.advected:
             a = setting.elements(variable.components)
@@ -80,8 +85,7 @@ class Frame:
                 name: setting.field.zero - setting.sign * x
                 for name, x in zip(variable.components, acted, strict=True)
             }
-        moved |= dict(zip(setting.positions, vector[self._own :], strict=True))
-        return moved if self.touch is None else moved | self.touch.rates(self.turning(vector))
+        return moved | dict(zip(setting.positions, vector[self._own :], strict=True))
 
     def drift(self, function: Element) -> Element:
         """How a function of the positions changes at rest: by a surface that turns."""
@@ -91,10 +95,12 @@ class Frame:
 
     def along(self, vector: Sequence[Element], function: Element) -> Element:
         """``X f`` of a function of the positions, along a vector of the frame."""
-        field, moved = self.setting.field, self.rates(vector)
-        slopes = field.gradient(function, self.positions)
-        pairs = zip(slopes, self.positions, strict=True)
-        return field.sum(slope * moved[name] for slope, name in pairs if slope != 0)
+        field, moved = self.setting.field, self.rates_apart(vector)
+        pairs = zip(field.gradient(function, list(moved)), moved.values(), strict=True)
+        whole = field.sum(slope * rate for slope, rate in pairs if slope != 0)
+        if self.touch is None:
+            return whole
+        return whole + self.touch.along(self.turning(vector), function)
 
     def unit(self, k: int) -> Vector:
         """The k-th vector of the frame."""

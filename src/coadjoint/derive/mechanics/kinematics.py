@@ -179,7 +179,7 @@ class Kinematics:
     def frame_rates(self) -> Mapping[str, Element]:
         """``dz/dt`` in the velocities."""
         velocities = self.frame.setting.elements(self.frame.velocities)
-        return {**self.frame.rates(velocities), **self._touching[1]}
+        return {**self.frame.rates_apart(velocities), **self._touching[1]}
 
     @cached_property
     def _touching(self) -> tuple[list[Definition], Mapping[str, Element]]:
