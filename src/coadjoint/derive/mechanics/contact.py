@@ -37,13 +37,25 @@ from coadjoint.spec.sections.contacts import Contact
 Vector = tuple[Element, ...]
 #: Keeps some components, or gives them names.
 Keep = Callable[[Vector], Vector]
-#: How many values of a contact have names: G in space and from the body, g, Q, what it turns.
-NAMED = 19
+#: How many values of a contact have names: G in space and from the body, g, Q and the product.
+FUNCTIONS = 16
+#: What Q turns, and what is 0 at contact.
+TURNED, MISSED = 3, 5
 
 
 def contact_names() -> tuple[str, ...]:
     """The names of what the kernel computes once of a contact."""
-    return tuple(f"_p{n + 1}" for n in range(NAMED))
+    return tuple(f"_p{n + 1}" for n in range(FUNCTIONS + TURNED + MISSED))
+
+
+def turned_names() -> tuple[str, ...]:
+    """The names of what Q turns."""
+    return contact_names()[FUNCTIONS:-MISSED]
+
+
+def missed_names() -> tuple[str, ...]:
+    """The names of what a projection makes 0."""
+    return contact_names()[-MISSED:]
 
 
 @dataclass(frozen=True)
@@ -206,12 +218,18 @@ class Touch:
         """What the kernel computes of them once, and the same in terms of it."""
         lines, names = list[tuple[str, Element]](), iter(contact_names())
 
-        def keep(values: Vector) -> Vector:
-            new = [(next(names), value) for value in values]
-            lines.extend(new)
-            return self.setting.elements([name for name, _ in new])
+        def name(value: Element) -> Element:
+            if self.setting.field.as_number(value) is not None:
+                return value
+            lines.append((next(names), value))
+            return self.setting.field[lines[-1][0]]
 
-        return lines, self._bend(keep)
+        return lines, self._bend(lambda values: tuple(map(name, values)))
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """The names of these, which are functions of positions alone."""
+        return tuple(name for name, _ in self._written[0])
 
     @property
     def named(self) -> Bend:
@@ -244,10 +262,10 @@ class Touch:
 
     @cached_property
     def _columns(self) -> tuple[Vector, ...]:
-        """ds/dt along each axis."""
-        field = self.setting.field
+        """ds/dt along each axis, in names where two surfaces are curved."""
+        field, bend = self.setting.field, self.named if self.point else self.closed
         units = diagonal((field.one, field.one, field.one))
-        return tuple(self.closed.move(self.closed.turn(unit)) for unit in units)
+        return tuple(bend.move(bend.turn(unit)) for unit in units)
 
     def spread(self, moved: Vector) -> dict[str, Element]:
         """One velocity along both surfaces, by component."""
@@ -285,7 +303,7 @@ class Touch:
         """What the kernel computes, with the rates of s and X in terms of it."""
         lines, bend = self._written
         relative = turning if self.contact.turning is None else subtract(turning, self._turn)
-        own = contact_names()[-len(turning) :]
+        own = turned_names()
         turned = zip(own, bend.turn(relative), strict=True)
         moved = bend.move(self.setting.elements(own))
         return [*lines, *turned], self._carry(self.spread(moved))
@@ -330,6 +348,14 @@ class Touch:
             found.append(("rolling_facing", -dot(bend.g, bend.G)))
         return tuple(found)
 
+    @property
+    def missed(self) -> list[tuple[str, Element]]:
+        """What a projection makes 0, by the names that `nearest` uses."""
+        values = [self.F]
+        if self.contact.body is not None:
+            values += [self.f, *self.named.aslant]
+        return list(zip(missed_names(), values, strict=False))
+
     def nearest(self, decide: Callable[[Element], Element]) -> dict[str, Element]:
         """A state nearer to contact, by one step of Newton; only what it changes.
 
@@ -340,13 +366,15 @@ class Touch:
             decide: Writes what names stand for that are not computed.
         """
         bend, field = self.named, self.setting.field
+        above, *others = self.setting.elements([name for name, _ in self.missed])
         rolled = (field.zero,) * 3
         changes = dict[str, Element]()
-        if self.contact.body is not None:
-            rolled = scale(field.number(-1), bend.solve(bend.aslant))
-            down = scale(-self.f / dot(bend.g, bend.g), bend.g)
+        if others:
+            inside, *aslant = others
+            rolled = scale(field.number(-1), bend.solve(tuple(aslant)))
+            down = scale(-inside / dot(bend.g, bend.g), bend.g)
             changes |= zip(self.point, add(rolled, down), strict=True)
-        above = self.F + dot(bend.G, rolled)
+        above += dot(bend.G, rolled)
         down = scale(-above / dot(bend.whole, bend.whole), bend.whole)
         changes |= zip(self.place, add(self.in_space(rolled), down), strict=True)
         after = {name: decide(field[name] + change) for name, change in changes.items()}

@@ -78,12 +78,13 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
 
 def _nearest_contact(setting: Setting, of: Distribution, exact: Exact) -> Exact:
     """The points of contact moved back onto the surfaces; see `Touch.nearest`."""
-    assert of.frame.touch is not None, "asked for only of bodies that touch a surface"
-    field, after = setting.field, of.frame.touch.nearest(kinematics(setting).decided.value)
+    touch, field, known = of.frame.touch, setting.field, kinematics(setting).decided
+    assert touch is not None, "asked for only of bodies that touch a surface"
+    after, missed = touch.nearest(known.value), touch.missed
     state = tuple(after.get(name, field[name]) for name in setting.state)
-    needed = [*state, *(residual for _, residual in exact.residuals)]
+    needed = [*state, *(value for _, value in (*missed, *exact.residuals))]
     return Exact(
-        definitions=tuple(definitions_under(field, exact.definitions, needed)),
+        definitions=(*definitions_under(field, exact.definitions, needed), *missed),
         rates=state,
         energy=None,
         emitted=(),
