@@ -45,7 +45,7 @@ TURNED, MISSED = 3, 5
 
 def contact_names() -> tuple[str, ...]:
     """The names of what the kernel computes once of a contact."""
-    return tuple(f"_p{n + 1}" for n in range(FUNCTIONS + TURNED + MISSED))
+    return tuple(f"_o{n + 1}" for n in range(FUNCTIONS + TURNED + MISSED))
 
 
 def turned_names() -> tuple[str, ...]:
