@@ -83,10 +83,20 @@ def has_frame(motion: Motion) -> bool:
     return motion.equations.distribution is not None
 
 
+def is_written_out(motion: Motion) -> bool:
+    """Whether the rates are functions of the state that can be differentiated by it."""
+    return not motion.equations.opaque
+
+
+def has_reduced_bracket(motion: Motion) -> bool:
+    """Whether velocities along a frame are the state, and the bracket of theirs is looked at."""
+    return has_frame(motion) and is_written_out(motion)
+
+
 def has_fixed_constraints(motion: Motion) -> bool:
     """Whether there are constraints that are the same at all times."""
     distribution = motion.equations.distribution
-    if distribution is None or not distribution.equations:
+    if distribution is None or not distribution.equations or not is_written_out(motion):
         return False
     reached = (motion.field.reach(equation.residual) for equation in distribution.equations)
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
@@ -165,7 +175,7 @@ EXAMINATIONS = (
     Examination(about=about_integrals),
     Examination(about=about_galilean),
     Examination(about=about_momenta),
-    Examination(about=about_reduced_bracket, applies=has_frame),
+    Examination(about=about_reduced_bracket, applies=has_reduced_bracket),
     Examination(about=about_symmetries, applies=has_bracket),
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
     Examination(about=about_motion_symmetries, applies=lacks_bracket),
@@ -181,13 +191,22 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reduced_jacobi,
-        applies=has_frame,
+        applies=has_reduced_bracket,
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),
-    Examination(about=about_reversal, kind="transformation", subject="the reversal of time"),
-    Examination(about=about_candidates, kind="integrals", subject="integrals"),
-    Examination(about=about_measure, kind="measure", subject="invariant measures"),
+    Examination(
+        about=about_reversal,
+        applies=is_written_out,
+        kind="transformation",
+        subject="the reversal of time",
+    ),
+    Examination(
+        about=about_candidates, applies=is_written_out, kind="integrals", subject="integrals"
+    ),
+    Examination(
+        about=about_measure, applies=is_written_out, kind="measure", subject="invariant measures"
+    ),
 )
 
 

@@ -61,18 +61,30 @@ _KEYS_OF = {
     "attitude": ("block", "default"),
     "quaternion": ("block", "default"),
     "pose": ("block", "default"),
+    "contact": ("default",),
 }
+
+#: Components of a point of contact.
+SPACE = 3
 
 
 class VariablePart(Part):
-    """A velocity, a momentum, an advected quantity or a coordinate."""
+    """A velocity, a momentum, an advected quantity, a coordinate, an attitude or a contact."""
 
     role: Literal[
-        "velocity", "momentum", "advected", "coordinate", "attitude", "quaternion", "pose"
+        "velocity",
+        "momentum",
+        "advected",
+        "coordinate",
+        "attitude",
+        "quaternion",
+        "pose",
+        "contact",
     ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
         "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
-        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position"
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'contact' "
+        "for a point at which [rolling] has a body touch a surface"
     )
     block: Block | None = Field(
         None,
@@ -108,11 +120,11 @@ class VariablePart(Part):
 
 @dataclass(frozen=True)
 class Variable(Components):
-    """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
+    """A velocity, a momentum, an advected quantity, a coordinate or a point of contact.
 
     Attributes:
         name: As declared, e.g. ``Omega``.
-        role: ``"velocity"``, ``"momentum"``, ``"advected"`` or ``"coordinate"``.
+        role: ``"velocity"``, ``"momentum"``, ``"advected"``, ``"coordinate"`` or ``"contact"``.
         shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
         block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
@@ -189,7 +201,10 @@ def _read_variable(
     constrained = solved is not None
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
-    if part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
+    if part.role == "contact":
+        _check_rolling(reading, key)
+        count, flat = SPACE, True
+    elif part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
         if not constrained or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
@@ -239,6 +254,15 @@ def _read_variable(
         independent=name not in solved if solved is not None and part.role == "velocity" else None,
         turning=turning,
     )
+
+
+def _check_rolling(reading: Reading, key: KeyPath) -> None:
+    """A point of contact has a table that says of which surfaces."""
+    rolling = reading.file.rolling
+    if rolling is None or key[-1] not in (rolling.contact, rolling.point):
+        problem = f"nothing says which surfaces touch at {key[-1]!r}"
+        expected = f'[rolling] with contact = "{key[-1]}", in space, or with point, on the body'
+        raise reading.fault((*key, "role"), problem, "contact", expected)
 
 
 def _is_state(
