@@ -38,6 +38,7 @@ from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.noise import about_noise, has_noise
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
@@ -132,6 +133,11 @@ def has_energy(motion: Motion) -> bool:
     return motion.equations.exact.energy is not None
 
 
+def lacks_noise(motion: Motion) -> bool:
+    """Whether the rates are the motion: searches look at these alone."""
+    return not has_noise(motion)
+
+
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
     spec = motion.spec
@@ -159,6 +165,7 @@ EXAMINATIONS = (
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
     Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
+    Examination(about=about_noise, applies=has_noise),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
@@ -183,9 +190,16 @@ EXAMINATIONS = (
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),
-    Examination(about=about_reversal, kind="transformation", subject="the reversal of time"),
-    Examination(about=about_candidates, kind="integrals", subject="integrals"),
-    Examination(about=about_measure, kind="measure", subject="invariant measures"),
+    Examination(
+        about=about_reversal,
+        applies=lacks_noise,
+        kind="transformation",
+        subject="the reversal of time",
+    ),
+    Examination(about=about_candidates, applies=lacks_noise, kind="integrals", subject="integrals"),
+    Examination(
+        about=about_measure, applies=lacks_noise, kind="measure", subject="invariant measures"
+    ),
 )
 
 

@@ -21,6 +21,7 @@ from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
 from coadjoint.spec.model import DerivedMomentum, Integral
@@ -32,8 +33,15 @@ def about_energy(motion: Motion) -> Iterator[Examined]:
     yield (
         Balance(motion.equations).statement,
         "conserved",
-        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
+        partial(_balance, motion),
     )
+
+
+def _balance(motion: Motion) -> Decision:
+    """Whether the energy changes by nothing else than is said: by no noise where none is named."""
+    equations = motion.equations
+    noise = noise_rates(equations, Balance(equations).energy) if keeps_energy(equations) else []
+    return decide_zero([motion.energy_balance(), *noise], motion.field, motion.where)
 
 
 def about_integrals(motion: Motion) -> Iterator[Examined]:
@@ -67,10 +75,17 @@ def _integral(motion: Motion, claim: Integral) -> Decision:
     setting, names = motion.setting, motion.emitted
     parts = setting.components(claim.formula, names)
     level = [g for f in claim.where for g in setting.components(f, names)]
-    kept, rates = (list(map(motion.rate, functions)) for functions in (level, parts))
+    kept, rates = (list(_list_rates(motion, functions)) for functions in (level, parts))
     text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
     where = motion.where.also(list(map(motion.in_state, level)), text)
     return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
+
+
+def _list_rates(motion: Motion, functions: Sequence[Element]) -> Iterator[Element]:
+    """Rates of functions: by the motion, and by each Wiener process."""
+    for function in functions:
+        yield motion.rate(function)
+        yield from noise_rates(motion.equations, function)
 
 
 def _conserved_on(
@@ -108,5 +123,5 @@ def _seen_from_space(motion: Motion, seen: DerivedMomentum) -> Decision:
     emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
     text = ", ".join(relation.text for relation in fixed)
     where = Ideal(motion.field, [relation.element for relation in fixed], text)
-    rates = [motion.rate(emitted[name]) for name in seen.components]
+    rates = list(_list_rates(motion, [emitted[name] for name in seen.components]))
     return decide_zero(rates, motion.field, where)
