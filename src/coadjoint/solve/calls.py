@@ -25,7 +25,7 @@ _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
 class _Run(ctypes.Structure):
-    """``NAME_run`` of the headers, field by field."""
+    """``NAME_run`` of the headers, field by field; the last two where a system has noise."""
 
     _fields_ = (
         ("members", _SIZE),
@@ -58,6 +58,8 @@ class _Run(ctypes.Structure):
         ("recorded", _SIZE),
         ("terms", _PLACE),
         ("term_count", _SIZE),
+        ("seed", ctypes.c_uint64),
+        ("bound", _DOUBLE),
     )
 
 
@@ -142,6 +144,8 @@ def _describe(ensemble: Ensemble) -> _Run:
         atol=ensemble.atol,
         size=ensemble.size,
         max_steps=ensemble.max_steps,
+        seed=ensemble.seed,
+        bound=ensemble.bound,
     )
 
 

@@ -1,4 +1,4 @@
-r"""Noise by Hamiltonians: the fields of Wiener processes, and what Ito's calculus adds to the drift.
+r"""Noise by Hamiltonians: the fields of Wiener processes, and what Ito's drift has in addition.
 
 With the bracket of the state the motion is, in the sense of Stratonovich,
 
