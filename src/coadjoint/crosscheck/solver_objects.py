@@ -27,7 +27,7 @@ from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
-from coadjoint.solve.stochastic import Heun, Midpoint
+from coadjoint.solve.stochastic import METHODS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
@@ -138,7 +138,7 @@ class NumpySolver:
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
-        return {"heun": Heun, "midpoint": Midpoint}[name](
+        return METHODS[name](
             rates=rates,
             fields=self._fields,
             size=size,

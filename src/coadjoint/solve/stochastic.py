@@ -12,7 +12,8 @@ Read next: `coadjoint.solve.normals`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -131,3 +132,9 @@ class Midpoint(_Noisy):
             last = np.where(done, last, change)
             done |= fresh
         return self.make_attempt(lanes, h, 2.0 * middle - lanes.state, solved)
+
+
+#: The methods by name.
+METHODS: Final[Mapping[str, type[Heun] | type[Midpoint]]] = MappingProxyType(
+    {"heun": Heun, "midpoint": Midpoint}
+)

@@ -19,7 +19,7 @@ from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import Limits
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
-from coadjoint.solve.stochastic import Heun, Midpoint
+from coadjoint.solve.stochastic import METHODS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +49,7 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection")
+        functions = (*choice.kind.rates, "domain", "projection", "noise")
         self._sizes = {name: system.rows(name).size for name in functions}
         module = KernelModule(system, choice.kind.files[2])
         self._expansion = module.function("expand")
@@ -90,7 +90,7 @@ class NumpyStepper:
             )
         if self._choice.name == "rk4":
             return RungeKutta4(self._rates, run.size, branches=self._branches)
-        return {"heun": Heun, "midpoint": Midpoint}[self._choice.name](
+        return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
             size=run.size,
