@@ -39,6 +39,7 @@ from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.noise import about_noise, has_noise
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
@@ -143,6 +144,11 @@ def has_energy(motion: Motion) -> bool:
     return motion.equations.exact.energy is not None
 
 
+def is_searched(motion: Motion) -> bool:
+    """Whether the rates are the whole motion, and written out: searches look at these alone."""
+    return is_written_out(motion) and not has_noise(motion)
+
+
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
     spec = motion.spec
@@ -170,6 +176,7 @@ EXAMINATIONS = (
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
     Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
+    Examination(about=about_noise, applies=has_noise),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
@@ -197,15 +204,15 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reversal,
-        applies=is_written_out,
+        applies=is_searched,
         kind="transformation",
         subject="the reversal of time",
     ),
     Examination(
-        about=about_candidates, applies=is_written_out, kind="integrals", subject="integrals"
+        about=about_candidates, applies=is_searched, kind="integrals", subject="integrals"
     ),
     Examination(
-        about=about_measure, applies=is_written_out, kind="measure", subject="invariant measures"
+        about=about_measure, applies=is_searched, kind="measure", subject="invariant measures"
     ),
 )
 

@@ -34,6 +34,7 @@ from coadjoint.spec.sections.inputs import Input
 from coadjoint.spec.sections.lax import Lax
 from coadjoint.spec.sections.momenta import Section
 from coadjoint.spec.sections.newton import Force
+from coadjoint.spec.sections.noise import Noise
 from coadjoint.spec.sections.observables import Observable
 from coadjoint.spec.sections.parameters import Parameter
 from coadjoint.spec.sections.poisson import Poisson
@@ -57,6 +58,7 @@ __all__ = [
     "Input",
     "Integral",
     "Lax",
+    "Noise",
     "Observable",
     "Parameter",
     "Poisson",
@@ -154,6 +156,7 @@ class Spec:
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
         relaxation: Dissipation by a symmetric bracket, or None.
+        noise: Wiener processes with Hamiltonians of their own.
         rolling: How the body rolls on a plane, if it does.
         reconstruction: Variables that follow from the motion.
         sections: Sections of the constraint distribution with their momenta.
@@ -198,6 +201,7 @@ class Spec:
     dissipation: Formula | None = None
     domain: tuple[Condition, ...] = ()
     relaxation: Relaxation | None = None
+    noise: tuple[Noise, ...] = ()
     rolling: Rolling | None = None
     reconstruction: tuple[Reconstructed, ...] = ()
     sections: tuple[Section, ...] = ()
