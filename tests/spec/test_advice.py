@@ -68,6 +68,20 @@ def before_claims(lines):
     return write(END, f"{lines}\n{END}")
 
 
+#: A component of its velocity is given.
+BODY_OF_AXES = """
+title = "A body that does not turn about its third axis"
+routes = ["nonholonomic"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+[lagrangian]
+l = "dot(Omega, Omega)/2"
+[constraints]
+plane = "Omega3 == 0"
+"""
+
 MOMENTUM = '"momentum"'
 
 
@@ -94,6 +108,13 @@ ADVICE = [
         [*of_unit("kg m^2/s"), ('"velocity"', '"velocity", unit = "m/s"')],
         'Write unit = "1/s".',
         write("m/s", "1/s"),
+    ),
+    # -- constraints
+    (
+        BODY_OF_AXES,
+        write('"velocity"', '"velocity", default = [1, 2, 3]'),
+        "Write 0 in the place of Omega3.",
+        write("[1, 2, 3]", "[1, 2, 0]"),
     ),
     # -- blocks
     (

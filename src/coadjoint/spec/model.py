@@ -45,7 +45,7 @@ from coadjoint.spec.sections.rolling import Rolling
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
-from coadjoint.spec.sections.variables import Variable, state_of
+from coadjoint.spec.sections.variables import Variable, state_of, velocities_given
 
 __all__ = [
     "FORMS",
@@ -232,8 +232,7 @@ class Spec:
     @property
     def defined(self) -> tuple[Variable, ...]:
         """The velocities that follow from the state, emitted with the dynamics."""
-        state = self.state
-        return tuple(each for each in self.having_role("velocity") if each not in state)
+        return velocities_given(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""

@@ -7,19 +7,17 @@ Read next: `coadjoint.spec.sections.definitions`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import prod
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
-from coadjoint.algebra.families import so, so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
-from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
@@ -29,6 +27,7 @@ from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.units import split_units
 from coadjoint.spec.core.values import (
     Block,
     Length,
@@ -39,7 +38,12 @@ from coadjoint.spec.core.values import (
     read_default,
 )
 from coadjoint.spec.sections.algebras import ALGEBRA
-from coadjoint.spec.sections.matrices import block_places, representation_of
+from coadjoint.spec.sections.matrices import (
+    block_places,
+    check_elements,
+    check_planes,
+    representation_of,
+)
 from coadjoint.spec.sections.representations import REPRESENTATIONS
 from coadjoint.spec.sections.solved import find_solved_velocities
 from coadjoint.spec.sections.turning import TURNING, advect, find_shape, read_rotation
@@ -137,6 +141,7 @@ class Variable(Components):
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
         turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
+        given: The components that constraints give one by one; the others are state by themselves.
     """
 
     name: str
@@ -152,6 +157,29 @@ class Variable(Components):
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
     turning: str = ""
+    given: tuple[str, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Variable, ...]:
+        """The variable; its components, each a variable, where constraints give some of them."""
+        if not self.given:
+            return (self,)
+        units = split_units(self.unit, len(self.components)) or ()
+        return tuple(
+            replace(
+                self,
+                name=name,
+                shape=(),
+                form="",
+                elements=(),
+                block=self.block[n : n + 1],
+                unit=units[n][0] if units else self.unit,
+                default=self.default and self.default[n : n + 1],
+                independent=name not in self.given,
+                given=(),
+            )
+            for n, name in enumerate(self.components)
+        )
 
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -159,11 +187,19 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     given = {variable.of for variable in variables if variable.role == "momentum"}
     return tuple(
         variable
-        for variable in variables
+        for whole in variables
+        for variable in whole.parts
         if variable.independent
         or variable.role != "velocity"
         or (variable.independent is None and variable.of and variable.of not in given)
     )
+
+
+def velocities_given(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The velocities, or components of them, that follow from the state."""
+    state = state_of(variables)
+    parts = (part for each in variables if each.role == "velocity" for part in each.parts)
+    return tuple(part for part in parts if part not in state)
 
 
 def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple[Variable, ...]:
@@ -181,7 +217,7 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
 
 
 def _read_variable(
-    reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
+    reading: Reading, name: str, part: VariablePart, solved: Mapping[str, Any] | None
 ) -> Variable:
     """One variable; velocities that constraints give are not part of the state."""
     source, parts = reading.source, reading.file.variables
@@ -239,7 +275,7 @@ def _read_variable(
     shape: Shape = (count,) if flat or form else ()
     read_start = partial(read_rotation, role=turning) if turning else read_default
     shape = given or shape
-    return Variable(
+    variable = Variable(
         name=name,
         role=part.role,
         shape=shape,
@@ -251,9 +287,31 @@ def _read_variable(
         of=part.of or "",
         elements=elements,
         default=read_start(source, (*key, "default"), part.default, shape),
-        independent=name not in solved if solved is not None and part.role == "velocity" else None,
         turning=turning,
     )
+    return variable if part.role != "velocity" else _bind(reading, variable, solved)
+
+
+def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None) -> Variable:
+    """A velocity with what constraints give of it.
+
+    Raises:
+        SpecError: A component that a constraint gives has a default.
+    """
+    if solved is None:
+        return variable
+    given = tuple(x for x in variable.components if x in solved and variable.shape)
+    for name, value in zip(variable.components, variable.default or (), strict=False):
+        if name in given and value:
+            raise reading.fault(
+                ("variables", variable.name, "default"),
+                f"{name} has the default {value}, and the constraint {solved[name][0]} gives it",
+                str(value),
+                f"0 in the place of {name}, which is not part of the state",
+                f"Write 0 in the place of {name}.",
+            )
+    free = variable.name not in solved and given != variable.components
+    return replace(variable, independent=free, given=given)
 
 
 def _check_rolling(reading: Reading, key: KeyPath) -> None:
@@ -341,53 +399,6 @@ def _check_role(
     raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}", hint)
 
 
-def check_elements(
-    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
-) -> None:
-    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
-    rows = matrix_size(len(block), form)
-    sign = -1 if form == "antisymmetric" else 1
-    for i in block:
-        matrix = algebra.elements[i]
-        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
-        if form == "matrix" or len(block) < algebra.dimension:
-            turned = {}
-        if size(algebra.elements) != rows or turned != dict(matrix):
-            problem = f"the matrix of {algebra.basis[i]} is not of the form {form!r}"
-            expected = f"a basis of all {form} matrices with {rows} rows"
-            hint = "Remove form, or declare the algebra by such matrices."
-            raise source.fault(key, problem, algebra.basis[i], expected, hint)
-
-
-def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
-    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
-
-    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
-    and no invariant would show it.
-    """
-    size = matrix_size(len(block), "antisymmetric")
-    assert size is not None, block
-    place = {b: n for n, b in enumerate(block)}
-    constants: dict[tuple[int, int], dict[int | None, object]] = {}
-    for (i, j), row in algebra.constants.items():
-        if i in place and j in place:
-            a, b = place[i], place[j]
-            sign = 1 if a < b else -1
-            constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    planes = so_indefinite(3, 0) if size == 3 else so(size)  # so(3) has other axes
-    if size > 2 and constants != dict(planes.constants):
-        names = list_names(algebra.basis[b] for b in block)
-        raise source.fault(
-            key,
-            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
-            names,
-            "a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
-            "Leave form out, and write hat(...) where a matrix is meant."
-            if size == 3
-            else "Leave form out, or declare the algebra by these matrices.",
-        )
-
-
 def _representation(
     source: Source,
     key: KeyPath,
@@ -424,9 +435,9 @@ def _own_form(representation: str | None, count: int) -> str:
 
 def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
     """The names of variables, of their components, and of the rates of the state."""
-    state = state_of(variables)
+    state = {name for each in state_of(variables) for name in each.components}
     for each in variables:
-        rates = tuple(derived_names(each.components)) if each in state else ()
+        rates = tuple(derived_names(x for x in each.components if x in state))
         yield Naming(
             key=(table, each.name), name=each.name, components=each.components, rates=rates
         )
