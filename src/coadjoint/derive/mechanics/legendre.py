@@ -10,7 +10,6 @@ Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 
 from __future__ import annotations
 
-import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -22,6 +21,7 @@ from coadjoint.derive.mechanics.configuration import (
     coupled_blocks,
     inverse_in_blocks,
     mechanics,
+    sampled_mechanics,
 )
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.solver import (
@@ -32,7 +32,7 @@ from coadjoint.derive.mechanics.solver import (
     solver_names,
 )
 from coadjoint.derive.mechanics.variational import normal_extremals
-from coadjoint.derive.setting import Setting, calls_of, fault, once, sampled_setting
+from coadjoint.derive.setting import Setting, calls_of, fault, once
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
@@ -168,21 +168,19 @@ def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Elemen
 def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the intermediates of velocities that are solved for in the kernel, or are curved.
 
-    Which velocities are coupled shows with random numbers for everything else, before there is a
-    field; unused symbols would slow down every operation in it.
+    Which velocities are coupled shows before there is a field; see `sampled_mechanics`.
     """
     count = sum(len(variable.components) for variable in spec.having_role("velocity"))
     called = calls_of(spec, "velocity")
     if spec.lagrangian is None or spec.in_frame or (count <= LARGEST_BLOCK and not called):
         return ()
-    setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
     try:
-        mass = mechanics(setting).mass
+        known = sampled_mechanics(spec)
     except DerivationError:  # the route will say so
         return ()
     names = list[str]()
-    for block in coupled_blocks(mass):
-        if setting.velocities[block[0]] in mechanics(setting).bending:
+    for block in coupled_blocks(known.mass):
+        if known.setting.velocities[block[0]] in known.bending:
             names += map(forward_name, block)
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
