@@ -227,9 +227,9 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted with the dynamics."""
-        state = self.state
-        return tuple(each for each in self.having_role("velocity") if each not in state)
+        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        state, roles = self.state, ("velocity", "coordinate")
+        return tuple(each for each in self.variables if each.role in roles and each not in state)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
@@ -262,6 +262,11 @@ class Spec:
     def in_frame(self) -> bool:
         """Whether the state has velocities along a frame, which constraints may bind."""
         return any(variable.independent is not None for variable in self.variables)
+
+    @property
+    def is_first_order(self) -> bool:
+        """Whether a Lagrangian of first order gives all velocities in the state."""
+        return any(variable.follows for variable in self.variables)
 
     @property
     def kind(self) -> str:

@@ -24,6 +24,7 @@ from coadjoint.derive.mechanics.configuration import (
     sampled_mechanics,
 )
 from coadjoint.derive.mechanics.radial import radial_solution
+from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
     Definition,
     Solve,
@@ -274,7 +275,9 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
     if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
         problem = f"the Lagrangian has no invertible Legendre transform: {what} is 0"
         remedy = "expected every velocity in the kinetic energy. Add the missing kinetic term of "
-        remedy += f"{' and '.join(names)}."
+        remedy += f"{' and '.join(names)}.{tell_constraints(mechanics(setting))}"
+        if setting.spec.algebra is None:
+            remedy += " Or take the route first-order, without the momenta that these are of."
     else:
         problem = "the Legendre transform may be invertible nowhere: no point was found at which "
         problem += f"{what} is certainly not 0"

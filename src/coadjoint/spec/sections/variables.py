@@ -37,6 +37,7 @@ from coadjoint.spec.core.values import (
     misfit_form,
     read_default,
 )
+from coadjoint.spec.kinds import is_first_order
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.matrices import block_places, representation_of
 from coadjoint.spec.sections.representations import REPRESENTATIONS
@@ -49,12 +50,13 @@ _OWN_KEYS = {
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
     "default": "quantities of the state",
+    "follows": "coordinates",
 }
 _KEYS_OF = {
     "velocity": ("block", "of", "default"),
     "momentum": ("block", "of", "default"),
     "advected": ("representation", "block", "default"),
-    "coordinate": ("shape", "default"),
+    "coordinate": ("shape", "default", "follows"),
 }
 
 
@@ -88,6 +90,11 @@ class VariablePart(Part):
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
     )
+    follows: bool | None = Field(
+        None,
+        description="true for a coordinate that the constraints of a singular Lagrangian give in "
+        "terms of the others, on the route first-order",
+    )
     default: Numbers | None = Field(
         None,
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
@@ -115,6 +122,8 @@ class Variable(Components):
             empty where the form says it all.
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
+        follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
+            coordinate that is declared to follow.
     """
 
     name: str
@@ -129,6 +138,7 @@ class Variable(Components):
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
+    follows: bool = False
 
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -137,9 +147,12 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     return tuple(
         variable
         for variable in variables
-        if variable.independent
-        or variable.role != "velocity"
-        or (variable.independent is None and variable.of and variable.of not in given)
+        if not variable.follows
+        and (
+            variable.independent
+            or variable.role != "velocity"
+            or (variable.independent is None and variable.of and variable.of not in given)
+        )
     )
 
 
@@ -167,7 +180,12 @@ def _read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
-    if part.default is not None and not _is_state(name, part, parts, solved):
+    follows = bool(part.follows) or (part.role == "velocity" and is_first_order(reading.file))
+    if part.follows and not is_first_order(reading.file):
+        problem = f"{name!r} follows from constraints that only the route first-order finds"
+        expected = 'routes = ["first-order"], or a coordinate of the state'
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    if part.default is not None and (follows or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
     block: tuple[int, ...] = ()
     representation = None
@@ -217,6 +235,7 @@ def _read_variable(
         elements=elements,
         default=read_default(source, (*key, "default"), part.default, shape),
         independent=name not in solved if solved is not None and part.role == "velocity" else None,
+        follows=follows,
     )
 
 
