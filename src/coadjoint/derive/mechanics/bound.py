@@ -216,13 +216,13 @@ def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, .
         DerivationError: There is no motion, or it is not determined, or a constraint cannot be
             solved; or what follows is not what the spec declares to follow.
     """
-    field = setting.field
-    resting = [x for x, value in zip(form.names, form.theta, strict=True) if value == 0]
+    field, omega = setting.field, form.two_form(setting.field)
+    resting = [x for x, row in zip(form.names, omega, strict=True) if not any(row)]
     given = [name for name in form.names if name not in setting.state]
     known = Constraints(
         field=field,
         names=tuple(dict.fromkeys((*given, *resting, *form.names))),
-        matrix=form.two_form(field),
+        matrix=omega,
         right=field.gradient(form.energy, form.names),
         tangent=lambda value: (field.gradient(value, form.names), field.zero),
     )
