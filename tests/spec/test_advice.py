@@ -405,6 +405,12 @@ ADVICE = [
         write(", shape = [3] }\n\n", " }\n\n"),
     ),
     (
+        LAW,
+        write('x = { role = "coordinate"', 'x = { role = "coordinate", follows = true'),
+        "Remove follows.",
+        write(", follows = true", ""),
+    ),
+    (
         TOP,
         write(', representation = "vector"', ""),
         'Write representation = "vector".',

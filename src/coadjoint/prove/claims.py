@@ -32,6 +32,7 @@ from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
 from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.first_order import about_stationarity
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.integrals import about_energy, about_integrals, about_spatial
@@ -152,12 +153,18 @@ def is_searched(motion: Motion) -> bool:
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
     spec = motion.spec
-    return is_free(motion) and spec.lagrangian is not None and not spec.variational
+    regular = spec.lagrangian is not None and not spec.is_first_order
+    return is_free(motion) and regular and not spec.variational
 
 
 def is_variational(motion: Motion) -> bool:
     """Whether constraints are imposed before the variation."""
     return bool(motion.spec.variational)
+
+
+def is_first_order(motion: Motion) -> bool:
+    """Whether the Lagrangian is singular in the velocities."""
+    return motion.spec.is_first_order
 
 
 #: All that is examined, in the order of the certificate.
@@ -167,6 +174,7 @@ EXAMINATIONS = (
     Examination(about=about_constraints, applies=has_frame),
     Examination(about=about_legendre, applies=has_transform, of_routes=True),
     Examination(about=about_extremals, applies=is_variational),
+    Examination(about=about_stationarity, applies=is_first_order),
     Examination(about=lambda motion: about_reduction(motion.equations)),
     Examination(about=about_equality, of_routes=True),
     Examination(about=about_hamiltonian, applies=has_bracket),
@@ -208,9 +216,7 @@ EXAMINATIONS = (
         kind="transformation",
         subject="the reversal of time",
     ),
-    Examination(
-        about=about_candidates, applies=is_searched, kind="integrals", subject="integrals"
-    ),
+    Examination(about=about_candidates, applies=is_searched, kind="integrals", subject="integrals"),
     Examination(
         about=about_measure, applies=is_searched, kind="measure", subject="invariant measures"
     ),

@@ -45,7 +45,7 @@ from coadjoint.spec.sections.rolling import Rolling
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
-from coadjoint.spec.sections.variables import Variable, state_of, velocities_given
+from coadjoint.spec.sections.variables import Variable, find_defined, state_of
 
 __all__ = [
     "FORMS",
@@ -231,8 +231,8 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted with the dynamics."""
-        return velocities_given(self.variables)
+        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        return find_defined(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
@@ -270,6 +270,11 @@ class Spec:
     def in_frame(self) -> bool:
         """Whether the state has velocities along a frame, which constraints may bind."""
         return any(variable.independent is not None for variable in self.variables)
+
+    @property
+    def is_first_order(self) -> bool:
+        """Whether a Lagrangian of first order gives all velocities in the state."""
+        return any(variable.follows for variable in self.variables)
 
     @property
     def kind(self) -> str:

@@ -37,6 +37,7 @@ from coadjoint.spec.core.values import (
     misfit_form,
     read_default,
 )
+from coadjoint.spec.kinds import is_first_order
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.matrices import (
     block_places,
@@ -56,12 +57,13 @@ _OWN_KEYS = {
     "of": "velocities and momenta of coordinates",
     "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
+    "follows": "coordinates",
 }
 _KEYS_OF = {
     "velocity": ("block", "of", "form", "default"),
     "momentum": ("block", "of", "form", "default"),
     "advected": ("representation", "block", "form", "default"),
-    "coordinate": ("shape", "form", "default"),
+    "coordinate": ("shape", "form", "default", "follows"),
     "attitude": ("block", "default"),
     "quaternion": ("block", "default"),
     "pose": ("block", "default"),
@@ -113,6 +115,11 @@ class VariablePart(Part):
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
     )
+    follows: bool | None = Field(
+        None,
+        description="true for a coordinate that the constraints of a singular Lagrangian give in "
+        "terms of the others, on the route first-order",
+    )
     default: Numbers | None = Field(
         None,
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
@@ -142,6 +149,8 @@ class Variable(Components):
         independent: Under constraints, whether a velocity is part of the state; None without any.
         turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
         given: The components that constraints give one by one; the others are state by themselves.
+        follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
+            coordinate that is declared to follow.
     """
 
     name: str
@@ -181,6 +190,8 @@ class Variable(Components):
             for n, name in enumerate(self.components)
         )
 
+    follows: bool = False
+
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     """The variables that make the state, in declared order; see `Spec.state`."""
@@ -189,16 +200,19 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
         variable
         for whole in variables
         for variable in whole.parts
-        if variable.independent
-        or variable.role != "velocity"
-        or (variable.independent is None and variable.of and variable.of not in given)
+        if not variable.follows
+        and (
+            variable.independent
+            or variable.role != "velocity"
+            or (variable.independent is None and variable.of and variable.of not in given)
+        )
     )
 
 
-def velocities_given(variables: Sequence[Variable]) -> tuple[Variable, ...]:
-    """The velocities, or components of them, that follow from the state."""
-    state = state_of(variables)
-    parts = (part for each in variables if each.role == "velocity" for part in each.parts)
+def find_defined(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """Velocities, or components of them, and coordinates that follow from the state."""
+    state, roles = state_of(variables), ("velocity", "coordinate")
+    parts = (part for each in variables if each.role in roles for part in each.parts)
     return tuple(part for part in parts if part not in state)
 
 
@@ -226,7 +240,12 @@ def _read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
-    if part.default is not None and not _is_state(name, part, parts, solved):
+    follows = bool(part.follows) or (part.role == "velocity" and is_first_order(reading.file))
+    if part.follows and not is_first_order(reading.file):
+        problem = f"{name!r} follows from constraints that only the route first-order finds"
+        expected = 'routes = ["first-order"], or a coordinate of the state'
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    if part.default is not None and (follows or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
     turning = part.role if part.role in TURNING else ""
     if turning and algebra is not None:
@@ -288,6 +307,7 @@ def _read_variable(
         elements=elements,
         default=read_start(source, (*key, "default"), part.default, shape),
         turning=turning,
+        follows=follows,
     )
     return variable if part.role != "velocity" else _bind(reading, variable, solved)
 
