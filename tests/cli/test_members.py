@@ -185,7 +185,9 @@ def test_random_members_are_on_the_constraints(folder):
     (folder / "suslov_0.toml").write_text(SUSLOV)
     system = load(folder / "suslov_0.toml")
     start = simulate.find_start(system, ())
-    many = find_members(system, "40", 0, Members(list(start), {}, None, {}))
+    many = find_members(
+        system, "40", 0, Members(state=list(start), parameters={}, inputs=None, followed={})
+    )
     off = many.state[0] + 2 * many.state[1] + 2 * many.state[2]
     assert np.abs(off).max() < 1e-15
     assert np.ptp(many.state, axis=1).min() > 0.01

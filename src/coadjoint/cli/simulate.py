@@ -157,7 +157,8 @@ def command(
     given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
     driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
     state, followed = take_reconstructed(loaded, state)
-    run = Members(find_start(loaded, state, given, driven), given, driven, followed)
+    start = find_start(loaded, state, given, driven)
+    run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
     if members is not None:
         run = find_members(loaded, members, seed, run)
