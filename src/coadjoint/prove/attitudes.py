@@ -16,6 +16,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.turning import gram, gram_matrix, kinematics
 from coadjoint.exact import Element
 from coadjoint.exact.dense import add, identity, product, scale, subtract
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.model import Variable
@@ -26,8 +27,9 @@ def about_attitudes(motion: Motion) -> Iterator[Examined]:
     """The claims about each attitude; none where a bracket that dissipates moves them, too."""
     if motion.spec.relaxation is not None:
         return
+    apart = ", apart from the noise" if motion.spec.noise else ""
     for law, rates in kinematics(motion.setting):
-        yield law, "attitude", partial(_moves_so, motion, rates)
+        yield law + apart, "attitude", partial(_moves_so, motion, rates)
     for variable in motion.spec.turning:
         text = f"{gram_name(variable)} = {describe_gram(motion.spec, variable)} is conserved"
         yield text, "attitude", partial(_stays, motion, variable)
@@ -61,5 +63,7 @@ def _is_moved_back(back: Equations, variable: Variable) -> list[Element]:
 
 def _stays(motion: Motion, variable: Variable) -> Decision:
     """The product is conserved."""
-    rates = list(map(motion.rate, gram(motion.setting, variable)))
+    values = gram(motion.setting, variable)
+    rates = list(map(motion.rate, values))
+    rates += [rate for value in values for rate in noise_rates(motion.equations, value)]
     return decide_zero(rates, motion.field, motion.where)

@@ -23,6 +23,7 @@ from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
 from coadjoint.spec.model import DerivedMomentum, Integral
@@ -34,8 +35,15 @@ def about_energy(motion: Motion) -> Iterator[Examined]:
     yield (
         Balance(motion.equations).statement,
         "conserved",
-        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
+        partial(_balance, motion),
     )
+
+
+def _balance(motion: Motion) -> Decision:
+    """Whether the energy changes by nothing else than is said: by no noise where none is named."""
+    equations = motion.equations
+    noise = noise_rates(equations, Balance(equations).energy) if keeps_energy(equations) else []
+    return decide_zero([motion.energy_balance(), *noise], motion.field, motion.where)
 
 
 def about_integrals(motion: Motion) -> Iterator[Examined]:
@@ -67,7 +75,7 @@ def _rotations(motion: Motion, claim: Integral) -> list[tuple[str, Sequence[Elem
     if claim.where or not motion.spec.turning:
         return []
     parts = motion.setting.components(claim.formula, motion.emitted)
-    reached = [motion.field.reach(rate) for rate in map(motion.rate, parts) if rate != 0]
+    reached = [motion.field.reach(rate) for rate in _list_rates(motion, parts) if rate != 0]
     named = frozenset[str]().union(*reached)
     needed = (each for each in motion.spec.turning if named & {*each.components})
     return [relation for each in needed for relation in rotation_relations(motion.setting, each)]
@@ -82,7 +90,7 @@ def _integral(motion: Motion, claim: Integral) -> Decision:
     parts = setting.components(claim.formula, names)
     level = [g for f in claim.where for g in setting.components(f, names)]
     level += [defect for _, defects in _rotations(motion, claim) for defect in defects]
-    kept, rates = (list(map(motion.rate, functions)) for functions in (level, parts))
+    kept, rates = (list(_list_rates(motion, functions)) for functions in (level, parts))
     text = ", ".join(filter(None, (_vanishing(motion, claim), motion.where.text)))
     written = list(map(motion.in_state, parts))
     if _rotations(motion, claim) and (seen := _look_at_rotations(motion, rates, written)):
@@ -104,6 +112,13 @@ def _look_at_rotations(
     if seen.verdict is not Verdict.REFUTED:
         return None
     return replace(seen, point={n: str(x) for n, x in entries.items()} | dict(seen.point or {}))
+
+
+def _list_rates(motion: Motion, functions: Sequence[Element]) -> Iterator[Element]:
+    """Rates of functions: by the motion, and by each Wiener process."""
+    for function in functions:
+        yield motion.rate(function)
+        yield from noise_rates(motion.equations, function)
 
 
 def _conserved_on(
@@ -141,5 +156,5 @@ def _seen_from_space(motion: Motion, seen: DerivedMomentum) -> Decision:
     emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
     text = ", ".join(relation.text for relation in fixed)
     where = Ideal(motion.field, [relation.element for relation in fixed], text)
-    rates = [motion.rate(emitted[name]) for name in seen.components]
+    rates = list(_list_rates(motion, [emitted[name] for name in seen.components]))
     return decide_zero(rates, motion.field, where)

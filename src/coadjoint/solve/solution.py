@@ -112,10 +112,11 @@ class Solution:
     def settings(self) -> dict[str, Any]:
         """How it was made: method, order, tolerances and step, as far as they apply.
 
+        Of a motion with noise there is its seed, and what the method keeps of what each path keeps.
         ``stepwise`` says why the steps of a generated method were made in Python.
         """
         course = self.course
-        names = ("method", "order", "rtol", "atol", "step", "stepwise")
+        names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed", "keeps")
         told = {name: getattr(course, name) for name in names}
         return {name: value for name, value in told.items() if value not in (None, "")}
 
@@ -434,7 +435,9 @@ class Solution:
             lines += [f"  {self.message}"] if self.message else []
         else:
             lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        lines += [f"  {told}" for told in [self.course.tell_stepwise()] if told]
+        lines += [
+            f"  {told}" for told in [self.course.tell_stepwise(), self.course.tell_keeps()] if told
+        ]
         return "\n".join([*lines, *describe_drift(self)])
 
     def _repr_html_(self) -> str:

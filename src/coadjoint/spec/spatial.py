@@ -31,7 +31,9 @@ def spatial_momenta(spec: Spec) -> tuple[DerivedMomentum, ...]:
     elif not inverse_by(spec.algebra):
         return ()
     advected = {n for v in spec.having_role("advected") for n in (v.name, *v.components)}
-    is_free = not spec.relaxation and not advected & _names_in(spec.lagrangian, spec.hamiltonian)
+    is_free = not spec.relaxation and not advected & _names_in(
+        spec.lagrangian, spec.hamiltonian, *(each.formula for each in spec.noise)
+    )
     acted = _places_acted_on(spec)
     acting = (acted & set(each.block) if is_quaternion else acted for each in momenta)
     return tuple(
