@@ -137,7 +137,8 @@ def _law(
     w, name, left = _name_velocity(setting, turn), variable.name, setting.sign == 1
     if variable.turning == "quaternion":
         q, pure = Quaternion(*setting.elements(variable.components)), Quaternion.pure(omega)
-        text = f"qmul({name}, (0, {w}))/2" if left else f"qmul((0, {w}), {name})/2"
+        whole = f"(0, {w.strip('()')})"
+        text = f"qmul({name}, {whole})/2" if left else f"qmul({whole}, {name})/2"
         moved = (q * pure if left else pure * q).components
         rates = [x / 2 for x in moved]
     else:
