@@ -44,6 +44,7 @@ v = { role = "velocity", of = "q" }
 h = "v^2/2 + q^2/2"
 [claims]
 """
+WITH_ROTOR = 's = { role = "coordinate" }\nu = { role = "velocity", of = "s" }\n[parameters]'
 CANONICAL_ROUTE = 'routes = ["canonical"]'
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
@@ -66,6 +67,20 @@ def before_claims(lines):
     """Further tables."""
     return write(END, f"{lines}\n{END}")
 
+
+#: A component of its velocity is given.
+BODY_OF_AXES = """
+title = "A body that does not turn about its third axis"
+routes = ["nonholonomic"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+[lagrangian]
+l = "dot(Omega, Omega)/2"
+[constraints]
+plane = "Omega3 == 0"
+"""
 
 MOMENTUM = '"momentum"'
 
@@ -93,6 +108,13 @@ ADVICE = [
         [*of_unit("kg m^2/s"), ('"velocity"', '"velocity", unit = "m/s"')],
         'Write unit = "1/s".',
         write("m/s", "1/s"),
+    ),
+    # -- constraints
+    (
+        BODY_OF_AXES,
+        write('"velocity"', '"velocity", default = [1, 2, 3]'),
+        "Write 0 in the place of Omega3.",
+        write("[1, 2, 3]", "[1, 2, 0]"),
     ),
     # -- blocks
     (
@@ -383,6 +405,12 @@ ADVICE = [
         write(", shape = [3] }\n\n", " }\n\n"),
     ),
     (
+        LAW,
+        write('x = { role = "coordinate"', 'x = { role = "coordinate", follows = true'),
+        "Remove follows.",
+        write(", follows = true", ""),
+    ),
+    (
         TOP,
         write(', representation = "vector"', ""),
         'Write representation = "vector".',
@@ -585,6 +613,25 @@ ADVICE = [
             "[reconstruction]",
             'Omega = { role = "velocity", block = ["J1", "J2", "J3"] }\n[reconstruction]',
         ),
+    ),
+    # -- attitudes, and coordinates next to an algebra
+    (
+        RIGID_BODY.replace("so(3)", "sl(2,R)"),
+        write("Pi = {", 'g = { role = "attitude" }\nPi = {'),
+        'For another group write role = "advected" and representation = "attitude".',
+        write('role = "attitude"', 'role = "advected", representation = "attitude"'),
+    ),
+    (
+        RIGID_BODY,
+        write("Pi = {", 'q = { role = "quaternion", default = [1, 1, 0, 0] }\nPi = {'),
+        "Leave it out to begin at the identity.",
+        write(", default = [1, 1, 0, 0]", ""),
+    ),
+    (
+        RIGID_BODY.replace('Pi = { role = "momentum" }\n', "").replace("dot(Pi, Pi)", "Omega1"),
+        write("[parameters]", WITH_ROTOR),
+        'With velocities as the state it may: write routes = ["nonholonomic"] at the top.',
+        write(BOTH, 'routes = ["nonholonomic"]'),
     ),
     # -- form of the file
     (

@@ -71,9 +71,9 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 )
 @_repeatable(
     "--state",
-    help="Initial value of a variable or component, e.g. Pi=1,0,0, or of the whole state, e.g. "
-    "1,0,0. Default: that of the spec, else 1 for scalars and unit vectors, projected onto the "
-    "constraints. Repeatable.",
+    help="Initial value of a variable or component, also of a reconstructed one, e.g. Pi=1,0,0, or "
+    "of the whole state, e.g. 1,0,0. Default: that of the spec, else 1 for scalars and unit "
+    "vectors, projected onto the constraints. Repeatable.",
 )
 @click.option(
     "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
@@ -161,7 +161,9 @@ def command(
         check_traced(loaded)
     given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
     driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
-    run = Members(find_start(loaded, state, given, driven), given, driven)
+    state, followed = take_reconstructed(loaded, state)
+    start = find_start(loaded, state, given, driven)
+    run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
     if "noise" in loaded.functions:
         spaces = max(1, options["samples"] - 1)
@@ -169,7 +171,7 @@ def command(
         options |= {"seed": seed, "step": options["step"] or time / steps}
     if members is not None:
         run = find_members(loaded, members, seed, run)
-    options |= {"events": asked.events, "reconstruct": bool(loaded.RECONSTRUCTED)}
+    options |= {"events": asked.events, "reconstruct": run.followed or bool(loaded.RECONSTRUCTED)}
     solution = loaded.simulate(run.state, (0.0, time), run.parameters, run.inputs, **options)
     _show(loaded, solution, run.origin, as_json=as_json)
     if table is not None:
@@ -179,6 +181,7 @@ def command(
     if trace is not None:
         solution.trace(trace)
     asked.write(solution)
+    asked.warn(solution)
     return 0 if asked.has_arrived(solution) else 1
 
 
@@ -195,6 +198,27 @@ def _check_outputs(table: Path | None, *pictures: Path) -> None:
         from coadjoint.solve.plot import check_picture  # which needs NumPy
 
         check_picture(picture)
+
+
+def take_reconstructed(
+    system: System, given: Iterable[Assignment]
+) -> tuple[list[Assignment], dict[str, list[float] | float]]:
+    """What is given of the state, and what is given of what is reconstructed, by name.
+
+    Raises:
+        KernelArgumentError: A name is unknown.
+    """
+    state, below = [], []
+    for name, values in given:
+        if name in (*system.RECONSTRUCTED, *system.RECONSTRUCTED.components):
+            below.append((name, values))
+        else:
+            state.append((name, values))
+            if name and system.RECONSTRUCTED:  # a message names all that there is
+                type(system.STATE)(*system.STATE.values(), *system.RECONSTRUCTED.values()).rows(
+                    name
+                )
+    return state, chosen_parameters(system.RECONSTRUCTED, below)
 
 
 def find_start(

@@ -172,12 +172,13 @@ class Balance:
         return terms
 
     def _work_of_constraints(self) -> list[Element]:
-        """``-lambda r`` with the residual r of each constraint at rest."""
+        """``-lambda r`` with the residual r of each constraint at rest; work by a point of contact."""
         distribution = self._distribution
         if distribution is None:
             return []
         rest = dict.fromkeys(distribution.frame.velocities, self.field.zero)
-        return [
+        own = (
             -self.field.substitute(each.residual, rest) * self.field[each.reaction]
             for each in distribution.equations
-        ]
+        )
+        return [*own, -distribution.frame.drift(self.setting.lagrangian)]

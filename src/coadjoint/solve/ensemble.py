@@ -129,6 +129,13 @@ class Record:
         """Forget all steps, so that there is room for others."""
         self.count = 0
 
+    def hand_over(self) -> Array:
+        """The polynomials, for good: the next steps are recorded elsewhere."""
+        if 2 * self.count < len(self.rows):
+            return self.path.copy()
+        path, self.rows = self.path, np.empty_like(self.rows)
+        return path
+
     @property
     def member(self) -> NDArray[np.intp]:
         """Whose steps they are, ``(count,)``."""

@@ -32,7 +32,7 @@ class Solution:
     """One trajectory, or a batch of them.
 
     ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
-    ``(*batch, T)``.
+    ``(*batch, T)``; a matrix ``solution["R"]`` of shape ``(3, 3)`` is ``(3, 3, T)``.
 
     Attributes:
         system: The System that was simulated.
@@ -177,7 +177,8 @@ class Solution:
         for quantities, values in self._tables:
             if name in quantities or name in quantities.components:
                 rows: Array = values[quantities.rows(name)]
-                return rows
+                whole = quantities[name].shape if name in quantities else ()
+                return rows.reshape(*whole, *rows.shape[1:]) if len(whole) > 1 else rows
         names = [each for quantities, _ in self._tables for each in quantities]
         left = self.system.RECONSTRUCTED if self.reconstructed is None else ()
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""

@@ -121,9 +121,9 @@ def _demand_advected(units: Units, each: Variable, along: dict[int, Unit]) -> No
             for unit in _of_constant(units, value):
                 moved = along[place] * unit * own[column] * units.time
                 units.require(_unit_key(each), own[row], moved, why)
-    if action.name in ATTITUDES or each.form == "quaternion":
+    if action.name in ATTITUDES or each.turning or each.form == "quaternion":
         entries = units.names[each.name]
-        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[0] + 1]
+        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[-1] + 1]
         for entry in fixed:
             units.require(_unit_key(each), entry, ONE, "An attitude is made of pure numbers.")
 

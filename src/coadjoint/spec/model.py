@@ -45,7 +45,7 @@ from coadjoint.spec.sections.rolling import Rolling
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
-from coadjoint.spec.sections.variables import Variable, state_of
+from coadjoint.spec.sections.variables import Variable, find_defined, state_of
 
 __all__ = [
     "FORMS",
@@ -231,9 +231,8 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted with the dynamics."""
-        state = self.state
-        return tuple(each for each in self.having_role("velocity") if each not in state)
+        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        return find_defined(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
@@ -245,6 +244,11 @@ class Spec:
         """The group element in the state, as a matrix or a unit quaternion; None without one."""
         advected = ((v, v.representation) for v in self.having_role("advected"))
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
+
+    @property
+    def turning(self) -> tuple[Variable, ...]:
+        """The attitudes, quaternions and poses of the state."""
+        return tuple(each for each in self.variables if each.turning)
 
     @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:
@@ -268,6 +272,11 @@ class Spec:
         return any(variable.independent is not None for variable in self.variables)
 
     @property
+    def is_first_order(self) -> bool:
+        """Whether a Lagrangian of first order gives all velocities in the state."""
+        return any(variable.follows for variable in self.variables)
+
+    @property
     def kind(self) -> str:
         """``algebra``, ``poisson`` or ``configuration``: what the motion is declared on."""
         if self.algebra is not None:
@@ -286,6 +295,7 @@ class Spec:
                 block=(),
                 representation=None,
                 of="",
+                turning="",
             )
             for variable in self.variables
         )

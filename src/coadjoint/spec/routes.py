@@ -30,6 +30,8 @@ class Route:
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
         needs_energy: Whether it must have one of its energies.
+        is_first_order: Whether velocities of all coordinates follow from the state, in which the
+            Lagrangian is of first order.
         is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
             before the variation give.
     """
@@ -43,6 +45,7 @@ class Route:
     emitted: bool = True
     takes_driving: bool = True
     needs_energy: bool = True
+    is_first_order: bool = False
     is_hamiltonian: bool = False
 
     @property
@@ -98,6 +101,7 @@ _ROUTES = (
         energies=_LAGRANGIAN,
         options=_ACTS,
     ),
+    Route(name="first-order", kinds=("configuration",), energies=_LAGRANGIAN, is_first_order=True),
     Route(name="newton", kinds=_SPACE, table="newton"),
     Route(name="alignment", kinds=_SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),
