@@ -28,6 +28,7 @@ from coadjoint.lower.graph import Graph
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
+from coadjoint.lower.nesting import COEFFICIENT, ORDERS, Nest, Sum, Term, list_products, nest
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.program import Program
 from coadjoint.lower.scales import Scales, cost, find_scales
@@ -53,10 +54,12 @@ class Ratio:
         groups: Coefficients with the signed products they multiply: numbers, or forms to be added,
             each with its level.
         divisors: Factors of the denominator, each with its exponent.
+        nested: The sum of the groups with common factors in front; empty to leave it as it is.
     """
 
     groups: tuple[tuple[Any, tuple[tuple[int, Product], ...]], ...]
     divisors: tuple[tuple[Form, int], ...]
+    nested: Sum = ()
 
 
 #: What the factors of products are: whatever occurs, so that coefficients are numbers; what moves,
@@ -76,6 +79,7 @@ class Lowering:
         equations: Where the elements come from.
         elements: Everything that the Program will compute, definitions included.
         scales: Of components of the state; none to leave their products as they are.
+        nested: Which common factors go in front of sums first; 0 to leave them inside.
     """
 
     def __init__(
@@ -83,7 +87,10 @@ class Lowering:
         equations: Equations,
         elements: Iterable[Element],
         scales: Mapping[str, Element] | None = None,
+        nested: int = 0,
     ) -> None:
+        self._nested = nested
+        self._coefficients: dict[Any, tuple[str, Any]] = {}
         self.field: Field = equations.setting.field
         self._scales = Scales(scales or {})
         self.graph = Graph()
@@ -97,6 +104,7 @@ class Lowering:
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
         for element in elements:
             self._form(element, _MEMBER)
+        self._coefficients_by_name = dict(self._coefficients.values())
         self._shared: dict[int, dict[Product, Product]] = {}
         self._pairs: dict[str, Pair] = {}
         for level, products in self._products.items():
@@ -151,12 +159,28 @@ class Lowering:
             sign, coefficient, mark = self._signed_coefficient(part)
             by_mark.setdefault(mark, coefficient)
             groups.setdefault(mark, []).append((sign, product))
-            self._products[level].append(product)
             self._note_functions(product)
+        written = {mark: self._coefficient(by_mark[mark]) for mark in groups}
+        nested = self._nest(groups, written) if self._nested and level == _MEMBER else ()
+        plain = (product for members in groups.values() for _, product in members)
+        self._products[level] += list_products(nested) if nested else plain
         return Ratio(
-            tuple((self._coefficient(by_mark[mark]), tuple(g)) for mark, g in groups.items()),
+            tuple((written[mark], tuple(group)) for mark, group in groups.items()),
             tuple((self._form(divisor, level), power) for divisor, power in divisors),
+            nested,
         )
+
+    def _nest(
+        self, groups: Mapping[Any, Sequence[tuple[int, Product]]], written: Mapping[Any, Any]
+    ) -> Sum:
+        """The sum of some groups with common factors in front; coefficients are factors, too."""
+        terms = []
+        for mark, members in groups.items():
+            name = f"{COEFFICIENT}{len(self._coefficients)}"
+            name, _ = self._coefficients.setdefault(mark, (name, written[mark]))
+            lead = () if written[mark] == 1 else (name,)
+            terms += [Term(sign, (*lead, *product)) for sign, product in members]
+        return nest(terms, self._nested)
 
     def _signed_coefficient(self, coefficient: Element) -> tuple[int, Element, Any]:
         """Sign, what it multiplies, and a hashable mark that equal values share.
@@ -255,6 +279,8 @@ class Lowering:
     def _terms(self, ratio: Ratio, level: int) -> list[int]:
         """The addends of a numerator."""
         graph, terms = self.graph, list[int]()
+        if ratio.nested:
+            return self._addends(ratio.nested)
         for coefficient, members in ratio.groups:
             factor = self._build_coefficient(coefficient)
             products = [(sign, self._shared[level][product]) for sign, product in members]
@@ -264,6 +290,19 @@ class Lowering:
                 inner = graph.sum(self._apply_sign(sign, [], product) for sign, product in products)
                 terms.append(graph.multiply(factor, inner))
         return terms
+
+    def _addends(self, nested: Sum) -> list[int]:
+        """The addends of a sum with common factors in front."""
+        addends = []
+        for each in nested:
+            if isinstance(each, Nest):
+                lead = self._apply_sign(1, [], self._shared[_MEMBER][each.lead])
+                inner = self.graph.sum(self._addends(each.inner))
+                addends.append(self.graph.multiply(lead, inner))
+            else:
+                product = self._shared[_MEMBER][each.product]
+                addends.append(self._apply_sign(each.sign, [], product))
+        return addends
 
     def _build_coefficient(self, coefficient: Fraction | tuple[tuple[int, Form], ...]) -> int:
         """The node of a coefficient: a number, or its addends added up."""
@@ -276,7 +315,9 @@ class Lowering:
         return node if sign > 0 else self.graph.negate(node)
 
     def _factor(self, name: str) -> int:
-        """The node of a factor: a shared pair, an elementary function, or a symbol."""
+        """The node of a factor: a shared pair, a coefficient, a function, or a symbol."""
+        if name.startswith(COEFFICIENT):
+            return self._build_coefficient(self._coefficients_by_name[name])
         if name in self._pairs:
             return self.graph.product(map(self._factor, self._pairs[name]))
         if name in self._scales:
@@ -364,16 +405,27 @@ def _choose(equations: Equations, plain: Program) -> Program:
             program = _program(equations, "rhs", rows.lines, rows.shape, rows.state, closed=tried)
             if cost(program) < cost(best):
                 closed, best = tried, program
-    return _take_minors(equations, best, closed)
+    nested = 0
+    for order in ORDERS:
+        program = _program(
+            equations, "rhs", rows.lines, rows.shape, rows.state, closed=closed, nested=order
+        )
+        if cost(program) < cost(best):
+            nested, best = order, program
+    return _take_minors(equations, best, closed, nested)
 
 
-def _take_minors(equations: Equations, best: Program, closed: frozenset[str]) -> Program:
+def _take_minors(
+    equations: Equations, best: Program, closed: frozenset[str], nested: int
+) -> Program:
     """The rates with three unknowns by minors, where that takes less time."""
     rows = rhs(equations)
     if (solve := find_solve(equations, rows.lines)) is None:
         return best
     shape, state = rows.shape, rows.state
-    program = _program(equations, "rhs", rows.lines, shape, state, closed=closed, solve=solve)
+    program = _program(
+        equations, "rhs", rows.lines, shape, state, closed=closed, solve=solve, nested=nested
+    )
     return set_factored(program, best) if is_faster(program, best) else best
 
 
@@ -429,12 +481,15 @@ def _program(
     scales: Mapping[str, Element] | None = None,
     closed: frozenset[str] = frozenset(),
     solve: Solve | None = None,
+    nested: int = 0,
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
     asked = outputs if solve is None else entries_of(solve, outputs)
     shorter = [(label, shorten(equations, element)) for label, element in asked]
     definitions, parts = inline_single_uses(equations, shorter, closed)
-    lowering = Lowering(equations, [element for _, element in (*definitions, *parts)], scales)
+    lowering = Lowering(
+        equations, [element for _, element in (*definitions, *parts)], scales, nested
+    )
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in parts]
     if solve is not None:
