@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from math import prod
 from typing import Annotated, Any, Literal
 
@@ -36,6 +37,7 @@ from coadjoint.spec.core.values import (
     misfit_form,
     read_default,
 )
+from coadjoint.spec.kinds import is_first_order
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.matrices import (
     block_places,
@@ -45,6 +47,7 @@ from coadjoint.spec.sections.matrices import (
 )
 from coadjoint.spec.sections.representations import REPRESENTATIONS
 from coadjoint.spec.sections.solved import find_solved_velocities
+from coadjoint.spec.sections.turning import TURNING, advect, find_shape, read_rotation
 
 #: Keys that say how large a variable is, and the variables that each is for.
 _OWN_KEYS = {
@@ -52,22 +55,42 @@ _OWN_KEYS = {
     "representation": "advected quantities",
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
+    "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
+    "follows": "coordinates",
 }
 _KEYS_OF = {
-    "velocity": ("block", "of", "default"),
-    "momentum": ("block", "of", "default"),
-    "advected": ("representation", "block", "default"),
-    "coordinate": ("shape", "default"),
+    "velocity": ("block", "of", "form", "default"),
+    "momentum": ("block", "of", "form", "default"),
+    "advected": ("representation", "block", "form", "default"),
+    "coordinate": ("shape", "form", "default", "follows"),
+    "attitude": ("block", "default"),
+    "quaternion": ("block", "default"),
+    "pose": ("block", "default"),
+    "contact": ("default",),
 }
+
+#: Components of a point of contact.
+SPACE = 3
 
 
 class VariablePart(Part):
-    """A velocity, a momentum, an advected quantity or a coordinate."""
+    """A velocity, a momentum, an advected quantity, a coordinate, an attitude or a contact."""
 
-    role: Literal["velocity", "momentum", "advected", "coordinate"] = Field(
+    role: Literal[
+        "velocity",
+        "momentum",
+        "advected",
+        "coordinate",
+        "attitude",
+        "quaternion",
+        "pose",
+        "contact",
+    ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
-        "with a 'velocity' or 'momentum' of it"
+        "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'contact' "
+        "for a point at which [rolling] has a body touch a surface"
     )
     block: Block | None = Field(
         None,
@@ -92,6 +115,11 @@ class VariablePart(Part):
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
     )
+    follows: bool | None = Field(
+        None,
+        description="true for a coordinate that the constraints of a singular Lagrangian give in "
+        "terms of the others, on the route first-order",
+    )
     default: Numbers | None = Field(
         None,
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
@@ -103,11 +131,11 @@ class VariablePart(Part):
 
 @dataclass(frozen=True)
 class Variable(Components):
-    """A velocity, momentum or advected quantity, or a coordinate of a space with a bracket.
+    """A velocity, a momentum, an advected quantity, a coordinate or a point of contact.
 
     Attributes:
         name: As declared, e.g. ``Omega``.
-        role: ``"velocity"``, ``"momentum"``, ``"advected"`` or ``"coordinate"``.
+        role: ``"velocity"``, ``"momentum"``, ``"advected"``, ``"coordinate"`` or ``"contact"``.
         shape: ``()`` for a block of one basis element, else ``(n,)``, also where it is a matrix.
         block: Places in the algebra's basis that a velocity or momentum spans; empty if advected.
         representation: How the algebra acts on an advected quantity; None otherwise.
@@ -119,7 +147,10 @@ class Variable(Components):
             empty where the form says it all.
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
+        turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
         given: The components that constraints give one by one; the others are state by themselves.
+        follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
+            coordinate that is declared to follow.
     """
 
     name: str
@@ -134,6 +165,7 @@ class Variable(Components):
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
+    turning: str = ""
     given: tuple[str, ...] = ()
 
     @property
@@ -158,6 +190,8 @@ class Variable(Components):
             for n, name in enumerate(self.components)
         )
 
+    follows: bool = False
+
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     """The variables that make the state, in declared order; see `Spec.state`."""
@@ -166,16 +200,19 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
         variable
         for whole in variables
         for variable in whole.parts
-        if variable.independent
-        or variable.role != "velocity"
-        or (variable.independent is None and variable.of and variable.of not in given)
+        if not variable.follows
+        and (
+            variable.independent
+            or variable.role != "velocity"
+            or (variable.independent is None and variable.of and variable.of not in given)
+        )
     )
 
 
-def velocities_given(variables: Sequence[Variable]) -> tuple[Variable, ...]:
-    """The velocities, or components of them, that follow from the state."""
-    state = state_of(variables)
-    parts = (part for each in variables if each.role == "velocity" for part in each.parts)
+def find_defined(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """Velocities, or components of them, and coordinates that follow from the state."""
+    state, roles = state_of(variables), ("velocity", "coordinate")
+    parts = (part for each in variables if each.role in roles for part in each.parts)
     return tuple(part for part in parts if part not in state)
 
 
@@ -203,15 +240,27 @@ def _read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
-    if part.default is not None and not _is_state(name, part, parts, solved):
+    follows = bool(part.follows) or (part.role == "velocity" and is_first_order(reading.file))
+    if part.follows and not is_first_order(reading.file):
+        problem = f"{name!r} follows from constraints that only the route first-order finds"
+        expected = 'routes = ["first-order"], or a coordinate of the state'
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    if part.default is not None and (follows or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
+    turning = part.role if part.role in TURNING else ""
+    if turning and algebra is not None:
+        part = advect(part, algebra)
     block: tuple[int, ...] = ()
+    given: Shape = ()
     representation = None
     constrained = solved is not None
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
-    if part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
-        if not constrained or part.role == "advected":
+    if part.role == "contact":
+        _check_rolling(reading, key)
+        count, flat = SPACE, True
+    elif part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
+        if not constrained or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
             part = _as_partner(source, key, part, parts)
@@ -231,6 +280,9 @@ def _read_variable(
             block = block_places(source, (*key, "block"), part.block, algebra)
         count, flat = len(block), len(block) > 1
     form = part.form or _own_form(part.representation, count)
+    if turning and representation is not None:
+        given = find_shape(source, key, turning, representation, invariance)
+        form = form if turning == "quaternion" else ""
     if form in FORMS and matrix_size(count, form) is None:
         raise misfit_form(source, (*key, "form"), count, form)
     elements: tuple[SparseMatrix, ...] = ()
@@ -240,6 +292,8 @@ def _read_variable(
     elif form == "antisymmetric" and block and algebra is not None:
         check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
+    read_start = partial(read_rotation, role=turning) if turning else read_default
+    shape = given or shape
     variable = Variable(
         name=name,
         role=part.role,
@@ -251,7 +305,9 @@ def _read_variable(
         form=form,
         of=part.of or "",
         elements=elements,
-        default=read_default(source, (*key, "default"), part.default, shape),
+        default=read_start(source, (*key, "default"), part.default, shape),
+        turning=turning,
+        follows=follows,
     )
     return variable if part.role != "velocity" else _bind(reading, variable, solved)
 
@@ -276,6 +332,15 @@ def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None
             )
     free = variable.name not in solved and given != variable.components
     return replace(variable, independent=free, given=given)
+
+
+def _check_rolling(reading: Reading, key: KeyPath) -> None:
+    """A point of contact has a table that says of which surfaces."""
+    rolling = reading.file.rolling
+    if rolling is None or key[-1] not in (rolling.contact, rolling.point):
+        problem = f"nothing says which surfaces touch at {key[-1]!r}"
+        expected = f'[rolling] with contact = "{key[-1]}", in space, or with point, on the body'
+        raise reading.fault((*key, "role"), problem, "contact", expected)
 
 
 def _is_state(
@@ -342,14 +407,16 @@ def _check_role(
     source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
 ) -> None:
     """Coordinates do without an algebra, advected quantities do not."""
+    hint = ""
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
-    elif part.role == "advected" and algebra is None:
+        hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
+    elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
     problem = f"{key[-1]!r} has the role {part.role!r} {place}"
-    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}")
+    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}", hint)
 
 
 def _representation(
