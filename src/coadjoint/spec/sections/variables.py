@@ -125,6 +125,9 @@ class VariablePart(Part):
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
         "components, or a list of them",
     )
+    index: str | None = Field(
+        None, description="the index of [index] that counts the members that have it"
+    )
     unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
