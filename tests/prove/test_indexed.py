@@ -1,13 +1,25 @@
 """Claims of equal members say for which numbers of them they are proved, and false ones fail."""
 
 import pytest
+import sympy
 
 from coadjoint.errors import ClaimError, LimitError, SpecError
 from coadjoint.prove import prove
 from coadjoint.prove.certificate import Verdict
 from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES
-from tests.families import CHAIN, RING, VORTICES, read, write_chain, write_ring, write_vortices
+from tests.families import (
+    CHAIN,
+    RING,
+    VORTICES,
+    are_equal,
+    family_of,
+    read,
+    value_of,
+    write_chain,
+    write_ring,
+    write_vortices,
+)
 from tests.specs import shipped
 
 TEXTS = {"ring": (RING, write_ring), "chain": (CHAIN, write_chain)}
@@ -104,3 +116,38 @@ def test_an_open_chain_that_is_too_short_is_written_out():
     assert short.family is None
     assert len(short.state) == 6
     assert not any("N >=" in claim.statement for claim in prove(short).require().claims)
+
+
+TODA = shipped("toda_lattice").path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("0, -exp((q[i] - q[i+1])/2)/2)", "0, exp((q[i] - q[i+1])/2)/2)"),
+        ("/2, -p[i]/2, exp", "/2, p[i]/2, exp"),
+        ("/2, -p[i]/2, exp", "/2, -p[i], exp"),
+        ("sum(i, exp(q[i] - q[i+1]))", "sum(i, exp(q[i] - q[i+1])) + sum(i, exp(q[i]))"),
+    ],
+)
+def test_a_wrong_lax_pair_is_refuted(change):
+    """By a sign of M, of time, a factor, and a chain that is tied to a wall."""
+    claims = prove(read(TODA, change)).claims
+    (claim,) = (each for each in claims if each.kind == "lax")
+    assert claim.verdict is Verdict.REFUTED
+    assert claim.counterexample
+
+
+def test_the_lax_pair_of_toda_gives_the_claimed_integrals():
+    """P = -2 tr L, energy = 2 tr L^2 and T = -8/3 tr L^3, by matrices written out here."""
+    n = 4
+    q, p = (sympy.symbols(f"{name}_:{n}") for name in "qp")
+    a = [sympy.exp((q[k] - q[k + 1]) / 2) / 2 for k in range(n - 1)]
+    entries = {(k, k): -p[k] / 2 for k in range(n)}
+    entries |= {(k, k + 1): a[k] for k in range(n - 1)} | {(k + 1, k): a[k] for k in range(n - 1)}
+    L = sympy.SparseMatrix(n, n, entries)
+    family = family_of(shipped("toda_lattice"))
+    values = {each.name: value_of(family, each, n) for each in family.totals}
+    assert are_equal(values["P"], -2 * L.trace())
+    assert are_equal(values["energy"], 2 * (L * L).trace())
+    assert are_equal(values["T"], -sympy.Rational(8, 3) * (L * L * L).trace())

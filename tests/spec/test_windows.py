@@ -63,6 +63,7 @@ INDEXED = [
         [("[variables]", "[index]\ni = { size = 100 }\n[variables]")],
     ),
 ]
+LAX = '[lax]\nL = "tridiagonal(p[i], q[i], p[i])"\nM = "tridiagonal(p[i], 0, p[i])"\n[obs'
 ENERGY = "-J*sum(i, dot(S[i], S[i+1]))"
 #: What is wrong with a spec, and what the message says of it.
 BAD = [
@@ -88,6 +89,10 @@ BAD = [
         "brackets or canonical",
     ),
     (VORTICES, ('"{x, y}"', '"{x, z}"'), "z"),
+    (RING, ("[obs", '[lax]\nL = "tridiagonal(J, J, J)"\nM = "hat(S_0)"\n[obs'), "a ring has no"),
+    (CHAIN, ("[obs", '[lax]\nL = "tridiagonal(p[i], p[i])"\nM = "J"\n[obs'), "three are needed"),
+    (CHAIN, ("[obs", LAX.replace("q[i]", "lambda")), "spectral parameter 'lambda'"),
+    (CHAIN, ("[obs", LAX.replace("q[i]", "q[i+1]")), "lies beyond the end of the chain"),
 ]
 
 

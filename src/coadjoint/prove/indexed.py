@@ -20,9 +20,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from time import perf_counter
 
+from coadjoint.derive import derive
+from coadjoint.exact.dense import commutator
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
-from coadjoint.spec.model import Spec, Windows
+from coadjoint.prove.zero import Decision, decide_zero, make_entry
+from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.model import Lax, Spec, Windows
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
@@ -47,12 +52,53 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     first, second, *rest = (list(_keep_general(spec, each)) for each in certificates)
     assert [c.statement for c in first] == [c.statement for c in second], spec.name
     claims = [_join(family, both) for both in zip(first, second, strict=True)]
+    claims += [_examine_lax(family)] if family.lax else []
     if family.loaded is not None:
         own = {f"{each.formula.in_one_line} is conserved" for each in family.loaded.conserved}
         scope = f", for N = {family.index.size} alone"
         loaded = [claim for each in rest for claim in each if claim.statement in own]
         claims += [replace(claim, statement=claim.statement + scope) for claim in loaded]
     return Certificate(spec.name, tuple(claims))
+
+
+def _examine_lax(family: Windows) -> Claim:
+    """The Lax equation of matrices with a row for each member.
+
+    Each of its entries reads the members of at most three rows and those next to them. It vanishes
+    for every number of members if it does as long as a row may be next to both ends.
+    """
+    start, counts, (_, pair) = perf_counter(), list[int](), family.lax[0]
+    statement = (
+        f"dL/dt = [L, M], with L = {pair.L.in_one_line} and M = {pair.M.in_one_line}, for every "
+        f"N >= {family.least}"
+    )
+    for spec, matrices in family.lax:
+        decision = _decide_lax(spec, matrices)
+        counts.append(len(spec.state) // len(family.variables))
+        if decision.verdict is not Verdict.PROVED:
+            break
+    reason = f", with {list_names(map(str, counts))} members; an entry reads three rows"
+    if decision.verdict is not Verdict.PROVED:
+        reason = f", with {counts[-1]} members"
+    found = replace(decision, method=decision.method + reason)
+    claim = make_entry(statement, "lax", found, perf_counter() - start)
+    assert isinstance(claim, Claim), claim
+    return claim
+
+
+def _decide_lax(spec: Spec, pair: Lax) -> Decision:
+    """Whether ``dL/dt - [L, M]`` vanishes for the members that are written out."""
+    equations = derive(spec)
+    setting, field = equations.setting, equations.setting.field
+    L, M = setting.value(pair.L), setting.value(pair.M)
+    rates = [equations.close(rate) for rate in equations.exact.rates]
+    state = equations.variables
+    defects = [
+        field.sum(a * b for a, b in zip(field.gradient(entry, state), rates, strict=True)) - turned
+        for row, others in zip(L, commutator(L, M), strict=True)
+        for entry, turned in zip(row, others, strict=True)
+    ]
+    return decide_zero(defects, field)
 
 
 def _keep_general(spec: Spec, certificate: Certificate) -> Iterator[Claim]:

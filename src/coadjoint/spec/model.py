@@ -134,6 +134,8 @@ class Windows:
         least: The number of members from which on the claims are proved.
         windows: The spec written out for two numbers of members, the smaller first.
         of_members: The claims of what each member conserves, as statements.
+        lax: The spec and its Lax pair, written out for all numbers of members from the least one
+            to that at which both ends of the matrices keep apart.
         loaded: The spec written out for all members, with the claims that are not proved for every
             number of them; None without such claims.
     """
@@ -149,6 +151,7 @@ class Windows:
     windows: tuple[Spec, Spec]
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
+    lax: tuple[tuple[Spec, Lax], ...] = ()
 
 
 @dataclass(frozen=True)

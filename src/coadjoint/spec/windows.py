@@ -30,6 +30,7 @@ from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Name, Sum, walk
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
+from coadjoint.spec.sections.lax import Lax
 
 #: Tables that a spec with an index may have.
 TABLES = (
@@ -40,6 +41,7 @@ TABLES = (
     "parameters",
     "definitions",
     "hamiltonian",
+    "lax",
     "observables",
     "claims",
 )
@@ -75,7 +77,14 @@ def read_windows(
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         return read(*write_out_file(source, file, index, size))
-    small, large = (read(*write_out_file(source, file, index, first + more)) for more in (0, 1))
+    bare = file.model_copy(update={"lax": None})
+    small, large = (read(*write_out_file(source, bare, index, first + more)) for more in (0, 1))
+    last = first if file.lax is None else max(first, 2 * reach + width + 3)
+    lax = tuple(
+        _split_lax(source, read(*write_out_file(source, file, index, count)))
+        for count in range(first, last + 1)
+        if file.lax is not None
+    )
     parameters = {name: part.index is not None for name, part in file.parameters.items()}
     family = Windows(
         index=index,
@@ -91,8 +100,26 @@ def read_windows(
         pairs=pairs,
         least=least,
         windows=(small, large),
+        lax=lax,
     )
-    return _with_family(source, file, read, family)
+    return _with_family(source, bare, read, family)
+
+
+def _split_lax(source: Source, spec: Spec) -> tuple[Spec, Lax]:
+    """A Spec and its Lax pair, which has no spectral parameter.
+
+    Raises:
+        SpecError: It has.
+    """
+    lax = spec.lax
+    assert lax is not None, spec.name
+    for formula in (lax.L, lax.M):
+        named = {node.name for node in walk(formula.tree) if isinstance(node, Name)}
+        if lax.spectral in named:
+            problem = f"the pair depends on the spectral parameter {lax.spectral!r}"
+            expected = "a Lax pair of equal members without one"
+            raise source.fault(formula.path, problem, lax.spectral, expected)
+    return replace(spec, lax=None), lax
 
 
 def _with_family(
@@ -284,7 +311,7 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
     shared = list(_texts(file.definitions))
     energy = [*shared, *_texts(file.hamiltonian), *_texts(file.poisson)]
     reach = span(energy)
-    width = span([*shared, *_texts(file.observables), *_texts(file.claims)])
+    width = span([*shared, *_texts(file.observables), *_texts(file.claims), *_texts(file.lax)])
     pairs = any(_PAIRS.search(text) for text in [*energy, *_texts(file.observables)])
     if pairs and (reach or width):
         problem = "there are sums over pairs, and sums that name neighbours"

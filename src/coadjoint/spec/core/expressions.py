@@ -43,6 +43,8 @@ from coadjoint.spec.core.tree import (
     Sum,
 )
 
+#: Functions of what has an index: sums over members, and matrices with a row for each.
+OVER_MEMBERS = ("sum", "tridiagonal")
 _BINDING = {"+": 1, "-": 1, "*": 2, "/": 2}
 _POWERS = ("^", "**")
 
@@ -74,7 +76,7 @@ class _Reader:
 
     def __init__(self, text: str, defined: Collection[str], *, indexed: bool) -> None:
         self.text, self.indexed = text, indexed
-        self.functions = {*FUNCTIONS, *defined, *(["sum"] if indexed else [])}
+        self.functions = {*FUNCTIONS, *defined, *(OVER_MEMBERS if indexed else [])}
         self.tokens = list(read_tokens(text))
         self.at = self.nodes = self.depth = 0
 

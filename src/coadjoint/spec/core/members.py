@@ -99,6 +99,8 @@ def write_out(tree: Node, members: Members, key: KeyPath) -> Node:
         if isinstance(node, Member):
             _check_member(node, members)
         fresh = rebuild(node, below)
+        if isinstance(fresh, Call) and fresh.function == "tridiagonal":
+            return write_band(fresh, members)
         return add_up(fresh, members) if isinstance(fresh, Sum) else fresh
 
     whole = fold(tree, write)
@@ -141,6 +143,31 @@ def add_up(node: Sum, members: Members) -> Node:
     )
 
 
+def write_band(node: Call, members: Members) -> Node:
+    """The matrix with a row for each member of an open chain: entries below, on and above.
+
+    ``tridiagonal(a, b, c)`` has a in row i+1 and column i, b in row and column i, and c in row i
+    and column i+1.
+    """
+    if len(node.arguments) != 3 or members.periodic:
+        problem = "a ring has no tridiagonal matrix" if members.periodic else "three are needed"
+        expected = "tridiagonal(below, diagonal, above) of an open chain"
+        raise fault_at(node, problem, str(len(node.arguments)), expected)
+    _check_free(node, members, free=True)
+    start, end, rows = node.start, node.end, list[Node]()
+    for row in range(members.count):
+        entries: list[Node] = []
+        for column in range(members.count):
+            side = column - row
+            entry: Node = Number(Fraction(0), start=start, end=end)
+            if abs(side) < 2:
+                at = {members.index: min(row, column)}
+                entry = place_at(node.arguments[side + 1], at, members)
+            entries.append(entry)
+        rows.append(Call(function="vector", arguments=tuple(entries), start=start, end=end))
+    return Call(function="rows", arguments=tuple(rows), start=start, end=end)
+
+
 def place_at(term: Node, members_of: Mapping[str, int], members: Members) -> Node:
     """A term in which indices stand for certain members."""
 
@@ -150,7 +177,9 @@ def place_at(term: Node, members_of: Mapping[str, int], members: Members) -> Nod
         if not isinstance(node, Member) or node.index not in members_of:
             return rebuild(node, below)
         at = members.place(members_of[node.index] + node.shift)
-        assert at is not None, (node, members_of)
+        if at is None:
+            problem = f"{node.name}[{node.index}{node.shift:+d}] lies beyond the end of the chain"
+            raise fault_at(node, problem, str(node.shift), "members of the chain")
         name, where = member_name(node.name, at), {"start": node.start, "end": node.end}
         if node.indices:
             return Index(name=name, indices=node.indices, within=node.within, **where)
