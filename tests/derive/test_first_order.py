@@ -203,6 +203,42 @@ def test_a_constraint_gives_a_coordinate_that_is_declared_to_follow():
     assert "x - y + z = 0, so z = y - x" in step.title.replace("-x + y", "y - x")
 
 
+def test_what_follows_moves_with_time_too():
+    """Of z = y - x + sin(t) the velocity is x + y + cos(t), as u = -x - sin(t) and v = y."""
+    rest = ("REST", "z*(y - x + sin(t)) - z^2/2")
+    equations = derive(spec(THREE, rest, FOLLOWS, ("[lagrangian]", "[time]\n[lagrangian]")))
+    field, point = equations.setting.field, {"x": 0.3, "y": -0.8, "t": 0.6}
+
+    def value(name):
+        closed = equations.close(field[name])
+        return field.evaluate(closed, point, float, lambda called, u: getattr(math, called)(u))
+
+    x, y, t = point.values()
+    z = y - x + math.sin(t)
+    u, v = -y + z, x + z  # along y: u = z - y; along x: v = x + z
+    np.testing.assert_allclose([value(name) for name in "zuv"], [z, u, v], rtol=1e-14)
+    np.testing.assert_allclose(value("w"), v - u + math.cos(t), rtol=1e-14)
+
+
+def test_what_follows_needs_the_rate_of_an_input():
+    """Nobody knows it, unless it is declared."""
+    rest = ("REST", "z*(y - x + f) - z^2/2")
+    driven = ("[lagrangian]", "[inputs]\nf = { default = 0 }\n[lagrangian]")
+    assert "needs the rate of f" in refuse(THREE, rest, FOLLOWS, driven)
+    known = ("f = { default = 0 }", 'f = { default = 0, rate = "g" }\ng = { default = 0 }')
+    assert derive(spec(THREE, rest, FOLLOWS, driven, known)).rates
+
+
+def test_a_momentum_along_a_section_is_one_of_velocities():
+    """Along x it is dl/du = p; along z it is (p + b) y."""
+    sections = '[momenta.J]\nsection = { u = "1" }\n[momenta.K]\nsection = { w = "1" }\n'
+    equations = derive(spec(MIXED + sections))
+    p, y, b = (equations.setting.field[name] for name in ("p", "y", "b"))
+    closed = {name: equations.close(value) for name, value in equations.exact.observables}
+    assert equations.setting.field.is_zero(closed["J"] - p)
+    assert equations.setting.field.is_zero(closed["K"] - (p + b) * y)
+
+
 CHAINS = [
     ("0", "nothing gives the velocity along d/dz", "in their order: none"),
     ("z", "no motion satisfies -1 = 0", "(1) -1 = 0"),

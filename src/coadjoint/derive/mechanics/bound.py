@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from dataclasses import field as attribute
 
 from coadjoint.derive.mechanics.configuration import Matrix, coupled_blocks
+from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
@@ -224,12 +225,17 @@ def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, .
         names=tuple(dict.fromkeys((*given, *resting, *form.names))),
         matrix=omega,
         right=field.gradient(form.energy, form.names),
-        tangent=lambda value: (field.gradient(value, form.names), field.zero),
+        tangent=lambda value: (field.gradient(value, form.names), -_moved(setting, value)),
     )
     known.follow()
     _check_determined(setting, form, known)
     _check_declared(setting, form, known)
     return known.bound, tuple(known.steps)
+
+
+def _moved(setting: Setting, value: Element) -> Element:
+    """What time and inputs change of a constraint by themselves."""
+    return explicit_rate(setting, value, "a coordinate that constraints give")
 
 
 def _check_determined(setting: Setting, form: Form, known: Constraints) -> None:
