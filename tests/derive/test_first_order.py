@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import sympy
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.mechanics import bound, first_order
@@ -237,6 +238,35 @@ def test_a_momentum_along_a_section_is_one_of_velocities():
     closed = {name: equations.close(value) for name, value in equations.exact.observables}
     assert equations.setting.field.is_zero(closed["J"] - p)
     assert equations.setting.field.is_zero(closed["K"] - (p + b) * y)
+
+
+PINNED = """
+title = "A point that is held at an oscillator"
+routes = ["first-order"]
+[variables]
+x = { role = "coordinate", follows = true }
+z = { role = "coordinate", follows = true }
+y = { role = "coordinate", default = 1 }
+s = { role = "coordinate", default = 0 }
+p = { role = "momentum", of = "x", follows = true }
+u = { role = "velocity", of = "x" }
+f = { role = "velocity", of = "z" }
+v = { role = "velocity", of = "y" }
+w = { role = "velocity", of = "s" }
+[lagrangian]
+l = "u^2/2 + 3*x - z*(x - y) + y*w - s^2/2"
+"""
+
+
+def test_constraints_of_constraints_give_momenta_and_multipliers():
+    """By hand: x = y lasts for p = x' = y' = -s, and that for 3 - z = p' = -s' = z."""
+    equations = derive(spec(PINNED))
+    y, s = equations.state
+    assert equations.velocities["x"] == y
+    assert equations.velocities["p"] == -s
+    half = sympy.Rational(3, 2)
+    assert [equations.velocities["z"], *equations.rates] == [half, -s, -half]
+    assert {c.verdict for c in prove_claims(spec(PINNED)).claims} == {Verdict.PROVED}
 
 
 CHAINS = [

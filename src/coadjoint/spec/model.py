@@ -227,9 +227,9 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
-        state, roles = self.state, ("velocity", "coordinate")
-        return tuple(each for each in self.variables if each.role in roles and each not in state)
+        """The variables that follow from the state, emitted with the dynamics."""
+        state = self.state
+        return tuple(each for each in self.variables if each not in state)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""

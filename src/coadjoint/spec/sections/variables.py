@@ -50,11 +50,11 @@ _OWN_KEYS = {
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
     "default": "quantities of the state",
-    "follows": "coordinates",
+    "follows": "coordinates and momenta",
 }
 _KEYS_OF = {
     "velocity": ("block", "of", "default"),
-    "momentum": ("block", "of", "default"),
+    "momentum": ("block", "of", "default", "follows"),
     "advected": ("representation", "block", "default"),
     "coordinate": ("shape", "default", "follows"),
 }
@@ -92,8 +92,8 @@ class VariablePart(Part):
     )
     follows: bool | None = Field(
         None,
-        description="true for a coordinate that the constraints of a singular Lagrangian give in "
-        "terms of the others, on the route first-order",
+        description="true for a coordinate or momentum that the constraints of a singular "
+        "Lagrangian give in terms of the others, on the route first-order",
     )
     default: Numbers | None = Field(
         None,
@@ -123,7 +123,7 @@ class Variable(Components):
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
         follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
-            coordinate that is declared to follow.
+            coordinate or momentum that is declared to follow.
     """
 
     name: str
