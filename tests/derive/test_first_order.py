@@ -201,7 +201,10 @@ def test_a_constraint_gives_a_coordinate_that_is_declared_to_follow():
     certificate = prove_claims(sample)
     assert {claim.verdict for claim in certificate.claims} == {Verdict.PROVED}
     (step,) = [each for each in equations.steps if "Constraints" in each.title]
-    assert "x - y + z = 0, so z = y - x" in step.title.replace("-x + y", "y - x")
+    field = equations.setting.field
+    a, b, c = (field[name] for name in "xyz")
+    assert [left.text for left, _ in step.lines] == ["0", "z"]
+    assert [value for _, value in step.lines] == [a - b + c, b - a]
 
 
 def test_what_follows_moves_with_time_too():

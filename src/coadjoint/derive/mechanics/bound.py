@@ -142,6 +142,7 @@ class Constraints:
         tangent: The row and right side by which a function of x stays zero.
         bound: What constraints give, by name in terms of what is left of x.
         steps: Constraints in their order, in words, and what they give.
+        lines: The same as they are shown: what is 0, then the component that it gives.
         unsolved: A constraint in which no component has a number for its factor; None while all are
             solved.
     """
@@ -153,6 +154,7 @@ class Constraints:
     tangent: Callable[[Element], tuple[Row, Element]]
     bound: dict[str, Element] = attribute(default_factory=dict)
     steps: list[str] = attribute(default_factory=list)
+    lines: list[tuple[str, Element]] = attribute(default_factory=list)
     unsolved: Element | None = None
 
     def follow(self) -> None:
@@ -184,6 +186,7 @@ class Constraints:
         given = f"{name} = {element_text(self.field, solution)}"
         found = f"{element_text(self.field, value)} = 0"
         self.steps.append(found if found == given else f"{found}, so {given}")
+        self.lines += [("0", value), (name, solution)]
         row, side = self.tangent(self.field[name] - solution)
         put = {name: solution}
         self.bound = {x: self.field.substitute(e, put) for x, e in self.bound.items()} | put
@@ -210,8 +213,8 @@ class Constraints:
         return "; ".join(f"({n}) {step}" for n, step in enumerate(self.steps, 1)) or "none"
 
 
-def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, ...]]:
-    """What the constraints of a form give, by name in terms of what is left, and all steps.
+def bind(setting: Setting, form: Form) -> Constraints:
+    """The constraints of a form, all of them solved.
 
     Raises:
         DerivationError: There is no motion, or it is not determined, or a constraint cannot be
@@ -230,7 +233,7 @@ def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, .
     known.follow()
     _check_determined(setting, form, known)
     _check_declared(setting, form, known)
-    return known.bound, tuple(known.steps)
+    return known
 
 
 def _moved(setting: Setting, value: Element) -> Element:

@@ -84,10 +84,10 @@ def _steps(
             ],
         ),
         write_step(
-            f"Constraints where omega is singular: {'; '.join(of.steps)}",
+            "Constraints where omega is singular, in their order, and what they give",
             "n omega = 0, n dh/dx = 0",
             r"n\,\omega = 0, \quad n \cdot \partial h = 0",
-            of.bound,
+            of.lines,
         ),
         write_step(
             "Form of first order within them",
