@@ -271,7 +271,7 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        """The variables that follow from the state, emitted with the dynamics."""
         return find_defined(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
