@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9
+#: Projections by which a start is moved onto constraints; steps of Newton for points of contact.
+PROJECTIONS = 20
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
@@ -127,23 +129,38 @@ class Constraints:
         off = find_excess(self.system, state, self._residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
-            raise self._refusal(time, state, row, float(self._residuals(state)[row]))
+            raise self._refusal(time, state, row, atol)
         return self.project(time, state)
+
+    def _advise(self, time: float, state: Array, atol: float) -> str:
+        """Where a start would be right; "" where that is not found.
+
+        Velocities come there in one projection, points of contact in a few.
+        """
+        nearest = state
+        for _ in range(PROJECTIONS):
+            nearest = self.project(time, nearest)
+        if not (find_excess(self.system, nearest, self._residuals, atol) <= 0).all():
+            return " Give a state that is on them."
+        moved = zip(self.system.STATE.components, state, nearest, strict=True)
+        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
+        return (
+            f" The nearest state on the constraints has {told}: begin there (System.projection "
+            "gives it)."
+        )
 
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
 
-    def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
+    def _refusal(self, time: float, state: Array, row: int, atol: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""
-        moved = zip(self.system.STATE.components, state, self.project(time, state), strict=True)
-        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
+        residual = float(self._residuals(state)[row])
         listed = list(self.system.certificate.get("constraints", {}).items())
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
         return KernelArgumentError(
             f"{self.system.name}: the constraint{constraint} does not hold at the given state: "
-            f"left minus right is {residual:.6g}; expected 0. The nearest state on the constraints "
-            f"has {told}: begin there (System.projection gives it).",
+            f"left minus right is {residual:.6g}; expected 0.{self._advise(time, state, atol)}",
             found=residual,
             expected=0,
         )

@@ -39,7 +39,9 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
     Definitions are those of the equations on which matrix and residuals rest, then the solve.
     """
     if of is None or not of.kept:
-        return None if of is None or of.frame.touch is None else _nearest_contact(setting, of, exact)
+        return (
+            None if of is None or of.frame.touch is None else _nearest_contact(setting, of, exact)
+        )
     field = setting.field
     shifts = {rate_name(v): shift_name(n) for n, v in enumerate(of.independent)}
     sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(of))}

@@ -163,7 +163,9 @@ def _read_surface(reading: Reading, key: str, text: str, point: str) -> Formula:
 def _read_axes(reading: Reading, part: Any) -> tuple[str, ...]:
     """The axes of space, which a body sees turn."""
     key: KeyPath = ("rolling", "axes")
-    vectors = [v.name for v in VARIABLES.of(reading) if v.role == "advected" and v.shape == (SPACE,)]
+    vectors = [
+        v.name for v in VARIABLES.of(reading) if v.role == "advected" and v.shape == (SPACE,)
+    ]
     if ALGEBRA.of(reading).invariance != "left":
         if part.axes is None:
             return ()

@@ -102,9 +102,7 @@ def read_rolling(reading: Reading, part: RollingPart) -> Rolling:
         contact = read_contact(reading, part)
         turning, velocity = _find_ball(reading) or _find_body(reading, key)
         arm = read_fitting(reading.source, (*key, "arm"), part.arm, scope, (3,), contact.place)
-        return Rolling(
-            arm=arm, normal="", turning=turning, velocity=velocity, contact=contact
-        )
+        return Rolling(arm=arm, normal="", turning=turning, velocity=velocity, contact=contact)
     if part.normal is None:
         problem, expected = "nothing says what the body rolls on", "normal, or surface and contact"
         raise reading.fault(key, problem, "arm", expected)
