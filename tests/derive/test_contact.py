@@ -29,7 +29,7 @@ def spec_text(name):
 
 
 #: Of the ball: I, m, r, b, g.
-I, M, R, B, G = 0.4, 1.0, 1.0, 3.0, 9.81
+INERTIA, M, R, B, G = 0.4, 1.0, 1.0, 3.0, 9.81
 #: Of the ellipsoid: moments of inertia, semi-axes, and the parameter of the paraboloid.
 MOMENTS, AXES, BOWL = np.array([0.05, 0.06, 0.04]), np.array([0.3, 0.25, 0.4]), 2.0
 STEP = 1e-5
@@ -45,8 +45,15 @@ def in_contact(twist, direction, place, turning):
     """A state in which the normals are opposite, with the rotation from the body to space."""
     s = AXES * direction / np.linalg.norm(direction)
     X = np.array([*place, (place[0] ** 2 + place[1] ** 2) / (2 * BOWL)])
-    O = aligned(normal_of_body(s), -normal_of_bowl(X), twist)
-    return {"Omega": np.array(turning), "E1": O[0], "E2": O[1], "E3": O[2], "s": s, "X": X}, O
+    attitude = aligned(normal_of_body(s), -normal_of_bowl(X), twist)
+    return {
+        "Omega": np.array(turning),
+        "E1": attitude[0],
+        "E2": attitude[1],
+        "E3": attitude[2],
+        "s": s,
+        "X": X,
+    }, attitude
 
 
 def normal_of_body(s):
@@ -61,11 +68,11 @@ def normal_of_bowl(X):
     return up / np.linalg.norm(up)
 
 
-def find_contact(O, centre, s):
+def find_contact(attitude, centre, s):
     """The point of the body where the normals are opposite, for its attitude and centre: Newton."""
 
     def defect(s):
-        across = np.cross(O @ normal_of_body(s), normal_of_bowl(centre + O @ s))
+        across = np.cross(attitude @ normal_of_body(s), normal_of_bowl(centre + attitude @ s))
         return np.array([(s**2 / AXES**2).sum() - 1, *across])
 
     for _ in range(6):
@@ -77,13 +84,13 @@ def find_contact(O, centre, s):
 @pytest.mark.parametrize("contact", CONTACTS, ids=["first", "second", "third"])
 def test_an_ellipsoid_in_a_paraboloid_obeys_newton_and_euler(contact):
     """The contact is found at attitudes a little before and after, and the force by multipliers."""
-    state, O = in_contact(*contact)
+    state, attitude = in_contact(*contact)
     rates = rates_at(derived(ELLIPSOID), state)
     s, Omega = state["s"], state["Omega"]
-    arm, w = O @ s, O @ Omega
+    arm, w = attitude @ s, attitude @ Omega
     centre, v = state["X"] - arm, -np.cross(w, arm)
     near = [
-        (find_contact(turned(h * w) @ O, centre + h * v, s), turned(h * w) @ O)
+        (find_contact(turned(h * w) @ attitude, centre + h * v, s), turned(h * w) @ attitude)
         for h in (STEP, -STEP)
     ]
     s_rate = (near[0][0] - near[1][0]) / (2 * STEP)
@@ -91,7 +98,7 @@ def test_an_ellipsoid_in_a_paraboloid_obeys_newton_and_euler(contact):
     np.testing.assert_allclose(rates["s"], s_rate, rtol=1e-5, atol=1e-7)
     np.testing.assert_allclose(rates["X"], v + arm_rate, rtol=1e-5, atol=1e-7)
     # unknown: dw/dt, dv/dt and the force of the surface, all in space
-    inertia = O @ np.diag(MOMENTS) @ O.T
+    inertia = attitude @ np.diag(MOMENTS) @ attitude.T
     hat = np.array([[0, -arm[2], arm[1]], [arm[2], 0, -arm[0]], [-arm[1], arm[0], 0]])
     none = np.zeros((3, 3))
     matrix = np.block(
@@ -99,14 +106,14 @@ def test_an_ellipsoid_in_a_paraboloid_obeys_newton_and_euler(contact):
     )
     known = [-np.cross(w, inertia @ w), np.array([0, 0, -G]), -np.cross(w, arm_rate)]
     found = np.linalg.solve(matrix, np.concatenate(known))[:3]
-    np.testing.assert_allclose(rates["Omega"], O.T @ found, rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(rates["Omega"], attitude.T @ found, rtol=1e-5, atol=1e-6)
 
 
 @pytest.mark.parametrize("contact", CONTACTS, ids=["first", "second", "third"])
 def test_points_of_contact_move_by_montana_s_equations(contact):
     """Along the body by (K_f + K_o)^-1 (-w_y, w_x), with curvature forms of differences."""
-    state, O = in_contact(*contact)
-    n = O @ normal_of_body(state["s"])
+    state, attitude = in_contact(*contact)
+    n = attitude @ normal_of_body(state["s"])
     x = np.cross(n, [1.0, 0.0, 0.0])
     frame = np.array([x / np.linalg.norm(x), np.cross(n, x) / np.linalg.norm(x)])
 
@@ -116,13 +123,13 @@ def test_points_of_contact_move_by_montana_s_equations(contact):
         return np.array(changes) @ frame.T / (2 * STEP)
 
     bowl = form(normal_of_bowl, state["X"], frame)
-    body = form(lambda s: O @ normal_of_body(s), state["s"], frame @ O)
-    w = O @ state["Omega"]
+    body = form(lambda s: attitude @ normal_of_body(s), state["s"], frame @ attitude)
+    w = attitude @ state["Omega"]
     # d(n)/dt = w x n is made up by the change along both surfaces
     along = np.linalg.solve(body + bowl, -frame @ np.cross(w, n))
     rates = rates_at(derived(ELLIPSOID), state)
-    np.testing.assert_allclose(frame @ O @ rates["s"], along, rtol=1e-6, atol=1e-8)
-    np.testing.assert_allclose(rates["X"], O @ rates["s"], rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(frame @ attitude @ rates["s"], along, rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(rates["X"], attitude @ rates["s"], rtol=1e-12, atol=1e-14)
 
 
 def test_an_ellipsoid_on_a_plane_has_the_rates_of_the_closed_form():
@@ -138,9 +145,9 @@ def test_an_ellipsoid_on_a_plane_has_the_rates_of_the_closed_form():
     semi = np.array([0.2, 0.03, 0.02])
     up = np.array([0.36, 0.48, 0.8])
     s = -(semi**2) * up / np.sqrt((semi**2 * up**2).sum())
-    O = aligned(up, np.array([0.0, 0.0, 1.0]), 0.7)
+    attitude = aligned(up, np.array([0.0, 0.0, 1.0]), 0.7)
     state = {"Omega": np.array([0.4, -1.0, 5.0]), "s": s, "X": np.array([0.3, 0.1, 0.0])}
-    state |= {"E1": O[0], "E2": O[1], "E3": O[2]}
+    state |= {"E1": attitude[0], "E2": attitude[1], "E3": attitude[2]}
     ours = rates_at(derived(ELLIPSOID, *ON_PLANE, *changes), state)
     theirs = rates_at(other, {"Omega": state["Omega"], "Gamma": up})
     np.testing.assert_allclose(ours["Omega"], theirs["Omega"], rtol=1e-11)
@@ -148,16 +155,16 @@ def test_an_ellipsoid_on_a_plane_has_the_rates_of_the_closed_form():
 
 
 def test_a_ball_in_a_cylinder_swings_and_does_not_fall():
-    """z'' + nu^2 (z - z_c) = 0 with nu^2 = (2/7) phi'^2 of a solid ball; phi' is constant."""
+    """The height has z'' + nu^2 (z - z_c) = 0 with nu^2 = (2/7) phi'^2; phi' is constant."""
     angle, z, w = 0.8, 0.3, np.array([0.4, -1.2, 5.0])
     n = np.array([np.cos(angle), np.sin(angle), 0.0])
     across = np.array([-n[1], n[0], 0.0])
     state = {"omega": w, "c": (B - R) * n + [0, 0, z], "X": B * n + [0, 0, z]}
     rates = rates_at(derived(BALL_INSIDE), state)
     turn = -R * w[2] / (B - R)
-    share = I / (I + M * R**2)
+    share = INERTIA / (INERTIA + M * R**2)
     assert share == pytest.approx(2 / 7)
-    centre = z - R * (w @ n) / turn - M * G * R**2 / (I * turn**2)
+    centre = z - R * (w @ n) / turn - M * G * R**2 / (INERTIA * turn**2)
     np.testing.assert_allclose(rates["c"], [*(turn * (B - R) * across)[:2], R * (w @ across)])
     # z'' = r d(omega . e_phi)/dt, and e_phi' = -phi' n
     rise = R * (rates["omega"] @ across - turn * (w @ n))
@@ -196,7 +203,7 @@ def test_a_ball_on_a_turntable_moves_as_the_shipped_one():
 def test_a_state_near_contact_is_projected_onto_it():
     """Each step squares the distance; what is in contact stays, and so does the body."""
     equations = derived(ELLIPSOID)
-    state, O = in_contact(*CONTACTS[0])
+    state, _ = in_contact(*CONTACTS[0])
     assert np.abs(values_at(equations, state, "constraint_residual")[3:]).max() < 1e-15
     moved = state | {"s": state["s"] + [1e-3, -2e-3, 1e-3], "X": state["X"] + [2e-3, 1e-3, -1e-3]}
     sizes = []
@@ -217,14 +224,14 @@ def test_surfaces_touch_at_one_point_where_the_domain_says_so():
     equations = derived(ELLIPSOID)
     names = [bound.name for bound, _ in bounds(equations)][:3]
     assert names == ["rolling_apart", "rolling_outside", "rolling_facing"]
-    state, O = in_contact(*CONTACTS[0])
+    state, attitude = in_contact(*CONTACTS[0])
     assert min(values_at(equations, state, "domain")[:3]) > 0
     inside = {**state, **{name: -state[name] for name in ("E1", "E2", "E3")}}  # as of the far side
     assert values_at(equations, inside, "domain")[2] < 0
     tight = derived(ELLIPSOID, ("b = { positive = true, default = 2", 'b = { default = "0.1"'))
     low = {**state, "X": np.zeros(3)}
-    O = aligned(normal_of_body(state["s"]), np.array([0.0, 0.0, -1.0]), 0.2)
-    low |= {"E1": O[0], "E2": O[1], "E3": O[2]}
+    attitude = aligned(normal_of_body(state["s"]), np.array([0.0, 0.0, -1.0]), 0.2)
+    low |= {"E1": attitude[0], "E2": attitude[1], "E3": attitude[2]}
     apart, outside, facing = values_at(tight, low, "domain")[:3]
     assert facing > 0
     assert min(apart, outside) < 0

@@ -12,7 +12,7 @@ START = np.array([0, 1.0, 5, 2, 0, 0, 3, 0, 0])
 
 
 def test_a_ball_in_a_cylinder_swings_as_the_closed_form():
-    """z about z_c with nu^2 = (2/7) phi'^2; it stays in contact to roundings."""
+    """The height swings about z_c with nu^2 = (2/7) phi'^2; it stays in contact to roundings."""
     ball, times = built(BALL_INSIDE), np.linspace(0, 20, 41)
     run = ball.simulate(START, t=times, rtol=1e-9, atol=1e-11)
     turn = -5 / 2
@@ -48,5 +48,5 @@ def test_a_ball_larger_than_the_cylinder_is_no_start():
     """Its curvature is less than that of the cylinder: the surfaces cross."""
     state = START.copy()
     state[3] = 3 - 4
-    with pytest.raises(KernelArgumentError, match="rolling_(apart|outside)"):
+    with pytest.raises(KernelArgumentError, match=r"rolling_(apart|outside)"):
         built(BALL_INSIDE).simulate(state, t=(0, 1), parameters={"r": 4.0})

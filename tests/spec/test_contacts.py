@@ -7,6 +7,7 @@ from tests.contacts import BALL_INSIDE, ELLIPSOID, TURNS
 from tests.specs import spec
 
 TOUCHES = 'contact = "X"'
+CYLINDER = "b^2 - X1^2 - X2^2"
 
 
 def test_a_ball_and_a_body_on_a_surface_are_read():
@@ -32,11 +33,11 @@ def test_a_ball_and_a_body_on_a_surface_are_read():
         (ELLIPSOID, (TOUCHES, f'{TOUCHES}\nnormal = "E3"'), "rolling.normal", "normal of a plane"),
         (
             BALL_INSIDE,
-            ("b^2 - X1^2 - X2^2", "b^2 - c1^2"),
+            (CYLINDER, "b^2 - c1^2"),
             "rolling.surface",
             "'c1' is a coordinate",
         ),
-        (BALL_INSIDE, ("b^2 - X1^2 - X2^2", "b^2 - 1"), "rolling.surface", "the value is a scalar"),
+        (BALL_INSIDE, (CYLINDER, "b^2 - 1"), "rolling.surface", "the value is a scalar"),
         (BALL_INSIDE, ('"r"\n', '"c1"\n'), "rolling.radius", "'c1' is a coordinate"),
         (BALL_INSIDE, (TOUCHES, f'{TOUCHES}\nturning = "W"'), "rolling.turning", "a scalar"),
         (ELLIPSOID, (TOUCHES, TURNS.replace("W", "g")), "rolling.turning", "is no ball"),

@@ -17,9 +17,9 @@ from typing import Any
 import sympy
 
 from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
+from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
-from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.projection import nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.pairs import LaxPair

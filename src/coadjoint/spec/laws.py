@@ -30,8 +30,8 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.units import ONE, Unit, product_of, unknown
 from coadjoint.spec.dimensions import Units
 from coadjoint.spec.model import Variable
-from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.contacts import Contact
+from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.rolling import Rolling
 
 _POWER = "A force times its velocity is an energy over a time."

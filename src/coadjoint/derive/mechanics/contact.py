@@ -175,7 +175,6 @@ class Touch:
 
     def _curvature(self, g: Vector, G: Vector) -> Matrix:
         """Q, from the normals seen as velocities are."""
-        field = self.setting.field
         rows = self._hessian(self.G, self.place)
         seen = tuple(zip(*map(self.from_body, rows), strict=True))
         whole = tuple(map(self.from_body, seen))
@@ -367,7 +366,8 @@ class Touch:
         """
         bend, field = self.named, self.setting.field
         above, *others = self.setting.elements([name for name, _ in self.missed])
-        squared, rolled = dot(bend.whole, bend.whole), (field.zero,) * 3
+        squared = dot(bend.whole, bend.whole)
+        rolled: Vector = (field.zero,) * 3
         changes = dict[str, Element]()
         if others:
             inside, *aslant = others
