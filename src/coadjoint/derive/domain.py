@@ -2,11 +2,11 @@
 
 Comes in: Equations. Goes out: a bound for each declared condition, the side that is to be larger
 minus the other, then those of a contact of surfaces, then, for constrained motions, one for each
-pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for accelerations, minus for multipliers,
-since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A M^-1 A^T``. Where velocities are no
-linear functions of momenta, the Legendre transform has a solution where the arguments of its roots
-are positive. It is one place for every route, since conditions are the spec's, and pivots and roots
-those of the emitted motion.
+pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
+accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A
+M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
+solution where the arguments of its roots are positive. It is one place for every route, since
+conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
 """
