@@ -8,9 +8,10 @@ Read next: `coadjoint.crosscheck.solver_steps`, which compares steps with them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal, localcontext
+from fractions import Fraction
 from functools import partial
 from typing import Any, Final
 
@@ -36,7 +37,7 @@ from coadjoint.crosscheck.series import solve
 from coadjoint.crosscheck.solver_objects import ORDER, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import run
+from coadjoint.lower.program import Program, run
 from coadjoint.render.solvers import SolverText
 from coadjoint.solve.ensemble import Ensemble, Inputs
 
@@ -51,6 +52,8 @@ SHORTEST: Final = 2.0**-24
 NOTHING: Final = Decimal("1e-40")
 #: The part of a step after which there is a sample.
 PART: Final = 0.375
+#: Methods of Runge and Kutta.
+STEPS: Final = {"rk4": methods.rk4, "dop853": methods.dop853}
 
 
 @dataclass(frozen=True)
@@ -61,11 +64,13 @@ class Solvers:
         subject: The system.
         text: Its recurrences.
         advance: What advances members, by method and target.
+        depths: How many operations follow one another in a step, by method, where that is known.
     """
 
     subject: Subject
     text: SolverText
     advance: Mapping[str, Mapping[str, Advance]]
+    depths: dict[str, int] = field(default_factory=dict)
 
     def begin(self, batch: Batch, samples: Array, *, size: float, steps: int) -> Ensemble:
         """Members at the start of a run."""
@@ -157,37 +162,76 @@ def find_point(solvers: Solvers, batch: Batch, member: int) -> dict[str, float]:
 def _exact_step(
     solvers: Solvers, method: str, point: Mapping[str, float], after: float, length: float
 ) -> ExactStep:
-    """A step of one member: values from the equations, envelopes and depth from what is printed."""
+    """A step of one member: values from the equations, envelopes from what is printed."""
     if method == "taylor":
         return _exact_taylor(solvers, point, after, length)
-    program, h, part = solvers.subject.programs["rhs"], exact(length), exact(after)
-    reference = partial(solvers.subject.reference.evaluate, "rhs")
-    step = methods.rk4 if method == "rk4" else methods.dop853
-
-    def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
-        def at(x: methods.Row, after: Any) -> methods.Row:
-            known = dict(zip(program.state, x, strict=True))
-            for name, first in given.items():
-                known[name] = first[0] if len(first) == 1 else first[0] + after * first[1]
-            return list(evaluate(known, number, apply))
-
-        return at
-
+    program = solvers.subject.programs["rhs"]
     state, given = split(program, point)
     begin = [exact(value) for value in state.values()]
     bounded = {name: tuple(map(exact, values)) for name, values in given.items()}
-    levels = {name: (Levels(0),) * len(values) for name, values in given.items()}
-    by_equations = rates(reference, exact, call, bounded)
-    by_program = rates(partial(run, program), exact, call, bounded)
-    counted = rates(partial(run, program), level_of, lambda _, of: Levels(of.count + 1), levels)
-    rows = []
-    for end in (part, h):
-        values = step(by_equations, begin, h, end, exact)
-        sizes = step(by_program, begin, h, end, exact)
-        rows.append([_with_size(a.value, b) for a, b in zip(values, sizes, strict=True)])
-    zeros, part_level = [Levels(0)] * len(begin), Levels(0)
-    depth = step(counted, zeros, Levels(0), part_level, level_of)
-    return ExactStep(rows[0], rows[1], max(each.count for each in depth))
+    reference = partial(solvers.subject.reference.evaluate, "rhs")
+    rows = [
+        STEPS[method](
+            _follow(program.state, partial(evaluate, number=exact, call=call), bounded),
+            begin,
+            exact(length),
+            exact(after),
+            exact,
+        )
+        for evaluate in (reference, partial(_run, program))
+    ]
+    within, end = (
+        [_with_size(a.value, b) for a, b in zip(*both, strict=True)]
+        for both in zip(*rows, strict=True)
+    )
+    return ExactStep(within, end, _find_depth(solvers, method, point))
+
+
+def _follow(
+    names: Sequence[str],
+    evaluate: Callable[[Mapping[str, Any]], Iterable[Any]],
+    given: Mapping[str, tuple[Any, ...]],
+) -> methods.Rates:
+    """Rates at a state, some time after the start; inputs follow their lines."""
+
+    def at(x: methods.Row, after: Any) -> methods.Row:
+        known = dict(zip(names, x, strict=True))
+        for name, first in given.items():
+            known[name] = first[0] if len(first) == 1 else first[0] + after * first[1]
+        return list(evaluate(known))
+
+    return at
+
+
+def _run(
+    program: Program, values: Mapping[str, Any], number: Callable[[Fraction], Any], call: Any
+) -> list[Any]:
+    """A Program as a `Reference` evaluates."""
+    return list(run(program, values, number, call))
+
+
+def _find_depth(solvers: Solvers, method: str, point: Mapping[str, float]) -> int:
+    """How many operations follow one another in a step of a method, at any point."""
+    if method in solvers.depths:
+        return solvers.depths[method]
+    program, zero = solvers.subject.programs["rhs"], Levels(0)
+    state, given = split(program, point)
+    levels = {name: (zero,) * len(values) for name, values in given.items()}
+    if method == "taylor":
+        begin = dict.fromkeys(state, zero)
+        counted = run_recurrences(solvers.text, begin, levels, ORDER, level_of, _raise_level)
+        end = methods.taylor(list(counted.values()), zero)
+    else:
+        evaluate = partial(_run, program, number=level_of, call=_raise_level)
+        rates = _follow(program.state, evaluate, levels)
+        end, _ = STEPS[method](rates, [zero] * len(state), zero, zero, level_of)
+    solvers.depths[method] = max(int(each.count) for each in end)
+    return solvers.depths[method]
+
+
+def _raise_level(_: str, *of: Levels) -> Levels:
+    """A function is one operation."""
+    return Levels(max(each.count for each in of) + 1)
 
 
 def _project(
@@ -212,7 +256,7 @@ def _project(
             ]
         )
     levels = dict.fromkeys((*program.names,), Levels(step.depth))
-    depth = run(program, levels, level_of, lambda _, of: Levels(of.count + 1))
+    depth = run(program, levels, level_of, _raise_level)
     return ExactStep(moved[0], moved[1], max(each.count for each in depth))
 
 
@@ -224,17 +268,8 @@ def _exact_taylor(
     series = solve(rates_of(solvers.subject), state, given, ORDER)
     sizes = bounded_coefficients(solvers.text, state, given, ORDER)
     known = [list(map(_with_size, series[name], sizes[name])) for name in state]
-    counted = run_recurrences(
-        solvers.text,
-        dict.fromkeys(state, Levels(0)),
-        {name: (Levels(0),) * len(values) for name, values in given.items()},
-        ORDER,
-        level_of,
-        lambda _, of: Levels(of.count + 1),
-    )
-    depth = methods.taylor(list(counted.values()), Levels(0))
     within, end = (methods.taylor(known, exact(part)) for part in (after, length))
-    return ExactStep(within, end, max(each.count for each in depth))
+    return ExactStep(within, end, _find_depth(solvers, "taylor", point))
 
 
 def _with_size(value: Decimal, size: Bounded) -> Bounded:
