@@ -170,3 +170,9 @@ def test_a_wrong_example_would_be_seen():
     whole, _ = examples()[0]
     with pytest.raises(SpecError, match="unknown key"):
         read_spec_text(text_of(merge(whole, {"variables": {"Pi": {"rol": "momentum"}}})), "x.toml")
+
+
+def test_a_comment_of_an_example_is_no_title():
+    """The index of tables has titles of the page alone."""
+    page = write_page("{{ tables }}\n\n# Motion\n\n```toml\n# not a title\n```\n\n{{ keys time }}")
+    assert "| Motion | [`[time]`](#) |" in page

@@ -35,7 +35,11 @@ members_option = click.option(
     "quantity around the start, uniformly.",
 )
 seed_option = click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of random members."
+    "--seed",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Of random members, and of noise.",
 )
 
 
@@ -220,6 +224,8 @@ def print_members(solution: Solution, origin: str) -> None:
     say(f"status: {solution.message or arrived}")
     if solution.course.stepwise:
         say(solution.course.tell_stepwise())
+    if solution.course.keeps:
+        say(solution.course.tell_keeps())
 
 
 def describe_members(solution: Solution, origin: str) -> dict[str, Any]:

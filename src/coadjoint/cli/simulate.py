@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
 
+#: Steps of a run with noise for which none is given, at the least.
+LEAST_STEPS = 1000
 Assignment = tuple[str, list[float]]
 
 
@@ -83,12 +85,15 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     default="auto",
     show_default=True,
     help="taylor, dop853 or rk4, which are generated, or scipy:NAME; auto is taylor where it "
-    "applies.",
+    "applies. With noise: heun, or midpoint, which auto is.",
 )
 @click.option("--rtol", type=float, help="Relative tolerance. Default: 1e-10.")
 @click.option("--atol", type=float, help="Absolute tolerance. Default: 1e-12.")
 @click.option(
-    "--step", type=float, help="A fixed step for a generated method, in the place of tolerances."
+    "--step",
+    type=float,
+    help="A fixed step for a generated method, in the place of tolerances. Default with noise: a "
+    "part of the distance of samples, 1000 steps or more.",
 )
 @click.option(
     "--threads",
@@ -160,6 +165,10 @@ def command(
     start = find_start(loaded, state, given, driven)
     run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
+    if "noise" in loaded.functions:
+        spaces = max(1, options["samples"] - 1)
+        steps = spaces * -(-LEAST_STEPS // spaces)
+        options |= {"seed": seed, "step": options["step"] or time / steps}
     if members is not None:
         run = find_members(loaded, members, seed, run)
     options |= {"events": asked.events, "reconstruct": run.followed or bool(loaded.RECONSTRUCTED)}
@@ -299,6 +308,8 @@ def _print(system: System, solution: Solution) -> None:
     say(": ".join(filter(None, ("status", solution.status, solution.message))))
     if solution.course.stepwise:
         say(solution.course.tell_stepwise())
+    if solution.course.keeps:
+        say(solution.course.tell_keeps())
 
 
 def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:

@@ -129,7 +129,7 @@ def crosscheck(
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
-            kind: start_compiling(pool, texts, folder, chosen, kind)
+            kind: start_compiling(pool, texts, folder, chosen, kind, noisy="noise" in programs)
             for kind in list_kinds(programs)
         }
         loading = pool.submit(system.load_kernels, chosen)

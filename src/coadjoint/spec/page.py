@@ -73,9 +73,14 @@ def find_parts(annotation: Any) -> Iterator[type[Part]]:
 def _write_tables(prose: str) -> str:
     """All tables in the order of the page, under its titles, each with a link to its place."""
     rows, group, place = [("", "table", "what it says")], "", ""
+    example = False
     for line in prose.splitlines():
         mark = _MARK.fullmatch(line)
-        if line.startswith("# ") and not line.startswith("# added"):
+        if line.startswith("```"):
+            example = not example
+        elif example:  # where # begins a comment
+            continue
+        elif line.startswith("# "):
             group = line.removeprefix("# ")
         elif line.startswith("## "):
             place = line.removeprefix("## ").lower().replace(" ", "-").replace("'", "")
