@@ -4,10 +4,10 @@ Comes in: a `coadjoint.families.Family`. Goes out: a `Loops` for each function, 
 Programs of one member, of a pair of members, or of sums, with a note where each name is read. Texts
 have one loop for any number of members.
 
-Sums have a stated order, the same in every target (docs/decisions/family-kernels.md). The sum over the
-partners of a member goes through them from 0 on. A sum over members, or over pairs by their first
-member, has `LANES` parts: part l adds up the members l, l + LANES, l + 2 LANES and so on, and then
-the parts are added up in order. All begin with 0.0.
+Sums have a stated order, the same in every target (docs/decisions/family-kernels.md). The sum over
+the partners of a member goes through them from 0 on. A sum over members, or over pairs by their
+first member, has `LANES` parts: part l adds up the members l, l + LANES, l + 2 LANES and so on, and
+then the parts are added up in order. All begin with 0.0.
 Read next: `coadjoint.render.families`.
 """
 
