@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -108,15 +109,28 @@ def poisson_tensor(equations: Equations) -> Rows | None:
     return _rows(equations, brackets, (len(state), len(state)))
 
 
+def noise(equations: Equations) -> Rows | None:
+    """What each Wiener process does to each component of the state, row by row."""
+    state, fields = equations.setting.state, noise_fields(equations.setting)
+    if not fields:
+        return None
+    entries = (
+        (f"d{name}/d{each.name}", each.field[row])
+        for row, name in enumerate(state)
+        for each in fields
+    )
+    return _rows(equations, entries, (len(state), len(fields)))
+
+
 def constraint_residual(equations: Equations) -> Rows | None:
-    """What vanishes on the constraints."""
-    residuals = equations.exact.residuals
+    """What vanishes on the constraints, or where attitudes are rotations."""
+    residuals = (equations.turning_back or equations).exact.residuals
     return _rows(equations, residuals) if residuals else None
 
 
 def projection(equations: Equations) -> Rows | None:
-    """The nearest state on the constraints, by equations of its own."""
-    own = equations.projection
+    """The nearest state on the constraints, or with rotations, by equations of its own."""
+    own = equations.projection or equations.turning_back
     if own is None:
         return None
     nearest = _rows(own, zip(own.setting.state, own.exact.rates, strict=True))

@@ -14,6 +14,7 @@ from typing import Any
 from coadjoint.derive.setting import Declared
 from coadjoint.prove.certificate import Certificate
 from coadjoint.spec import Spec
+from coadjoint.spec.spatial import turning_rows
 
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:
@@ -40,6 +41,12 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         record["constraints"] = {
             name: each.in_one_line for each in spec.constraints for name in each.components
         }
+    if spec.turns_back:
+        record["constraints"] = {
+            name: text for each in spec.turning for name, text in turning_rows(spec, each).items()
+        }
+    if spec.rolling is not None and spec.rolling.contact is not None:
+        record["constraints"] |= spec.rolling.contact.texts
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

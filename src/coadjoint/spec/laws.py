@@ -9,6 +9,7 @@ Read next: `coadjoint.spec.reader`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
 from coadjoint.algebra.catalogue import ATTITUDES
@@ -30,6 +31,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.units import ONE, Unit, product_of, unknown
 from coadjoint.spec.dimensions import Units
 from coadjoint.spec.model import Variable
+from coadjoint.spec.sections.contacts import Contact
 from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.rolling import Rolling
 
@@ -56,6 +58,7 @@ def demand_laws(units: Units, submanifold: Submanifold | None = None) -> None:
     _demand_constraints(units)
     _demand_driving(units)
     _demand_relaxation(units)
+    _demand_noise(units)
     _demand_lax(units)
     _demand_followed(units)
     demand_emitted(units)
@@ -119,9 +122,9 @@ def _demand_advected(units: Units, each: Variable, along: dict[int, Unit]) -> No
             for unit in _of_constant(units, value):
                 moved = along[place] * unit * own[column] * units.time
                 units.require(_unit_key(each), own[row], moved, why)
-    if action.name in ATTITUDES or each.form == "quaternion":
+    if action.name in ATTITUDES or each.turning or each.form == "quaternion":
         entries = units.names[each.name]
-        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[0] + 1]
+        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[-1] + 1]
         for entry in fixed:
             units.require(_unit_key(each), entry, ONE, "An attitude is made of pure numbers.")
 
@@ -294,6 +297,13 @@ def _demand_relaxation(units: Units) -> None:
         units.equate(relaxation.G, [expect(i, j) for i, j in places], why)
 
 
+def _demand_noise(units: Units) -> None:
+    """A Wiener process is the square root of a time, and its Hamiltonian over that an energy."""
+    for each in units.spec.noise:
+        why = "Times its Wiener process, which is the square root of a time, it is an action."
+        units.equate(each.formula, (units.action / units.time ** Fraction(1, 2),), why)
+
+
 def _demand_lax(units: Units) -> None:
     """dL/dt = [L, M]: each term of an entry of the bracket is one of L over a time."""
     lax = units.spec.lax
@@ -325,12 +335,27 @@ def _demand_followed(units: Units) -> None:
         _demand_rolling(units, spec.rolling)
 
 
+def _demand_contact(units: Units, contact: Contact, length: Unit) -> None:
+    """Points of contact and radii are lengths, and a surface turns as a body does."""
+    for name in filter(None, (contact.place, contact.point)):
+        why = "A point of contact is a place."
+        units.require(("variables", name), units.names[name].entries[0], length, why)
+    if contact.radius is not None:
+        units.equate(contact.radius, [length], "A radius is a length.")
+    if contact.turning is not None:
+        units.equate(contact.turning, [ONE / units.time] * 3, "It is an angular velocity.")
+    for surface in filter(None, (contact.surface, contact.body)):
+        units.value(surface)
+
+
 def _demand_rolling(units: Units, rolling: Rolling) -> None:
     """The arm is a length, by which turning makes a velocity."""
     turning, velocity = (units.names[name] for name in (rolling.turning, rolling.velocity))
     length = (velocity.entries[0] or ONE) / (turning.entries[0] or ONE)
     why = f"{rolling.velocity} is {rolling.turning} times the arm."
     units.equate(rolling.arm, [length] * 3, why)
+    if rolling.contact is not None:
+        _demand_contact(units, rolling.contact, length)
     for each in units.spec.reconstruction:
         if each.of_rolling and not each.attitude:
             units.require(("rolling",), units.of(each)[0], length, why)

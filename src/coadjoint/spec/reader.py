@@ -40,7 +40,7 @@ from coadjoint.spec.laws import demand_laws
 from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.indices import read_indices
 from coadjoint.spec.sections.reduction import REDUCTION
-from coadjoint.spec.spatial import spatial_momenta
+from coadjoint.spec.spatial import grams, spatial_momenta
 from coadjoint.spec.tables import TABLES
 from coadjoint.spec.validate import validate
 from coadjoint.spec.windows import name_fault, read_windows
@@ -148,6 +148,7 @@ def _read(source: Source, file: Any, *, path: Path, sha256: str) -> Spec:
     )
     derived = (*spatial_momenta(spec), *spec.reduced_momenta)
     following = [(each.of.name, each.name, each.components) for each in derived]
+    following += [(owner.name, each.name, each.components) for owner, each in grams(spec)]
     for owner, momentum, components in following:
         reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)

@@ -29,6 +29,7 @@ from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.lax import LAX
 from coadjoint.spec.sections.momenta import MOMENTA
 from coadjoint.spec.sections.newton import NEWTON
+from coadjoint.spec.sections.noise import NOISE
 from coadjoint.spec.sections.observables import OBSERVABLES
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.poisson import POISSON
@@ -63,6 +64,7 @@ TABLES: tuple[Table[Any], ...] = (
     DISSIPATION,
     DOUBLE_BRACKET,
     METRIPLECTIC,
+    NOISE,
     DOMAIN,
     ROLLING,
     RECONSTRUCTION,

@@ -74,6 +74,7 @@ PLURALS = {
     "momentum": "momenta",
     "advected": "advected quantities",
     "coordinate": "coordinates",
+    "contact": "points of contact",
     "input": "inputs",
     "time": "time",
 }
@@ -85,6 +86,7 @@ ROLES = {
     "momentum": "a momentum",
     "advected": "an advected quantity",
     "coordinate": "a coordinate",
+    "contact": "a point of contact",
     "parameter": "a parameter",
     "input": "an input",
     "time": "the time",
