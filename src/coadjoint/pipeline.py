@@ -116,7 +116,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
         certificate=certificate,
         programs={"rhs": replace(member.program, state=tuple(map(str, family.states)))},
         texts=texts,
-        family=RenderedFamily(windows, declared, family, context),
+        family=RenderedFamily(windows=windows, declared=declared, family=family, context=context),
     )
 
 
