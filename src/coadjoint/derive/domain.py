@@ -1,12 +1,12 @@
 """Domain: where a system is defined and regular, as values that are positive there.
 
 Comes in: Equations. Goes out: a bound for each declared condition, the side that is to be larger
-minus the other, then, for constrained motions, one for each pivot of the solves in the kernel, with
-the sign that it has for a positive kinetic energy: plus for accelerations, minus for multipliers,
-since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A M^-1 A^T``. Where velocities are no
-linear functions of momenta, the Legendre transform has a solution where the arguments of its roots
-are positive. It is one place for every route, since conditions are the spec's, and pivots and roots
-those of the emitted motion.
+minus the other, then those of a contact of surfaces, and, for constrained motions, one for each
+pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
+accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of
+``-A M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
+solution where the arguments of its roots are positive. It is one place for every route, since
+conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
 """
@@ -20,7 +20,8 @@ from types import MappingProxyType
 from coadjoint.declared import Bound
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
-from coadjoint.derive.mechanics.kinematics import multiplier_name
+from coadjoint.derive.mechanics.contact import touch_of
+from coadjoint.derive.mechanics.kinematics import kinematics, multiplier_name
 from coadjoint.derive.mechanics.solver import pivot_name
 from coadjoint.exact import Condition, Element, Region
 from coadjoint.exact.signs import sign
@@ -37,7 +38,12 @@ def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
         conditions.append((Bound(condition.name, "condition", strict, inputs), value))
-    return (*conditions, *_transforms(equations), *_pivots(equations))
+    return (
+        *conditions,
+        *_contact(equations),
+        *_transforms(equations),
+        *_pivots(equations),
+    )
 
 
 def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:
@@ -74,6 +80,16 @@ def _arguments(equations: Equations) -> list[Condition]:
         and (positive := field.domain_of(known)) is not None
         and field.as_number(positive) is None
     ]
+
+
+def _contact(equations: Equations) -> list[tuple[Bound, Element]]:
+    """What is positive while a body touches a surface at one point."""
+    touch = touch_of(equations.setting)
+    if touch is None:
+        return []
+    known = kinematics(equations.setting).decided
+    found = [(name, known.value(value)) for name, value in touch.bounds]
+    return [(Bound(name, "condition", True, _inputs(equations, v)), v) for name, v in found]
 
 
 def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:

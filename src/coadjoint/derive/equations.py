@@ -17,6 +17,7 @@ from typing import Any
 import sympy
 
 from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
+from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.projection import nearest_state
@@ -118,7 +119,7 @@ class Equations:
     def close(self, element: Element) -> Element:
         """An element with the definitions substituted: in state and parameters alone.
 
-        The names of `kept` stay, where the kernel solves for velocities.
+        The names of `kept` stay, where the kernel solves for velocities, and those of `opaque`.
         """
         return self.setting.field.substitute(element, self._closed_definitions)
 
@@ -126,9 +127,20 @@ class Equations:
     def _closed_definitions(self) -> dict[str, Element]:
         known: dict[str, Element] = {}
         for name, value in self.exact.definitions:
-            if name not in self.kept:
+            if name not in self.kept and name not in self.opaque:
                 known[name] = self.setting.field.substitute(value, known)
         return known
+
+    @cached_property
+    def opaque(self) -> tuple[str, ...]:
+        """Functions of positions that are not written out, which would fill pages.
+
+        They are those of two curved surfaces that touch. What is zero whatever these are is zero;
+        nothing that holds these may be differentiated by the state.
+        """
+        touch = touch_of(self.setting)
+        names = set() if touch is None or not touch.point else {*touch.functions}
+        return tuple(name for name, _ in self.exact.definitions if name in names)
 
     def definitions_of(self, elements: Iterable[Element]) -> list[tuple[str, Element]]:
         """The definitions on which elements rest, in their order."""
@@ -193,7 +205,17 @@ class Equations:
 
     def _write(self, element: Element) -> sympy.Expr:
         """An element in these, and in what the kernel solves for."""
-        return self.setting.field.to_sympy(self.close(element))
+        written = self.setting.field.to_sympy(self.close(element))
+        return written.xreplace(self._opaque_forms) if self.opaque else written
+
+    @cached_property
+    def _opaque_forms(self) -> dict[sympy.Symbol, sympy.Expr]:
+        """What is not written out, as expressions of the state that nobody has expanded."""
+        forms, values = dict[sympy.Symbol, sympy.Expr](), dict(self.exact.definitions)
+        for name in self.opaque:
+            value = self.setting.field.to_sympy(self.close(values[name]))
+            forms[sympy.Symbol(name)] = value.xreplace(forms)
+        return forms
 
     @cached_property
     def _closed_forms(self) -> ClosedForms:

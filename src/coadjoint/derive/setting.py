@@ -39,6 +39,10 @@ _ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
     name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
 }
 
+#: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
+#: is projected to, and in claims about that.
+BALL = 4
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -332,7 +336,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         more += 2
     if calls_of(spec, "velocity"):  # a Legendre transform that is not linear, with numbers as well
         more += 4
-    room = _count_room(spec) * (1 + more)
+    rolls_as_ball = spec.rolling and spec.rolling.contact and spec.rolling.contact.radius
+    room = _count_room(spec) * (1 + more) + BALL * bool(rolls_as_ball)
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
         parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)
@@ -340,6 +345,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = assemble(quantity, values)
+    for whole in spec.variables:  # also where constraints give some of its components
+        values[whole.name] = assemble(whole, values)
     for each in spec.reconstruction:
         values[each.name] = shape([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)

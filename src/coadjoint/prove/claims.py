@@ -19,6 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
+from coadjoint.prove.attitudes import about_attitudes
 from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
@@ -39,6 +40,7 @@ from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.noise import about_noise, has_noise
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
@@ -83,10 +85,20 @@ def has_frame(motion: Motion) -> bool:
     return motion.equations.distribution is not None
 
 
+def is_written_out(motion: Motion) -> bool:
+    """Whether the rates are functions of the state that can be differentiated by it."""
+    return not motion.equations.opaque
+
+
+def has_reduced_bracket(motion: Motion) -> bool:
+    """Whether velocities along a frame are the state, and the bracket of theirs is looked at."""
+    return has_frame(motion) and is_written_out(motion)
+
+
 def has_fixed_constraints(motion: Motion) -> bool:
     """Whether there are constraints that are the same at all times."""
     distribution = motion.equations.distribution
-    if distribution is None or not distribution.equations:
+    if distribution is None or not distribution.equations or not is_written_out(motion):
         return False
     reached = (motion.field.reach(equation.residual) for equation in distribution.equations)
     return not frozenset[str]().union(*reached) & {*motion.setting.driving}
@@ -133,6 +145,11 @@ def has_energy(motion: Motion) -> bool:
     return motion.equations.exact.energy is not None
 
 
+def is_searched(motion: Motion) -> bool:
+    """Whether the rates are the whole motion, and written out: searches look at these alone."""
+    return is_written_out(motion) and not has_noise(motion)
+
+
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
     spec = motion.spec
@@ -167,16 +184,18 @@ EXAMINATIONS = (
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
     Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
+    Examination(about=about_noise, applies=has_noise),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
     Examination(about=about_galilean),
     Examination(about=about_momenta),
-    Examination(about=about_reduced_bracket, applies=has_frame),
+    Examination(about=about_reduced_bracket, applies=has_reduced_bracket),
     Examination(about=about_symmetries, applies=has_bracket),
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
     Examination(about=about_motion_symmetries, applies=lacks_bracket),
     Examination(about=about_transformations),
+    Examination(about=about_attitudes),
     Examination(about=about_spatial),
     Examination(about=about_pairs, of_routes=True),
     Examination(
@@ -187,13 +206,20 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reduced_jacobi,
-        applies=has_frame,
+        applies=has_reduced_bracket,
         kind="jacobi",
         subject="the Jacobi identity of the reduced bracket",
     ),
-    Examination(about=about_reversal, kind="transformation", subject="the reversal of time"),
-    Examination(about=about_candidates, kind="integrals", subject="integrals"),
-    Examination(about=about_measure, kind="measure", subject="invariant measures"),
+    Examination(
+        about=about_reversal,
+        applies=is_searched,
+        kind="transformation",
+        subject="the reversal of time",
+    ),
+    Examination(about=about_candidates, applies=is_searched, kind="integrals", subject="integrals"),
+    Examination(
+        about=about_measure, applies=is_searched, kind="measure", subject="invariant measures"
+    ),
 )
 
 

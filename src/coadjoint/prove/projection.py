@@ -28,6 +28,8 @@ def about_projection(first: Equations) -> Iterator[Examined]:
         return
     distribution = first.projection.distribution
     assert distribution is not None
+    if not distribution.kept:  # points of contact: see `coadjoint.prove.rolling`
+        return
     names = ", ".join(equation.name for equation, _ in distribution.kept)
     arrives = f"the projection moves every state onto {names}, where its equations are regular"
     yield arrives, "constraint", partial(_arrival, first.projection)

@@ -40,6 +40,8 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         record["constraints"] = {
             name: each.in_one_line for each in spec.constraints for name in each.components
         }
+    if spec.rolling is not None and spec.rolling.contact is not None:
+        record["constraints"] |= spec.rolling.contact.texts
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

@@ -1,9 +1,10 @@
-r"""Rolling: what is claimed of a body that rolls on a plane.
+r"""Rolling: what is claimed of a body that rolls on a plane, or on a surface.
 
 With s from the point of contact to the centre of mass and :math:`\Gamma` normal to the plane, both
 seen from the body: (i) the point of the body at the contact is at rest; (ii) the place of contact
 moves along the plane, so that the body neither leaves it nor sinks in; (iii) the height
 :math:`\Gamma \cdot s` of the centre of mass changes as its velocity Y says.
+On a surface the body does not slip either, and both stay in contact: see `coadjoint.prove.contact`.
 Comes in: Equations with a distribution. Goes out: claims for the certificate. A wrong profile,
 whose :math:`ds/dt` is not tangent to the plane, is refuted by (ii).
 Read next: `coadjoint.derive.mechanics.followed`, which rests on (i).
@@ -16,6 +17,7 @@ from collections.abc import Iterator
 from coadjoint.derive.mechanics.followed import arm
 from coadjoint.exact.dense import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.contact import about_contact
 from coadjoint.prove.zero import Examined, decide_zero
 
 
@@ -24,6 +26,9 @@ def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
     first = motion.equations
     setting, rolling = first.setting, first.spec.rolling
     if rolling is None:
+        return
+    if rolling.contact is not None:
+        yield from about_contact(motion)
         return
     s, Gamma = arm(setting), rolling.normal
     text, by_name = rolling.arm.in_one_line, {v.name: v for v in setting.spec.variables}

@@ -60,7 +60,9 @@ _ALGEBRA = ("algebra",)
 _SPACE = ("configuration", "poisson")
 #: What acts in addition to the energy, on routes where a rate of momenta is known.
 _ACTS = ("forces", "dissipation", "double_bracket", "metriplectic")
-_on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS)
+#: The same where the state has momenta, which Hamiltonians of noise move.
+_ACTS_ON_MOMENTA = (*_ACTS, "noise")
+_on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS_ON_MOMENTA)
 _chart = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, emitted=False)
 _in_frame = partial(
     Route,
@@ -84,13 +86,13 @@ _ROUTES = (
     Route(name="complexification", kinds=_ALGEBRA, energies=_HAMILTONIAN),
     _lax("manakov", _ALGEBRA),
     _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
-    Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS),
-    Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS),
+    Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS_ON_MOMENTA),
+    Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS_ON_MOMENTA),
     Route(
         name="canonical",
         kinds=("canonical", "configuration"),
         energies=_EITHER,
-        options=_ACTS,
+        options=_ACTS_ON_MOMENTA,
         is_hamiltonian=True,
     ),
     Route(

@@ -55,10 +55,11 @@ def almost_poisson(setting: Setting) -> Tensor | None:
     """Brackets of the state, velocities standing for their momenta; None where there are none.
 
     Constraints that are kept give the momenta no free rates, and affine ones make the energy
-    another function than H.
+    another function than H. Those of a point of contact on two curved surfaces would fill pages.
     """
     allowed = distribution(setting)
-    if allowed.kept or not allowed.is_linear:
+    touch = allowed.frame.touch
+    if allowed.kept or not allowed.is_linear or (touch is not None and touch.point):
         return None
     columns = zip(*allowed.B, strict=True)
     return brackets(allowed, dict(zip(allowed.independent, columns, strict=True)), setting.state)

@@ -35,7 +35,7 @@ from coadjoint.derive.mechanics.kinematics import (
     rate_name,
 )
 from coadjoint.derive.mechanics.relaxed import relaxed
-from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
+from coadjoint.derive.mechanics.solver import Definition, Solve, definitions_under, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, write_entries, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
@@ -234,7 +234,10 @@ def emit_motion(
         emitted=list_emitted(setting, energy, reduced_momenta(of)),
         poisson_tensor=almost_poisson(setting),
         solves=solves,
-        residuals=tuple((each.name, each.residual) for each in of.equations),
+        residuals=(
+            *((each.name, each.residual) for each in of.equations),
+            *(() if of.frame.touch is None else of.frame.touch.residuals),
+        ),
     )
     shown = tuple(step for step in steps(exact) if step.lines)
     return Equations(setting=setting, route=route, exact=exact, steps=shown, distribution=of)
@@ -266,7 +269,8 @@ def _check_regular(
             found=len(solve.block),
         )
     known: dict[str, Element] = {}
-    for name, value in definitions:
+    entries = [entry for row in solve.matrix for entry in row]
+    for name, value in definitions_under(setting.field, definitions, entries):
         known[name] = setting.field.substitute(value, known)
     matrix = [[setting.field.substitute(e, known) for e in row] for row in solve.matrix]
     for k in range(1, len(matrix) + 1):

@@ -31,7 +31,7 @@ from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT
 def rates_followed(setting: Setting, of: Distribution | None) -> tuple[tuple[str, Element], ...]:
     """Name and rate of every variable that is reconstructed, in order."""
     place: dict[str, Element] = {}
-    if setting.spec.rolling is not None:
+    if setting.spec.rolling is not None and setting.spec.rolling.normal:
         assert of is not None, "the reader asks for constraints with [rolling]"
         place = dict(zip(CONTACT, contact_rate(of), strict=False))  # without the height
     return tuple(

@@ -20,6 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.mechanics.contact import Touch, touch_of
 from coadjoint.derive.setting import Setting, list_components, once
 from coadjoint.exact import Element
 
@@ -49,7 +50,20 @@ class Frame:
     @cached_property
     def positions(self) -> tuple[str, ...]:
         """Names of what the velocities move."""
-        return (*self.setting.advected_names, *self.setting.positions)
+        touching = () if self.touch is None else (*self.touch.place, *self.touch.point)
+        return (*self.setting.advected_names, *self.setting.positions, *touching)
+
+    @property
+    def touch(self) -> Touch | None:
+        """How a body touches a surface, if one does."""
+        return touch_of(self.setting)
+
+    def turning(self, vector: Sequence[Element]) -> tuple[Element, ...]:
+        """The angular velocity in a vector of the frame, of a body that rolls on a surface."""
+        rolling = self.setting.spec.rolling
+        assert rolling is not None, "asked for only of bodies that roll"
+        names = next(v.components for v in self.setting.spec.variables if v.name == rolling.turning)
+        return tuple(vector[self.velocities.index(name)] for name in names)
 
     @cached_property
     def _own(self) -> int:
@@ -57,7 +71,12 @@ class Frame:
         return 0 if self.setting.spec.algebra is None else self.setting.algebra.dimension
 
     def rates(self, vector: Sequence[Element]) -> dict[str, Element]:
-        """``X z`` of every position z, along a vector of the frame."""
+        """``X z`` of every position z, along a vector of the frame; without `drift`."""
+        moved = self.rates_apart(vector)
+        return moved if self.touch is None else moved | self.touch.rates(self.turning(vector))
+
+    def rates_apart(self, vector: Sequence[Element]) -> dict[str, Element]:
+        """The same of all but points of contact."""
         setting, moved = self.setting, dict[str, Element]()
         for variable in setting.advected:
             a = setting.elements(variable.components)
@@ -68,12 +87,20 @@ class Frame:
             }
         return moved | dict(zip(setting.positions, vector[self._own :], strict=True))
 
+    def drift(self, function: Element) -> Element:
+        """How a function of the positions changes at rest: by a surface that turns."""
+        field, own = self.setting.field, {} if self.touch is None else self.touch.drift
+        slopes = zip(field.gradient(function, list(own)), own.values(), strict=True)
+        return field.sum(slope * rate for slope, rate in slopes if slope != 0)
+
     def along(self, vector: Sequence[Element], function: Element) -> Element:
         """``X f`` of a function of the positions, along a vector of the frame."""
-        field, moved = self.setting.field, self.rates(vector)
-        slopes = field.gradient(function, self.positions)
-        pairs = zip(slopes, self.positions, strict=True)
-        return field.sum(slope * moved[name] for slope, name in pairs if slope != 0)
+        field, moved = self.setting.field, self.rates_apart(vector)
+        pairs = zip(field.gradient(function, list(moved)), moved.values(), strict=True)
+        whole = field.sum(slope * rate for slope, rate in pairs if slope != 0)
+        if self.touch is None:
+            return whole
+        return whole + self.touch.along(self.turning(vector), function)
 
     def unit(self, k: int) -> Vector:
         """The k-th vector of the frame."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.mechanics.configuration import sampled_mechanics
+from coadjoint.derive.mechanics.contact import contact_names
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
@@ -56,6 +57,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     return (
         *(f"_b{n}" for n in entries),
         *map(rate_name, of.frame.positions),
+        *(contact_names() if of.frame.touch else ()),
         *(name for names in part_names(spec).values() for name in names),
         *(f"_g{n + 1}" for n in range(len(known.roots))),
         *(f"_e{n}" for n in entries),
@@ -193,7 +195,16 @@ class Kinematics:
     @cached_property
     def frame_rates(self) -> Mapping[str, Element]:
         """``dz/dt`` in the velocities."""
-        return self.frame.rates(self.frame.setting.elements(self.frame.velocities))
+        velocities = self.frame.setting.elements(self.frame.velocities)
+        return {**self.frame.rates_apart(velocities), **self._touching[1]}
+
+    @cached_property
+    def _touching(self) -> tuple[list[Definition], Mapping[str, Element]]:
+        """What is computed once of a body that touches a surface, and the rates in terms of it."""
+        frame = self.frame
+        if frame.touch is None:
+            return [], {}
+        return frame.touch.list_lines(frame.turning(frame.setting.elements(frame.velocities)))
 
     def _is_velocity(self, position: str) -> bool:
         field, value = self.frame.setting.field, self.frame_rates[position]
@@ -259,7 +270,10 @@ class Kinematics:
         convected = [(f"_c{n + 1}", self._convected[place]) for n, place in enumerate(self.solved)]
         roots, own = self._rates_of_roots(), parts(self.frame.setting)
         return self.decided.list_computed(
-            [*entries, *self.velocities(), *positions, *roots, *rates, *convected, *own]
+            [
+                *(*entries, *self.velocities(), *self._touching[0]),
+                *(*positions, *roots, *rates, *convected, *own),
+            ]
         )
 
 

@@ -11,7 +11,7 @@ and velocities :math:`\eta + d`, with the least kinetic energy of the change d,
         = \begin{pmatrix} 0 \\ -R \end{pmatrix},
 
 the matrix of the accelerations, so that :math:`L D L^T` is shared with them. It is one step, since
-R is affine in the velocities.
+R is affine in the velocities. Points of contact are moved back onto surfaces by a step of Newton.
 Comes in: exact equations with constraints that are kept. Goes out: exact equations with that state
 in place of the rates.
 Read next: `coadjoint.prove.projection`.
@@ -39,7 +39,9 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
     Definitions are those of the equations on which matrix and residuals rest, then the solve.
     """
     if of is None or not of.kept:
-        return None
+        return (
+            None if of is None or of.frame.touch is None else _nearest_contact(setting, of, exact)
+        )
     field = setting.field
     shifts = {rate_name(v): shift_name(n) for n, v in enumerate(of.independent)}
     sides = {multiplier_name(n): -residual for n, residual in enumerate(_residuals(of))}
@@ -72,6 +74,23 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
         emitted=(),
         poisson_tensor=None,
         solves=solves,
+        residuals=exact.residuals,
+    )
+
+
+def _nearest_contact(setting: Setting, of: Distribution, exact: Exact) -> Exact:
+    """The points of contact moved back onto the surfaces; see `Touch.nearest`."""
+    touch, field, known = of.frame.touch, setting.field, kinematics(setting).decided
+    assert touch is not None, "asked for only of bodies that touch a surface"
+    after, missed = touch.nearest(known.value), touch.missed
+    state = tuple(after.get(name, field[name]) for name in setting.state)
+    needed = [*state, *(value for _, value in (*missed, *exact.residuals))]
+    return Exact(
+        definitions=(*definitions_under(field, exact.definitions, needed), *missed),
+        rates=state,
+        energy=None,
+        emitted=(),
+        poisson_tensor=None,
         residuals=exact.residuals,
     )
 

@@ -60,12 +60,12 @@ def _right_side(motion: ConstrainedMotion, constrained: Element, momenta: Row) -
     known = []
     for k, momentum in enumerate(momenta):
         D = [row[k] for row in of.B]
-        own = (explicit_rate(frame.setting, d, "a constraint") for d in D)
+        own = (explicit_rate(frame.setting, d, "a constraint") + frame.drift(d) for d in D)
         turned = [a + b for a, b in zip(frame.bracket(of.xi, D), own, strict=True)]
         gyroscopic = field.sum(a * b for a, b in zip(p, turned, strict=True) if a and b)
         driven = field.sum(b * f for b, f in zip(D, forces, strict=True) if b and f)
         carried = frame.along(of.xi, momentum)
-        carried += explicit_rate(frame.setting, momentum, "a momentum")
+        carried += explicit_rate(frame.setting, momentum, "a momentum") + frame.drift(momentum)
         known.append(frame.along(D, constrained) + gyroscopic + driven - carried)
     return tuple(known)
 

@@ -27,7 +27,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.configuration import Mechanics, mechanics
 from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
 from coadjoint.derive.mechanics.distribution import Distribution, Row
 from coadjoint.derive.mechanics.driving import explicit_rate
@@ -81,7 +81,24 @@ def _vary(setting: Setting) -> tuple[Row, dict[str, Element]]:
         carried = hamilton_pontryagin.advection(setting, action)
         for variable in setting.advected:
             moved |= zip(variable.components, carried[variable.name], strict=True)
-    return (*forces, *setting.field.gradient(known.lagrangian, setting.positions)), moved
+    slopes = (*forces, *setting.field.gradient(known.lagrangian, setting.positions))
+    return _vary_contact(known, slopes, moved)
+
+
+def _vary_contact(
+    known: Mechanics, forces: Row, moved: dict[str, Element]
+) -> tuple[Row, dict[str, Element]]:
+    """The same with the points of contact, which every variation of the motion moves along."""
+    touch, frame, field = known.frame.touch, known.frame, known.setting.field
+    if touch is None:
+        return forces, moved
+    names = (*touch.place, *touch.point)
+    slopes = dict(zip(names, field.gradient(known.lagrangian, names), strict=True))
+    units = (touch.rates(frame.turning(frame.unit(k))) for k in range(len(frame.velocities)))
+    gained = [field.sum(slopes[name] * unit[name] for name in names) for unit in units]
+    rates = touch.rates(frame.turning(known.setting.elements(frame.velocities)))
+    rates = {name: rate + touch.drift.get(name, 0) for name, rate in rates.items()}
+    return tuple(a + b for a, b in zip(forces, gained, strict=True)), {**moved, **rates}
 
 
 def _rate(distribution: Distribution, function: Element, moved: Mapping[str, Element]) -> Element:

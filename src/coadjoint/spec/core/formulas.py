@@ -71,6 +71,7 @@ PLURALS = {
     "momentum": "momenta",
     "advected": "advected quantities",
     "coordinate": "coordinates",
+    "contact": "points of contact",
     "input": "inputs",
     "time": "time",
 }
@@ -82,6 +83,7 @@ ROLES = {
     "momentum": "a momentum",
     "advected": "an advected quantity",
     "coordinate": "a coordinate",
+    "contact": "a point of contact",
     "parameter": "a parameter",
     "input": "an input",
     "time": "the time",

@@ -86,7 +86,7 @@ def read_reconstruction(
         SpecError: A default has another shape, or an attitude has nothing that turns it.
     """
     rolling = ROLLING.of(reading)
-    first = () if rolling is None else _follow_rolling()
+    first = _follow_rolling() if rolling is not None and rolling.normal else ()
     blank = [
         Reconstructed(name=name, rate=None, attitude=part.attitude or "", shape=_shape(part))
         for name, part in parts.items()
