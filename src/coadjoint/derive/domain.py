@@ -1,10 +1,10 @@
 """Domain: where a system is defined and regular, as values that are positive there.
 
 Comes in: Equations. Goes out: a bound for each declared condition, the side that is to be larger
-minus the other, then those of a contact of surfaces, and, for constrained motions, one for each
+minus the other, then those of a contact of surfaces, then, for constrained motions, one for each
 pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
-accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of
-``-A M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
+accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A
+M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
 solution where the arguments of its roots are positive. It is one place for every route, since
 conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
@@ -38,12 +38,7 @@ def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
         conditions.append((Bound(condition.name, "condition", strict, inputs), value))
-    return (
-        *conditions,
-        *_contact(equations),
-        *_transforms(equations),
-        *_pivots(equations),
-    )
+    return (*conditions, *_contact(equations), *_transforms(equations), *_pivots(equations))
 
 
 def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:

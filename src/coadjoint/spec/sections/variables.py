@@ -125,6 +125,9 @@ class VariablePart(Part):
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
         "components, or a list of them",
     )
+    index: str | None = Field(
+        None, description="the index of [index] that counts the members that have it"
+    )
     unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
@@ -210,7 +213,7 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
 
 
 def find_defined(variables: Sequence[Variable]) -> tuple[Variable, ...]:
-    """Variables, or components of them, that follow from the state."""
+    """The variables, or components of them, that follow from the state."""
     state = state_of(variables)
     parts = (part for each in variables for part in each.parts)
     return tuple(part for part in parts if part not in state)
