@@ -63,8 +63,9 @@ class Bound:
     """What a row of the function ``domain`` is: positive where a system is defined.
 
     Attributes:
-        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
+        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is; of the
+            velocity that a Legendre transform gives.
+        kind: ``condition``, ``acceleration``, ``reaction`` or ``transform``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """
@@ -77,6 +78,8 @@ class Bound:
     @property
     def label(self) -> str:
         """What the row is, for comments and messages."""
+        if self.kind == "transform":
+            return f"argument of a root in {self.name}"
         return self.name if self.kind == "condition" else f"pivot of {self.name}"
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9
 #: Projections after which a state is on the constraints, or will not be.
-SETTLING = 16
+SETTLING = 20
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
@@ -147,15 +147,16 @@ class Constraints:
         off = find_excess(self.system, state, self._residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
-            raise self._refusal(time, state, row, float(self._residuals(state)[row]))
+            raise self._refusal(time, state, row, atol)
         return self.project(time, state)
 
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
 
-    def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
+    def _refusal(self, time: float, state: Array, row: int, atol: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""
+        residual = float(self._residuals(state)[row])
         listed = list(self.system.certificate.get("constraints", {}).items())
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
         return KernelArgumentError(
@@ -170,7 +171,7 @@ class Constraints:
         once = self.project(time, state)
         near = settle(self.system, once, self._residuals, partial(self.project, time))
         if near is None:
-            return ""
+            return " Give a state that is on them."
         moved = zip(self.system.STATE.components, state, near, strict=True)
         told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
         how = " (System.projection gives it)" if near is once else ""
