@@ -46,8 +46,8 @@ class Claim:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
         kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
             ``conserved``, ``constraint``, ``integrability``, ``momentum``, ``integrals``,
-            ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket`` or
-            ``transformation``.
+            ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket``,
+            ``noise`` or ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.
