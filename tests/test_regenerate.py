@@ -69,8 +69,8 @@ LONG = {
 def test_the_checked_in_tree_is_current():
     """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit.
 
-    `make check` runs this test, and `make check test` runs it once. Each system has a process of
-    its own with a random seed for hashes, so the order of sets leaves no trace either.
+    `make check` runs this test, and `make check test` runs it once. Processes have random seeds for
+    hashes, so the order of sets leaves no trace either, and nor does what came before in a process.
     """
     specs = sorted((ROOT / "derivations").glob("*.toml"))
     outcome = check(specs, ROOT / "generated", jobs=2, complete=True)
@@ -235,8 +235,8 @@ def test_two_runs_at_once_end_well(checkout):
 def test_the_same_bytes_for_every_hash_seed(seed, tmp_path):
     """Sets and dictionaries of strings iterate differently; the texts do not.
 
-    Here all systems in one process; `test_the_checked_in_tree_is_current` has each in a process of
-    its own, whose seed is drawn at random.
+    Here all systems in one process; `test_the_checked_in_tree_is_current` has several, whose seeds
+    are drawn at random.
     """
     script = (
         "import sys\n"

@@ -82,6 +82,11 @@ def helper(monkeypatch, tmp_path):
                 report_progress("compile", os.getpid(), started.pid)
                 time.sleep(1000)
 
+            def compute(seconds):
+                while time.process_time() < seconds:
+                    pass
+                return os.getpid()
+
             def bug(_):
                 raise RuntimeError("a bug of ours")
             """
@@ -268,6 +273,44 @@ def test_stopping_all_children_ends_what_they_started(helper):
     assert len(seen) == 2
     with pytest.raises(ResourceError, match="SIGKILL"):
         run_bounded(helper + "sleep", 600, **GENEROUS, children=children)
+
+
+def test_a_child_serves_one_request_after_the_other(helper):
+    """It is there for the next request of its task, with limits of its own; then it ends."""
+    children = sandbox.Children()
+
+    def ask(function, argument, seconds=60):
+        return run_bounded(
+            helper + function, argument, seconds=seconds, memory=2**31, children=children
+        )
+
+    first = ask("chatter", None)
+    assert ask("compute", 1.2, 1) == first  # of which a part was used by the request before
+    with pytest.raises(ResourceError, match="spin: stopped after 1 s") as caught:
+        ask("spin", 0, 1)
+    assert caught.value.used < 3
+    second = ask("chatter", None)
+    with pytest.raises(InternalError, match="a bug of ours"):
+        ask("bug", None)
+    third = ask("chatter", None)
+    os.kill(third, signal.SIGKILL)
+    os.waitid(os.P_PID, third, os.WEXITED | os.WNOWAIT)
+    fourth = ask("chatter", None)
+    assert len({first, second, third, fourth}) == 4
+    children.stop()
+    for process in (first, second, third, fourth):
+        wait_until_gone(process)
+
+
+def test_a_child_of_great_needs_serves_no_other_request(helper):
+    """What it holds would be missing from the memory of the next one."""
+    children = sandbox.Children()
+    found = [
+        run_bounded(helper + function, size, **GENEROUS, children=children)
+        for function, size in (("chatter", 0), ("hoard", 2**29), ("chatter", 0))
+    ]
+    children.stop()
+    assert found[0] != found[2]
 
 
 def test_prints_do_not_disturb_the_protocol(helper):

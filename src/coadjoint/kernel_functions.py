@@ -71,6 +71,13 @@ Systems whose rates are loops over a table have no such matrix.""",
         looped="never",
     ),
     KernelFunction(
+        name="noise",
+        summary="What each Wiener process does to the state, one row for each component",
+        shape="(n, w, *batch)",
+        doc="""Only systems with [noise] have it. The motion is
+``dx = rhs dt + noise o dW``, in the sense of Stratonovich.""",
+    ),
+    KernelFunction(
         name="constraint_residual",
         summary="Left minus right sides of the constraints",
         shape="(c, *batch)",

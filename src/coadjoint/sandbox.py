@@ -19,16 +19,17 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import traceback
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from threading import Lock, Timer
 from typing import IO, Any
 
 from coadjoint.budget import VARIABLE
+from coadjoint.ending import kill
 from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record, system_error
 from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
 
@@ -42,27 +43,73 @@ _BOOT = (
     "import sys; sys.path.insert(0, sys.argv[1]); from coadjoint import sandbox; sandbox.child()"
 )
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
+#: A child that has had this part of its memory serves no other request.
+MEMORY_PART = 4
 _channel: IO[str] | None = None
 
 
+@dataclass
+class _Child:
+    """A child that runs or waits for a request.
+
+    Attributes:
+        process: It.
+        errors: The file of what it complains of.
+        used: Processor time of its former requests, seconds.
+    """
+
+    process: subprocess.Popen[str]
+    errors: IO[bytes]
+    used: float = 0.0
+
+    def close(self) -> None:
+        """End it and whatever it started, at the latest now."""
+        kill(self.process)
+        with self.errors, self.process, suppress(BrokenPipeError):
+            assert self.process.stdin is not None
+            self.process.stdin.close()
+
+
 class Children:
-    """The children of one task that run now, so that they can be ended together."""
+    """The children of one task: ended together, and one after the other for its requests.
+
+    A child that has answered without an error waits for another request, so that what it has
+    imported is there; one that is lost is lost for the request that it worked on alone.
+    """
 
     def __init__(self) -> None:
         self._lock = Lock()
         self._running: set[subprocess.Popen[str]] = set()
+        self._waiting: list[_Child] = []
         self._stopped = False
 
+    def take(self) -> _Child | None:
+        """One that waits, if there is one."""
+        with self._lock:
+            while self._waiting:
+                child = self._waiting.pop()
+                if child.process.poll() is None:
+                    return child
+                child.close()
+        return None
+
+    def keep(self, child: _Child) -> None:
+        """Let one wait for another request."""
+        with self._lock:
+            if not self._stopped:
+                return self._waiting.append(child)
+        return child.close()
+
     def add(self, process: subprocess.Popen[str]) -> None:
-        """Note a child; one that comes after the end of the task is ended at once."""
+        """Note a child that works; one that comes after the end of the task is ended at once."""
         with self._lock:
             self._running.add(process)
             stopped = self._stopped
         if stopped:
-            _kill(process)
+            kill(process)
 
     def remove(self, process: subprocess.Popen[str]) -> None:
-        """Forget a child that has ended."""
+        """Forget a child that works no more."""
         with self._lock:
             self._running.discard(process)
 
@@ -70,9 +117,12 @@ class Children:
         """End every child and what it started, now and later."""
         with self._lock:
             self._stopped = True
-            running = list(self._running)
+            running, waiting = list(self._running), self._waiting
+            self._waiting = []
         for process in running:
-            _kill(process)
+            kill(process)
+        for child in waiting:
+            child.close()
 
 
 def run_bounded(
@@ -95,7 +145,7 @@ def run_bounded(
             its own. Rounded up to whole seconds.
         memory: Limit of address space, bytes.
         on_progress: Told what the function reports through `report_progress`.
-        children: Where to note the child while it runs.
+        children: The children of one task, of which one that waits serves the request.
         wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``, and what a
             compiler may take.
         subject: What it is about, for messages: the path of a spec. By default the function.
@@ -111,7 +161,7 @@ def run_bounded(
     """
     subject = subject or target.rpartition(":")[2]
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
-    request["subject"] = subject
+    request |= {"subject": subject, "again": children is not None}
     task = _Task(
         subject,
         _processor_limit(seconds),
@@ -123,42 +173,55 @@ def run_bounded(
         task.stage = stage
         on_progress(stage, done, total)
 
+    noted = children or Children()
     try:
-        errors, process = _start()
+        child = noted.take() or _start()
     except OSError as error:
         refused = system_error(error)
         if refused is None:
             raise
         raise refused from error
-    with errors, process:
-        noted = children or Children()
-        noted.add(process)
-
-        def expire() -> None:
-            task.expired = True
-            _kill(process)
-
-        timer = Timer(task.wall, expire)
-        timer.daemon = True
-        timer.start()
-        try:
-            last = _converse(process, request, note)
-            task.used = _reap(process)
-        finally:
-            timer.cancel()
-            noted.remove(process)
-            _kill(process)
+    with ExitStack() as stack:
+        stack.callback(child.close)
+        last = _follow(task, child, request, note, noted)
         if last is None:
-            errors.seek(0)
-            raise task.explain_loss(process.returncode, errors.read())
+            child.errors.seek(0)
+            raise task.explain_loss(child.process.returncode, child.errors.read())
+        if last["again"]:
+            child.used = last["again"]
+            stack.pop_all()
+            noted.keep(child)
     if "error" in last:
         raise from_record(last["error"])
     return last["result"]
 
 
-def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
-    """A file for what the child complains of, and the child, waiting for its request."""
-    errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed by the caller)
+def _follow(
+    task: _Task, child: _Child, request: dict[str, Any], note: Progress, noted: Children
+) -> dict[str, Any] | None:
+    """Have a child do its work; its final message, or none where it is lost."""
+    noted.add(child.process)
+
+    def expire() -> None:
+        task.expired = True
+        kill(child.process)
+
+    timer = Timer(task.wall, expire)
+    timer.daemon = True
+    timer.start()
+    try:
+        last = _converse(child.process, request, note)
+        if last is None or not last["again"]:
+            task.used = _reap(child.process) - child.used
+    finally:
+        timer.cancel()
+        noted.remove(child.process)
+    return last
+
+
+def _start() -> _Child:
+    """A child that waits for its request."""
+    errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the child)
     try:
         process = subprocess.Popen(
             [sys.executable, "-I", *_bytecode(), "-c", _BOOT, _ROOT, str(os.getpid())],
@@ -173,7 +236,7 @@ def _start() -> tuple[IO[bytes], subprocess.Popen[str]]:
     except BaseException:
         errors.close()
         raise
-    return errors, process
+    return _Child(process, errors)
 
 
 def _bytecode() -> list[str]:
@@ -188,8 +251,8 @@ def _converse(
     assert process.stdin is not None
     assert process.stdout is not None
     try:
-        process.stdin.write(json.dumps(request))
-        process.stdin.close()
+        process.stdin.write(json.dumps(request) + "\n")
+        process.stdin.flush()
     except BrokenPipeError:
         return None
     for line in process.stdout:
@@ -207,56 +270,6 @@ def _reap(process: subprocess.Popen[str]) -> float:
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     return usage.ru_utime + usage.ru_stime
-
-
-def _kill(process: subprocess.Popen[str]) -> None:
-    """Kill a child and whatever it started, in sessions of their own too."""
-    if process.returncode is None:
-        for started in _freeze(process.pid):
-            with suppress(ProcessLookupError, PermissionError):
-                os.kill(started, signal.SIGKILL)
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-
-
-def _freeze(ancestor: int) -> set[int]:
-    """A process and all below it, stopped: what runs could start another meanwhile."""
-    frozen, running = set[int](), {ancestor}
-    while running:
-        for each in running:
-            with suppress(ProcessLookupError, PermissionError):
-                os.kill(each, signal.SIGSTOP)
-        frozen |= running
-        for _ in range(250):  # half a second, where a kernel thread waits for a disk
-            if not any(map(_is_active, frozen)):
-                break
-            time.sleep(0.002)
-        running = set(_descendants(ancestor)) - frozen
-    return frozen
-
-
-def _is_active(process: int) -> bool:
-    """Whether some thread of a process runs or waits, and has not stopped yet."""
-    for path in Path(f"/proc/{process}/task").glob("*/stat"):
-        with suppress(OSError, IndexError):
-            if path.read_text(errors="replace").rpartition(")")[2].split()[0] in "RS":
-                return True
-    return False
-
-
-def _descendants(ancestor: int) -> list[int]:
-    """Processes below one, where the system shows them in /proc."""
-    below: dict[int, list[int]] = {}
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError, ValueError, IndexError):  # it may have ended meanwhile
-            parent = path.read_text(errors="replace").rpartition(")")[2].split()[1]
-            below.setdefault(int(parent), []).append(int(path.parent.name))
-    descendants, waiting = [], [ancestor]
-    while waiting:
-        children = below.get(waiting.pop(), [])
-        descendants += children
-        waiting += children
-    return descendants
 
 
 def _processor_limit(seconds: float) -> int:
@@ -329,28 +342,57 @@ def report_progress(stage: str, done: int, total: int) -> None:
 
 
 def child() -> None:
-    """Serve one request and end; the entry point of the child process."""
-    global _channel  # one channel for the one request of this process
+    """Serve requests, each but the last with a result; the entry point of the child process."""
+    global _channel  # one channel for all requests of this process
     _die_with(int(sys.argv[2]))
     _channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not meet the messages
-    request = json.load(sys.stdin)
+    used = 0
+    for line in sys.stdin:
+        if not _serve(json.loads(line), used):
+            return
+        used = math.ceil(_measure_use(resource.RUSAGE_SELF))
+
+
+def _serve(request: dict[str, Any], used: int) -> bool:
+    """Serve one request after processor time of others; whether another one may follow."""
     _limit(resource.RLIMIT_AS, request["memory"])
     _limit(resource.RLIMIT_CORE, 0)
     # The soft limit alone: what this child starts may be given another one.
     _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (_processor_limit(request["seconds"]), most))
+    resource.setrlimit(resource.RLIMIT_CPU, (_processor_limit(request["seconds"] + used), most))
+    again = 0.0
     try:
         function = _function(request["target"])
         # What is imported stays, and elements make no cycles: looking for some in all of it again
         # and again takes a fifth of the time of a large derivation.
         gc.freeze()
         gc.set_threshold(50_000, 10, 10)
-        _send({"result": function(request["argument"])})
+        result = function(request["argument"])
+        again = _measure_use() if request["again"] and _is_fresh(request["memory"]) else 0.0
+        _send({"result": result, "again": again})
     except CoadjointError as error:
-        _send({"error": error.as_record()})
+        _send({"error": error.as_record(), "again": 0.0})
     except Exception as error:
-        _send({"error": _describe(error, request).as_record()})
+        _send({"error": _describe(error, request).as_record(), "again": 0.0})
+    gc.collect()
+    return bool(again)
+
+
+def _is_fresh(memory: int) -> bool:
+    """Whether this process may serve another request as if it were the first.
+
+    A limit of processor time of the whole session is shared out to processes of their own.
+    """
+    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    unlimited = resource.getrlimit(resource.RLIMIT_CPU)[1] == resource.RLIM_INFINITY
+    return unlimited and largest < memory / MEMORY_PART
+
+
+def _measure_use(*whose: int) -> float:
+    """Processor time of this process and of what it waited for, or of one of them, seconds."""
+    whose = whose or (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    return sum(each.ru_utime + each.ru_stime for each in map(resource.getrusage, whose))
 
 
 def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:

@@ -25,7 +25,7 @@ _SPACE = re.compile(
     r"integrals of degree <= (?P<first>\d+) in (?P<velocities>.+?)"
     r"(?: and <= (?P<second>\d+) in (?P<positions>.+?))?(?:, where (?P<where>.+?))?"
     r"(?P<scope>, for almost all parameters|, at the default parameters"
-    r"(?: and 1 where there is none)?)?: (?P<text>[^:]*)"
+    r"(?: as doubles)?(?: and 1 where there is none)?)?: (?P<text>[^:]*)"
 )
 #: What is said of a space: its dimension, and where that is a bound, how much of it is certain.
 _EXACT = re.compile(r"a space of dimension (\d+) with constants, all polynomials in .+")

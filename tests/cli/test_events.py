@@ -48,9 +48,23 @@ def test_an_event_ends_the_run(run):
     assert events["count"] == 1
     assert events["time"] == [record["time"]]
     assert events["state"]["Pi1"] == [record["final"]["Pi1"]]
+    assert "warning" not in result.stderr
     never = run(*BODY, "--events", "Pi1 == 2", "--until-event")
     assert never.exit_code == 1
     assert "no event 'Pi1 == 2'" in never.stdout
+    warning = "warning: the run came to the end without an event 'Pi1 == 2'"
+    assert never.stderr.splitlines() == [warning]
+
+
+def test_members_that_meet_no_event_are_counted(run, folder):
+    """A body turns about its first axis for ever; about the third one Pi1 changes its sign."""
+    (folder / "two.csv").write_text("Pi1,Pi2,Pi3\n1,0,0\n0.5,0,1\n")
+    words = ("--members", "two.csv", "--time", "30", "--events", "Pi1 = -0.3", "--until-event")
+    result = run("simulate", "rigid_body", *words, "--set", "I=1,2,3", "--json")
+    assert result.exit_code == 1
+    assert json.loads(result.stdout)["status"][0] == "OK"
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("warning: 1 of 2 members came to the end without an event")
 
 
 def test_a_table_and_a_picture_of_events_are_written(run, folder):

@@ -185,11 +185,44 @@ def test_random_members_are_on_the_constraints(folder):
     (folder / "suslov_0.toml").write_text(SUSLOV)
     system = load(folder / "suslov_0.toml")
     start = simulate.find_start(system, ())
-    many = find_members(system, "40", 0, Members(list(start), {}, None))
+    many = find_members(
+        system, "40", 0, Members(state=list(start), parameters={}, inputs=None, followed={})
+    )
     off = many.state[0] + 2 * many.state[1] + 2 * many.state[2]
     assert np.abs(off).max() < 1e-15
     assert np.ptp(many.state, axis=1).min() > 0.01
     assert many.origin.endswith("seed 0, moved onto the constraints")
+
+
+def test_places_begin_where_they_are_told_to(run, folder):
+    """A sleigh that begins elsewhere, turned by a right angle, makes the same way from there."""
+    words = ("simulate", "chaplygin_sleigh", "--time", "2", "--samples", "2", "--json")
+    turn = np.pi / 2
+    names = ("x", "y", "theta")
+    (folder / "places.csv").write_text("x,y\n0,0\n3,-1\n")
+    one = record_of(run(*words))
+    moved = record_of(run(*words, "--state", "x=3", "--state", "y=-1", "--state", f"theta={turn}"))
+    many = record_of(run(*words, "--members", "places.csv", "--state", f"theta={turn}"))
+    assert [moved["initial"][name] for name in names] == [3, -1, turn]
+    assert many["initial"]["theta"] == [turn, turn]
+    x, y, theta = (one["final"][name] for name in names)
+    np.testing.assert_allclose(
+        [moved["final"][each] for each in names], [3 - y, x - 1, theta + turn]
+    )
+    np.testing.assert_allclose(many["final"]["x"], [-y, 3 - y])
+    np.testing.assert_allclose(many["final"]["y"], [x, x - 1])
+    for name in ("v", "omega"):  # the state knows nothing of its place
+        assert moved["initial"][name] == one["initial"][name]
+        assert abs(moved["final"][name] - one["final"][name]) < 1e-9
+
+
+def test_names_of_places_are_told(run):
+    """An unknown name is refused with all that there is, and a wrong number of values, too."""
+    words = ("simulate", "chaplygin_sleigh", "--state")
+    assert "'z' is not one of v, omega, theta, x, y" in run(*words, "z=1").stderr
+    result = run(*words, "x=1,2")
+    assert result.exit_code == 2
+    assert "x has the shape (2,)" in result.stderr
 
 
 @pytest.mark.parametrize("members", [[], ["--members", "3"]], ids=["one", "members"])

@@ -287,6 +287,19 @@ def test_a_route_that_is_not_declared_is_added_as_advised():
 
 #: Advice that is followed in other tests.
 ELSEWHERE = {
+    "Correct the Lagrangian": "test_first_order.py: what contradicts itself has no other way out",
+    "Solve it by hand, and write what it gives in the Lagrangian": "test_first_order.py",
+    "Add the term that determines it, or leave that combination of coordinates out": (
+        "test_first_order.py"
+    ),
+    "Write follows = true for": "test_first_order.py",
+    "Remove follows = true of": "test_first_order.py",
+    "Declare the momentum of": "test_first_order.py",
+    "Take euler-lagrange if it is regular": "test_first_order.py",
+    "Let time and inputs act in the potential": "test_first_order.py",
+    "take the route first-order, without the momenta": "test_first_order.py",
+    "Choose coordinates that decouple them": "test_first_order.py, test_configuration.py",
+    "Write the Lagrangian in simpler functions": "where no point shows that a form is regular",
     "Write abs, sign, min and max of positions and parameters alone": "test_words.py",
     "Add the kinetic energy of every velocity that the constraints allow": "test_variational.py",
     "Divide the constraint, as in vz == x*vy": "test_variational.py",

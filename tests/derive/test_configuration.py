@@ -1,11 +1,16 @@
 """Routes on configuration spaces: every choice of state, and refusals that name the way out."""
 
+from fractions import Fraction
+
+import numpy as np
 import pytest
 import sympy
 
 from coadjoint import pipeline
 from coadjoint.derive import derive, make_setting
-from coadjoint.errors import DerivationError
+from coadjoint.derive.reference import Reference
+from coadjoint.derive.routes import euler_lagrange
+from coadjoint.errors import DerivationError, LimitError
 from coadjoint.prove import Verdict
 from tests.specs import prove_claims, spec
 
@@ -78,11 +83,98 @@ def test_four_coupled_velocities_are_solved_in_the_kernel_beside_momenta():
     assert len(same) >= 2
 
 
-def test_four_coupled_velocities_of_the_state_are_refused_with_a_way_out():
-    """Without momenta nothing is solved in the kernel."""
-    changes = [WITHOUT_MOMENTA, ("dot(v, v)/2", "dot(v, v)/2 + q1*v1*v2 + v2*v3/3 + v3*v4/5")]
+COUPLED = ("dot(v, v)/2", "dot(v, v)/2 + q1*v1*v2 + v2*v3/3 + v3*v4/5")
+ALONE = [WITHOUT_MOMENTA, ('"euler-lagrange", "canonical"', '"euler-lagrange"')]
+
+
+def check_accelerations(equations, mass, force):
+    """M(q, v) dv/dt = F(q, v) of four velocities at a point, both written by hand."""
+    q, v = np.array([0.1, -0.4, 0.7, 0.3]), np.array([0.5, 0.2, -0.6, 0.9])
+    names = equations.setting.state
+    point = dict(zip(names, map(Fraction, (*q, *v)), strict=True))
+    values = Reference(equations).evaluate("rhs", point, Fraction, None)
+    assert list(map(float, values[:4])) == list(v)
+    np.testing.assert_allclose(
+        np.array(values[4:], dtype=float), np.linalg.solve(mass(q, v), force(q, v)), rtol=1e-12
+    )
+
+
+def coupled_mass(q, v):
+    """d2l/dv2 of COUPLED."""
+    matrix = np.eye(4)
+    for i, j, entry in ((0, 1, q[0]), (1, 2, 1 / 3), (2, 3, 1 / 5)):
+        matrix[i, j] = matrix[j, i] = entry
+    return matrix
+
+
+def coupled_force(q, v):
+    """dl/dq - d2l/dvdq v of COUPLED: q1*v1*v2 gives v1*v2 along q1 and takes q1'*(v2, v1)."""
+    return -q + np.array([v[0] * v[1], 0, 0, 0]) - v[0] * np.array([v[1], v[0], 0, 0])
+
+
+def test_four_coupled_velocities_of_the_state_are_solved_for_in_the_kernel():
+    """M dv/dt is what a hand finds, the energy is conserved, and the bracket is one."""
+    sample = spec(FREE, COUPLED, *ALONE)
+    equations = derive(sample)
+    (solve,) = equations.exact.solves
+    assert list(solve.names) == [f"dv{n}_dt" for n in range(1, 5)]
+    check_accelerations(equations, coupled_mass, coupled_force)
+    with pytest.raises(AssertionError):
+        check_accelerations(equations, coupled_mass, lambda q, v: -q)
+    certificate = prove_claims(sample)
+    assert certificate.holds, str(certificate)
+    proved = {c.statement for c in certificate.claims if c.verdict is Verdict.PROVED}
+    assert {"the energy is conserved", "the bracket satisfies the Jacobi identity"} <= proved
+
+
+def test_four_coupled_velocities_need_no_quadratic_lagrangian():
+    """L = v.v/2 + (v.v)^2/4 - q.q/2 has M = (1 + v.v) + 2 v v^T, and F = -q."""
+    quartic = ("dot(v, v)/2", "dot(v, v)/2 + dot(v, v)^2/4")
+    equations = derive(spec(FREE, quartic, *ALONE))
+    assert len(equations.exact.solves) == 1
+    check_accelerations(
+        equations, lambda q, v: (1 + v @ v) * np.eye(4) + 2 * np.outer(v, v), lambda q, v: -q
+    )
+
+
+def test_forces_on_four_coupled_velocities_act_along_their_momenta():
+    """A force and friction go into the right side of M dv/dt, before the solve."""
+    forces = (
+        '[forces]\nv = "vector(1, 0, 0, 2)"\n[dissipation]\nR = "3*(v1^2 + v2^2 + v3^2 + v4^2)/2"\n'
+    )
+    equations = derive(spec(FREE + forces, COUPLED, *ALONE))
+
+    def force(q, v):
+        return coupled_force(q, v) + np.array([1, 0, 0, 2]) - 3 * v
+
+    check_accelerations(equations, coupled_mass, force)
+
+
+def test_two_routes_that_solve_in_the_kernel_give_the_same_motion(monkeypatch):
+    """Along a frame without constraints it is the motion of d'Alembert's principle."""
+    routes = ('"euler-lagrange"', '"nonholonomic", "euler-lagrange"')
+    sample = spec(FREE, COUPLED, *ALONE, routes)
+    statement = "nonholonomic and euler-lagrange give the same motion"
+    verdicts = {c.statement: c.verdict for c in prove_claims(sample).claims}
+    assert verdicts[statement] is Verdict.PROVED
+    right = euler_lagrange.explicit_rate
+    monkeypatch.setattr(euler_lagrange, "explicit_rate", lambda *given: right(*given) + 1)
+    verdicts = {c.statement: c.verdict for c in prove_claims(sample).claims}
+    assert verdicts[statement] is Verdict.REFUTED
+
+
+def test_more_coupled_velocities_than_the_limit_are_refused(monkeypatch):
+    """The limit is that of every solve in the kernel."""
+    monkeypatch.setattr("coadjoint.derive.mechanics.constrained.COUPLED_VELOCITIES", 3)
+    with pytest.raises(LimitError, match=r"energy couples 4 acc.* 3 .COUPLED_VEL") as caught:
+        derive(spec(FREE, COUPLED, *ALONE))
+    assert "constraints" not in str(caught.value)
+
+
+def test_the_canonical_route_writes_out_the_inverse_of_its_own_transform():
+    """Momenta of its own are a chart, which has no solve in the kernel: it says what to declare."""
     with pytest.raises(DerivationError, match=r"couples 4 of them.*Declare momenta") as caught:
-        derive(spec(FREE, *changes))
+        derive(spec(FREE, WITHOUT_MOMENTA, COUPLED), "canonical")
     assert caught.value.parts["key"] == "lagrangian.l"
 
 

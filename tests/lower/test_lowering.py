@@ -55,6 +55,7 @@ def test_lowering_is_undone_exactly(system):
         "parameter_jacobian": not equations.spec.parameters,
         "energy": equations.energy is None,
         "poisson_tensor": not equations.poisson_tensor,
+        "noise": not equations.spec.noise,
         "constraint_residual": equations.distribution is None,
         "projection": equations.projection is None,
         "reconstruction": not equations.followed,
@@ -69,7 +70,7 @@ def test_lowering_is_undone_exactly(system):
         "observables",
         "poisson_tensor",
     ]
-    named += ["constraint_residual", "projection", "reconstruction", "domain"]
+    named += ["noise", "constraint_residual", "projection", "reconstruction", "domain"]
     assert list(programs) == [name for name in named if not without.get(name)]
     for program in programs.values():
         check_inverse(equations, program)
@@ -192,6 +193,7 @@ BY_HAND = {
     "kapitza_top": 3 + 2 * 9 + 12 + 4 + 3,
     "lorenz_gyrostat": 2 + 4 + 3,  # sigma (y - x); r x - y - x z; x y - b z
     "double_bracket_body": 3 + 2 * 9 + 3 + 3,  # velocities, two cross products, alpha, sums
+    "stochastic_rigid_body": 3 + 9,  # velocities, a cross product
     "landau_lifshitz_gilbert": 3 + 2 * 9 + 3 + 3,  # K m3 + B3 and its sign; as above
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1
     "three_wave": 6 * 3 + 2,  # two products and their sum for each rate, two signs

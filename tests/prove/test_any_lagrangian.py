@@ -35,7 +35,7 @@ l = "dot(Omega, diag(I)*Omega)/2 + b*dot(Omega, Omega)^2/4"
 conserved = ["energy"]
 """
 CUBIC = ("b*dot(Omega, Omega)^2/4", "b*Omega3^3")
-KEPT = ("[claims]", '[constraints]\nplane = "Omega1 == Omega2"\n[claims]')
+KEPT = ("[claims]", '[constraints]\nplane = "2*Omega1 == 2*Omega2"\n[claims]')
 INERTIA, B = np.array([1.0, 2.0, 3.0]), 1.0
 
 

@@ -6,7 +6,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.formulas import Formula
 
-SCOPE = {"v": (3,), "w": (3,), "v1": (), "A": (3, 3), "s": ()}
+SCOPE = {"v": (3,), "w": (3,), "v1": (), "A": (3, 3), "s": (), "q": (4,), "g": (3, 4)}
 SOURCE = np.random.default_rng(11)
 VALUES = {
     "v": SOURCE.normal(size=(3, 7)),
@@ -15,6 +15,9 @@ VALUES = {
     "s": SOURCE.uniform(1, 2, size=7),
 }
 VALUES["v1"] = VALUES["v"][0]
+#: Half a turn about the middle of the first two axes, and a quarter about the third.
+TURNS = (([0, 0.5**0.5, 0.5**0.5, 0], [[0, 1, 0], [1, 0, 0], [0, 0, -1]]),
+         ([0.5**0.5, 0, 0, 0.5**0.5], [[0, -1, 0], [1, 0, 0], [0, 0, 1]]))  # fmt: skip
 
 
 def hat(a):
@@ -55,6 +58,28 @@ def test_formulas_have_the_values_of_numpy(text, by_hand):
     ]
     assert found.shape == (7,)
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(("q", "R"), TURNS)
+def test_quaternions_and_poses_turn_vectors(q, R):
+    """Two turns that one can see, their product, and the parts of a pose."""
+    R, v, w, s = np.array(R), *(VALUES[name] for name in "vws")
+    other, back = np.array(TURNS[0][0]), [q[0], *(-x for x in q[1:])]
+    quaternions = {"q": np.outer(q, s), "p": np.outer(other, np.ones(7))}  # of the length s
+    values = {**VALUES, **quaternions, "g": np.concatenate([VALUES["A"], w[:, np.newaxis]], axis=1)}
+
+    def value(text):
+        return Formula(text, {**SCOPE, "p": (4,)}, "event").evaluate(values)[0]
+
+    expected = s**2 * (w * (R @ v)).sum(axis=0)
+    np.testing.assert_allclose(value("dot(w, rotate(q, v))"), expected, rtol=1e-12)
+    np.testing.assert_allclose(value("dot(w, rotation(q)*v)"), expected, rtol=1e-12)
+    both = s**2 * (w * (R @ np.array(TURNS[0][1]) @ v)).sum(axis=0)
+    np.testing.assert_allclose(value("dot(w, rotate(qmul(q, p), v))"), both, rtol=1e-12)
+    np.testing.assert_allclose(value("dot(q, conjugate(q))"), s**2 * np.dot(q, back), atol=1e-12)
+    posed = np.einsum("ijn,jn->n", VALUES["A"], v) + w.sum(axis=0)
+    found = value("dot(vector(1, 1, 1), rotation(g)*v + translation(g))")
+    np.testing.assert_allclose(found, posed, rtol=1e-12)
 
 
 def test_the_size_of_a_formula_is_that_of_its_terms():

@@ -14,6 +14,7 @@ from tests.sources.bodies import (
     rigid_body_attitude_observables,
     rigid_body_attitude_tensor,
     rigid_body_observables,
+    rigid_body_rates,
     rigid_body_tensor,
     se3_tensor,
 )
@@ -219,6 +220,7 @@ RATES = {
     "gravity_gradient_satellite": satellite_rates,
     "kapitza_top": lambda x, p: heavy_top_rates(x, shaken(p)),
     "double_bracket_body": falling_body_rates,
+    "stochastic_rigid_body": lambda x, p: rigid_body_rates(x, p[:3]),  # Stratonovich's drift
     "landau_lifshitz_gilbert": gilbert_rates,
     "heavy_top_damped": damped_top_rates,
     "bloch": bloch_rates,
@@ -230,6 +232,7 @@ OBSERVABLES = {
     "gravity_gradient_satellite": satellite_observables,
     "kapitza_top": lambda x, p: heavy_top_observables(x, shaken(p)),
     "double_bracket_body": lambda x, p: rigid_body_observables(x, p[:3]),
+    "stochastic_rigid_body": lambda x, p: rigid_body_observables(x, p[:3]),
     "landau_lifshitz_gilbert": gilbert_observables,
     "heavy_top_damped": lambda x, p: heavy_top_observables(x, p[:8]),
     "bloch": bloch_observables,
@@ -241,6 +244,7 @@ TENSORS = {
     "gravity_gradient_satellite": lambda x, p: vehicle_tensor(x),
     "kapitza_top": lambda x, p: se3_tensor(x),
     "double_bracket_body": lambda x, p: rigid_body_tensor(x),
+    "stochastic_rigid_body": lambda x, p: rigid_body_tensor(x),
     "landau_lifshitz_gilbert": lambda x, p: rigid_body_tensor(x),
     "heavy_top_damped": lambda x, p: se3_tensor(x),
     "bloch": lambda x, p: rigid_body_tensor(x),
@@ -258,6 +262,7 @@ STATES = {
     ),
     "kapitza_top": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
     "double_bracket_body": ("Pi1", "Pi2", "Pi3"),
+    "stochastic_rigid_body": ("Pi1", "Pi2", "Pi3"),
     "landau_lifshitz_gilbert": ("m1", "m2", "m3"),
     "heavy_top_damped": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
     "bloch": ("M1", "M2", "M3"),
@@ -269,6 +274,7 @@ PARAMETERS = {
     "gravity_gradient_satellite": ("I1", "I2", "I3", "n"),
     "kapitza_top": ("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3", "a", "w"),
     "double_bracket_body": ("I1", "I2", "I3", "alpha"),
+    "stochastic_rigid_body": ("I1", "I2", "I3", "sigma1", "sigma2", "sigma3"),
     "landau_lifshitz_gilbert": ("gamma", "alpha", "B1", "B2", "B3", "K"),
     "heavy_top_damped": (
         *("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3"),

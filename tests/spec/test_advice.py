@@ -44,6 +44,7 @@ v = { role = "velocity", of = "q" }
 h = "v^2/2 + q^2/2"
 [claims]
 """
+WITH_ROTOR = 's = { role = "coordinate" }\nu = { role = "velocity", of = "s" }\n[parameters]'
 CANONICAL_ROUTE = 'routes = ["canonical"]'
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
@@ -66,6 +67,20 @@ def before_claims(lines):
     """Further tables."""
     return write(END, f"{lines}\n{END}")
 
+
+#: A component of its velocity is given.
+BODY_OF_AXES = """
+title = "A body that does not turn about its third axis"
+routes = ["nonholonomic"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+[lagrangian]
+l = "dot(Omega, Omega)/2"
+[constraints]
+plane = "Omega3 == 0"
+"""
 
 MOMENTUM = '"momentum"'
 
@@ -93,6 +108,13 @@ ADVICE = [
         [*of_unit("kg m^2/s"), ('"velocity"', '"velocity", unit = "m/s"')],
         'Write unit = "1/s".',
         write("m/s", "1/s"),
+    ),
+    # -- constraints
+    (
+        BODY_OF_AXES,
+        write('"velocity"', '"velocity", default = [1, 2, 3]'),
+        "Write 0 in the place of Omega3.",
+        write("[1, 2, 3]", "[1, 2, 0]"),
     ),
     # -- blocks
     (
@@ -275,6 +297,25 @@ ADVICE = [
         "Remove [metriplectic] or [double_bracket].",
         write('[metriplectic]\nG = "1"\nS = "1"\n', ""),
     ),
+    # -- noise
+    (
+        RIGID_BODY,
+        write(END, '[noise]\nPi = "I1"\n[claims]'),
+        'Write its Hamiltonian: with {q, p} = 1, dW1 = "-a*q" adds a o dW1 to dp.',
+        write('Pi = "I1"', 'dW1 = "I1*Pi1"'),
+    ),
+    (
+        CANONICAL,
+        write("[hamiltonian]", '[noise]\ndW1 = "vector(0, B)"\n[hamiltonian]'),
+        'Write its Hamiltonian: with {q, p} = 1, dW1 = "-a*q" adds a o dW1 to dp.',
+        write('"vector(0, B)"', '"-B*q1"'),
+    ),
+    (
+        RIGID_BODY,
+        write(END, '[noise]\ndW1 = "Pi1"\n[inputs]\nu = { default = 0 }\n[claims]'),
+        "Remove [inputs], or declare it in a spec of its own, without [noise].",
+        write("[inputs]\nu = { default = 0 }\n", ""),
+    ),
     (
         RIGID_BODY,
         write("= { shape = [3], positive", '= { rate = "v" }\nJ = { shape = [3], positive')
@@ -362,6 +403,12 @@ ADVICE = [
         write('Pi = { role = "momentum"', 'Pi = { role = "momentum", shape = [3]'),
         "Remove shape.",
         write(", shape = [3] }\n\n", " }\n\n"),
+    ),
+    (
+        LAW,
+        write('x = { role = "coordinate"', 'x = { role = "coordinate", follows = true'),
+        "Remove follows.",
+        write(", follows = true", ""),
     ),
     (
         TOP,
@@ -567,6 +614,25 @@ ADVICE = [
             'Omega = { role = "velocity", block = ["J1", "J2", "J3"] }\n[reconstruction]',
         ),
     ),
+    # -- attitudes, and coordinates next to an algebra
+    (
+        RIGID_BODY.replace("so(3)", "sl(2,R)"),
+        write("Pi = {", 'g = { role = "attitude" }\nPi = {'),
+        'For another group write role = "advected" and representation = "attitude".',
+        write('role = "attitude"', 'role = "advected", representation = "attitude"'),
+    ),
+    (
+        RIGID_BODY,
+        write("Pi = {", 'q = { role = "quaternion", default = [1, 1, 0, 0] }\nPi = {'),
+        "Leave it out to begin at the identity.",
+        write(", default = [1, 1, 0, 0]", ""),
+    ),
+    (
+        RIGID_BODY.replace('Pi = { role = "momentum" }\n', "").replace("dot(Pi, Pi)", "Omega1"),
+        write("[parameters]", WITH_ROTOR),
+        'With velocities as the state it may: write routes = ["nonholonomic"] at the top.',
+        write(BOTH, 'routes = ["nonholonomic"]'),
+    ),
     # -- form of the file
     (
         RIGID_BODY,
@@ -745,6 +811,10 @@ BAD = [
     ('[forces]\nOmega = "Omega1"', "forces.Omega", "a scalar", "a 3-vector, as 'Omega' is"),
     ('[double_bracket]\nG = "Pi"', "double_bracket.G", "a 3-vector", "a 3 x 3 matrix"),
     ('[friction]\nR = "1"', "friction", "friction", "dissipation, double_bracket"),
+    ('[noise]\ndW1 = "Pi"', "noise.dW1", "Pi", "need not keep the bracket"),
+    ('[noise]\ndW1 = "Omega1"', "noise.dW1", "Omega1", "a Hamiltonian of noise"),
+    ('[noise]\nPi2 = "1"', "noise.Pi2", "Pi2", "the name of a Wiener process"),
+    ('[noise]\nI = "Pi1"', "noise.I", "I", "has that name too"),
     ('[dissipation]\nr = "1"', "dissipation.r", "r", "one of R. Did you mean 'R'?"),
 ]
 

@@ -17,16 +17,49 @@ def given(*lines, text=PARTICLE, more=()):
 
 
 def test_a_side_that_is_one_velocity_gives_it():
-    """On either side; a multiple, a component and a side that names it on the right give none."""
+    """On either side; a multiple and a side that names it on the right give none."""
     assert given('c = "w == y*u"') == {"w": ("c", 1)}
     assert given('c = "y*u == w"') == {"w": ("c", -1)}
     assert given('c = "w - y*u == 0"') == {}
     assert given('c = "2*w == y*u"') == {}
     assert given('c = "w == y*u - w"') == {}
-    assert (
-        given('c = "Omega3 == 0"', text=BALL.replace('rolling = "Y == cross(Omega, s)"', BLADE))
-        == {}
-    )
+
+
+#: The ball with other constraints.
+FREE_BALL = BALL.replace('rolling = "Y == cross(Omega, s)"', BLADE)
+
+
+def test_a_side_that_is_a_component_gives_it():
+    """The others are the state, each by its own name; the whole is still a vector in formulas."""
+    assert given('c = "Omega3 == 0"', text=FREE_BALL) == {"Omega3": ("c", 1)}
+    assert given('c = "r*Omega1 + 1 == Omega3"', text=FREE_BALL) == {"Omega3": ("c", -1)}
+    ball = spec(FREE_BALL, (BLADE, 'c = "Omega3 == 0"'))
+    names = ["Omega1", "Omega2", "Y", "Gamma"]
+    assert [v.name for v in ball.state] == names
+    assert [v.name for v in ball.defined] == ["Omega3"]
+
+
+@pytest.mark.parametrize(
+    "second",
+    ["Omega3 == Omega1*Omega3", "Omega3 == dot(Omega, s)", "Omega3 == Y1", "2*Omega3 == 0"],
+)
+def test_a_component_that_depends_on_itself_is_kept(second):
+    """By its name, by that of the whole, or through what an earlier constraint gives."""
+    lines = 'a = "Y == cross(Omega, s)"', f'c = "{second}"'
+    assert given(*lines, text=FREE_BALL) == {"Y": ("a", 1)}
+
+
+def test_a_velocity_is_given_once():
+    """A component of what is given gives nothing more, nor does the whole of a component."""
+    lines = 'a = "Y == cross(Omega, s)"', 'c = "Y1 == 0"'
+    assert given(*lines, text=FREE_BALL) == {"Y": ("a", 1)}
+    assert given(*reversed(lines), text=FREE_BALL) == {"Y1": ("c", 1)}
+
+
+def test_a_parameter_may_be_called_like_a_component():
+    """Of a vector with fewer components; it is no velocity."""
+    more = [("[parameters]", "[parameters]\nOmega9 = { default = 1 }")]
+    assert given('c = "Omega9 == Omega3"', text=FREE_BALL, more=more) == {"Omega3": ("c", -1)}
 
 
 def test_of_two_velocities_alone_the_left_one_is_given():

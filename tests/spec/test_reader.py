@@ -190,6 +190,11 @@ SHIPPED = {
         "I1 I2 I3 alpha",
         ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
     ),
+    "stochastic_rigid_body": (
+        "Pi1 Pi2 Pi3",
+        "I1 I2 I3 sigma1 sigma2 sigma3",
+        ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
+    ),
     "landau_lifshitz_gilbert": ("m1 m2 m3", "gamma alpha B1 B2 B3 K", ("lie-poisson", "nambu")),
     "quadrotor": (
         " ".join(STATES["quadrotor"]),
@@ -232,7 +237,7 @@ def test_shipped_specs_have_the_state_and_parameters_of_the_books(system):
     canonical = canonical and spec.algebra is None
     named = spec.reduction or spec.constraints
     assert spec.casimirs or canonical or named or system in ("affine_line", "guiding_centre")
-    changes = spec.is_driven or spec.time is not None
+    changes = spec.is_driven or spec.noise or spec.time is not None
     assert changes or spec.conserved[0].formula.text == "energy" or system == "ball_on_turntable"
     assert changes or "Holm" in spec.source or system in BEYOND
 

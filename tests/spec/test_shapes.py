@@ -50,6 +50,10 @@ SCOPE = {
         ("diag(q)", (4, 4)),
         ("diag(A)", (3,)),
         ("norm(q)", ()),
+        ("qmul(q, conjugate(q))", (4,)),
+        ("rotate(q, u)", (3,)),
+        ("rotation(q)*A", (3, 3)),
+        ("rotation(C)*translation(C)", (2,)),
         ("outer(u, q)", (3, 4)),
         ("rows(u, w)", (2, 3)),
         ("rows(q)", (1, 4)),
@@ -69,7 +73,7 @@ def test_shape_of_what_fits(text, shape):
 
 def test_every_function_is_tried_above():
     """No function of the table is missing from the test above."""
-    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(37))
+    texts = " ".join(test_shape_of_what_fits.pytestmark[0].args[1][n][0] for n in range(41))
     assert all(f"{name}(" in texts for name in FUNCTIONS)
 
 

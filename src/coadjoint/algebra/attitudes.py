@@ -8,6 +8,7 @@ which an attitude is advected like anything else: a left-invariant motion ``dg/d
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from coadjoint.algebra.families import quaternion_unit
@@ -64,6 +65,12 @@ def turning_places(algebra: LieAlgebra) -> tuple[int, int, int] | None:
     }
     named = {pair: {places[k]: x for k, x in row.items()} for pair, row in _ROTATIONS.items()}
     return (a, b, c) if constants == named else None
+
+
+def are_rotations(matrices: Sequence[SparseMatrix]) -> bool:
+    """Whether matrices turn about the three axes of space: those of ``v -> e_i x v``."""
+    axes = ((2, 1), (0, 2), (1, 0))
+    return list(map(dict, matrices)) == [{(i, j): 1, (j, i): -1} for i, j in axes]
 
 
 def quaternion(algebra: LieAlgebra, invariance: str = "left") -> Representation:

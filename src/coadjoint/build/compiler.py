@@ -41,7 +41,7 @@ _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
 #: Contraction of a*b + c into one rounding is the only difference between the builds: without it
 #: every operation rounds as NumPy's does. -fno-math-errno lets sqrt be vectorised, same value.
 BUILDS: Mapping[str, str] = {"exact": "-ffp-contract=off", "fast": "-ffp-contract=fast"}
-_FLAGS = ("-std=c11", "-O3", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
+_FLAGS = ("-std=c11", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedantic")
 #: What suits this processor, tried in this order. GCC and clang know registers of 512 bits and
 #: prefer 256 on many processors that have them; without such registers the option says nothing
 #: (docs/decisions/vector-width.md has the figures). Compilers of other processors refuse it.
@@ -77,11 +77,13 @@ class Source:
         stem: Name of the C file and of its header without their endings.
         defines: Options that choose what is compiled of it, such as ``-DRK4``.
         is_loops: Whether it is long straight loops over members, which need fewer passes of GCC.
+        level: How much is optimised: 3 for what users run, 0 for what is run for some steps alone.
     """
 
     stem: str = "kernel"
     defines: tuple[str, ...] = ()
     is_loops: bool = True
+    level: int = 3
 
     @property
     def files(self) -> tuple[str, str]:
@@ -120,7 +122,8 @@ class Compiler:
     ) -> tuple[str, ...]:
         """Options for one build of a source, ``exact`` or ``fast``, on one of `MACHINES`."""
         own = _GNU if self.is_gnu and source.is_loops else ()
-        return (*_FLAGS, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
+        level = f"-O{source.level}"
+        return (*_FLAGS, level, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
 
 
 def find_compiler() -> Compiler:

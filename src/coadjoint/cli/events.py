@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from coadjoint.cli.output import print_table, say
+from coadjoint.cli.output import plural, print_table, say
 from coadjoint.files import check_writable
 
 if TYPE_CHECKING:
@@ -140,10 +140,24 @@ class Asked:
         if self.section is not None:
             solution.events.plot(self.section, self._axes)
 
+    def warn(self, solution: Solution) -> None:
+        """Say on standard error where a run that was to end at an event has met none."""
+        late = _list_statuses(solution).count("OK") if self.until_event else 0
+        if late:
+            who = (
+                f"{late} of {plural(solution.batch[0], 'member')}" if solution.batch else "the run"
+            )
+            sought = " or ".join(map(repr, self.formulas))
+            say(f"warning: {who} came to the end without an event {sought}", err=True)
+
     def has_arrived(self, solution: Solution) -> bool:
         """Whether all trajectories ended as they were to: at an event, or else at the end."""
-        statuses = solution.status.ravel() if solution.batch else [solution.status]
-        return all(status == ("EVENT" if self.until_event else "OK") for status in statuses)
+        return set(_list_statuses(solution)) == {"EVENT" if self.until_event else "OK"}
+
+
+def _list_statuses(solution: Solution) -> list[str]:
+    """How the trajectories ended."""
+    return list(solution.status.ravel().tolist() if solution.batch else [solution.status])
 
 
 def take_events(options: dict[str, Any]) -> Asked:

@@ -29,13 +29,17 @@ SHOWN: Final = 50
 members_option = click.option(
     "--members",
     metavar="FILE|N",
-    help="Many trajectories: a CSV file with a column for each component of state, parameters or "
-    "inputs that differs, and a row for each member; or a number of members with random states, "
-    f"each component within {100 * SPREAD:g} % of the largest of its quantity around the start, "
-    "uniformly.",
+    help="Many trajectories: a CSV file with a column for each component that differs, of state, "
+    "parameters, inputs or what is reconstructed, and a row for each member; or a number of "
+    f"members with random states, each component within {100 * SPREAD:g} % of the largest of its "
+    "quantity around the start, uniformly.",
 )
 seed_option = click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of random members."
+    "--seed",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Of random members, and of noise.",
 )
 
 
@@ -47,12 +51,14 @@ class Members:
         state: ``(n, N)``, of one ``(n,)``.
         parameters: By name, ``(N,)`` where they differ.
         inputs: Likewise; None for the defaults.
+        followed: Where what is reconstructed begins, likewise; defaults are left out.
         origin: Where members come from, for a reader; "" of one trajectory.
     """
 
     state: Any
     parameters: Mapping[str, Any]
     inputs: Mapping[str, Any] | None
+    followed: Mapping[str, Any]
     origin: str = ""
 
 
@@ -106,22 +112,33 @@ def _read(system: System, path: Path, one: Members) -> Members:
     import numpy as np
 
     columns = _read_columns(path)
-    known = [system.STATE.components, system.PARAMETERS.components, system.INPUTS.components]
+    tables = (system.STATE, system.PARAMETERS, system.INPUTS, system.RECONSTRUCTED)
+    known = [each.components for each in tables]
     for name in columns:
         if not any(name in names for names in known):
             listed = ", ".join(each for names in known for each in names)
             raise _refuse(f"{path}: the column {name!r} is none of {listed}.")
     count = len(next(iter(columns.values())))
     state = np.tile(np.asarray(one.state)[:, np.newaxis], count)
-    own: list[dict[str, Any]] = [{}, {}]  # parameters and inputs
+    own: list[dict[str, Any]] = [{}, {}, {}]  # parameters, inputs, what is reconstructed
     for name, values in columns.items():
-        if name in known[0]:
+        place = next(n for n, names in enumerate(known) if name in names)
+        if place == 0:
             state[known[0].index(name)] = values
         else:
-            own[name not in known[1]][name] = np.array(values)
-    all_parameters = _spread(system.PARAMETERS, one.parameters) | own[0]
-    all_inputs = _spread(system.INPUTS, one.inputs or {}) | own[1]
-    return Members(state, all_parameters, all_inputs or None, f"rows of {path}")
+            own[place - 1][name] = np.array(values)
+    given = (one.parameters, one.inputs or {}, one.followed)
+    parameters, inputs, followed = (
+        _spread(table, values) | differing
+        for table, values, differing in zip(tables[1:], given, own, strict=True)
+    )
+    return Members(
+        state=state,
+        parameters=parameters,
+        inputs=inputs or None,
+        followed=followed,
+        origin=f"rows of {path}",
+    )
 
 
 def _spread(quantities: Any, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -207,6 +224,8 @@ def print_members(solution: Solution, origin: str) -> None:
     say(f"status: {solution.message or arrived}")
     if solution.course.stepwise:
         say(solution.course.tell_stepwise())
+    if solution.course.keeps:
+        say(solution.course.tell_keeps())
 
 
 def describe_members(solution: Solution, origin: str) -> dict[str, Any]:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
 
+#: Steps of a run with noise for which none is given, at the least.
+LEAST_STEPS = 1000
 Assignment = tuple[str, list[float]]
 
 
@@ -69,9 +71,9 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 )
 @_repeatable(
     "--state",
-    help="Initial value of a variable or component, e.g. Pi=1,0,0, or of the whole state, e.g. "
-    "1,0,0. Default: that of the spec, else 1 for scalars and unit vectors, projected onto the "
-    "constraints. Repeatable.",
+    help="Initial value of a variable or component, also of a reconstructed one, e.g. Pi=1,0,0, or "
+    "of the whole state, e.g. 1,0,0. Default: that of the spec, else 1 for scalars and unit "
+    "vectors, projected onto the constraints. Repeatable.",
 )
 @click.option(
     "--time", type=float, default=10.0, show_default=True, help="Length of the simulation."
@@ -83,12 +85,15 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     default="auto",
     show_default=True,
     help="taylor, dop853 or rk4, which are generated, or scipy:NAME; auto is taylor where it "
-    "applies.",
+    "applies. With noise: heun, or midpoint, which auto is.",
 )
 @click.option("--rtol", type=float, help="Relative tolerance. Default: 1e-10.")
 @click.option("--atol", type=float, help="Absolute tolerance. Default: 1e-12.")
 @click.option(
-    "--step", type=float, help="A fixed step for a generated method, in the place of tolerances."
+    "--step",
+    type=float,
+    help="A fixed step for a generated method, in the place of tolerances. Default with noise: a "
+    "part of the distance of samples, 1000 steps or more.",
 )
 @click.option(
     "--threads",
@@ -156,11 +161,17 @@ def command(
         check_traced(loaded)
     given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
     driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
-    run = Members(find_start(loaded, state, given, driven), given, driven)
+    state, followed = take_reconstructed(loaded, state)
+    start = find_start(loaded, state, given, driven)
+    run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
+    if "noise" in loaded.functions:
+        spaces = max(1, options["samples"] - 1)
+        steps = spaces * -(-LEAST_STEPS // spaces)
+        options |= {"seed": seed, "step": options["step"] or time / steps}
     if members is not None:
         run = find_members(loaded, members, seed, run)
-    options |= {"events": asked.events, "reconstruct": bool(loaded.RECONSTRUCTED)}
+    options |= {"events": asked.events, "reconstruct": run.followed or bool(loaded.RECONSTRUCTED)}
     solution = loaded.simulate(run.state, (0.0, time), run.parameters, run.inputs, **options)
     _show(loaded, solution, run.origin, as_json=as_json)
     if table is not None:
@@ -170,6 +181,7 @@ def command(
     if trace is not None:
         solution.trace(trace)
     asked.write(solution)
+    asked.warn(solution)
     return 0 if asked.has_arrived(solution) else 1
 
 
@@ -186,6 +198,27 @@ def _check_outputs(table: Path | None, *pictures: Path) -> None:
         from coadjoint.solve.plot import check_picture  # which needs NumPy
 
         check_picture(picture)
+
+
+def take_reconstructed(
+    system: System, given: Iterable[Assignment]
+) -> tuple[list[Assignment], dict[str, list[float] | float]]:
+    """What is given of the state, and what is given of what is reconstructed, by name.
+
+    Raises:
+        KernelArgumentError: A name is unknown.
+    """
+    state, below = [], []
+    for name, values in given:
+        if name in (*system.RECONSTRUCTED, *system.RECONSTRUCTED.components):
+            below.append((name, values))
+        else:
+            state.append((name, values))
+            if name and system.RECONSTRUCTED:  # a message names all that there is
+                type(system.STATE)(*system.STATE.values(), *system.RECONSTRUCTED.values()).rows(
+                    name
+                )
+    return state, chosen_parameters(system.RECONSTRUCTED, below)
 
 
 def find_start(
@@ -275,6 +308,8 @@ def _print(system: System, solution: Solution) -> None:
     say(": ".join(filter(None, ("status", solution.status, solution.message))))
     if solution.course.stepwise:
         say(solution.course.tell_stepwise())
+    if solution.course.keeps:
+        say(solution.course.tell_keeps())
 
 
 def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:

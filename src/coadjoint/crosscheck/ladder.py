@@ -28,6 +28,7 @@ from coadjoint.crosscheck.bits import compare_chunks, equal_bits
 from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
+from coadjoint.crosscheck.replay import Replayed
 from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
@@ -124,11 +125,11 @@ def crosscheck(
     """
     chosen = available_targets() if targets is None else tuple(targets)
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
-    subject = Subject(programs, reference, system, chosen)
+    subject = Subject(programs, Replayed(reference), system, chosen)
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
-            kind: start_compiling(pool, texts, folder, chosen, kind)
+            kind: start_compiling(pool, texts, folder, chosen, kind, noisy="noise" in programs)
             for kind in list_kinds(programs)
         }
         loading = pool.submit(system.load_kernels, chosen)

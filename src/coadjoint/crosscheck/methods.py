@@ -65,6 +65,33 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
     return state
 
 
+def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
+    """Heun's method, and between its ends a straight line."""
+    first = rates(x, number(Fraction(0)))
+    later = rates([a + h * k for a, k in zip(x, first, strict=True)], h)
+    half = h * number(Fraction(1, 2))
+    end = [a + half * (b + c) for a, b, c in zip(x, first, later, strict=True)]
+    return _draw_line(x, end, h, after)
+
+
+def midpoint(rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int) -> Row:
+    """The implicit midpoint by so many sweeps, and between its ends a straight line."""
+    half, middle = h * number(Fraction(1, 2)), list(x)
+    for _ in range(sweeps):
+        middle = [a + half * k for a, k in zip(x, rates(middle, half), strict=True)]
+    two = number(Fraction(2))
+    end = [minus(two * m, a) for a, m in zip(x, middle, strict=True)]
+    return _draw_line(x, end, h, after)
+
+
+def _draw_line(x: Row, end: Row, h: Any, after: Any) -> Row:
+    """A straight line from one state to another, after a part of the step."""
+    if after is h:
+        return end
+    part = after / h
+    return [a + part * minus(b, a) for a, b in zip(x, end, strict=True)]
+
+
 #: What the text has for a sixth, which is no double.
 SIXTH: Final = Fraction(float(Fraction(1, 6)))
 

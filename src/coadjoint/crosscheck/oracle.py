@@ -59,9 +59,9 @@ class OutsideDomain(Exception):  # noqa: N818  # not an error: a point that says
     """The equations have no value at a point, or none that doubles could find."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Bounded:
-    """A value to 50 digits and the envelope of what rounding may do to it.
+    """A value to 50 digits and the envelope of what rounding may do to it; neither ever changes.
 
     Attributes:
         value: The exact value, up to 60 digits.
@@ -75,9 +75,10 @@ class Bounded:
         return Bounded(self.value + other.value, self.envelope + other.envelope)
 
     def __mul__(self, other: Bounded) -> Bounded:
-        mine, theirs = abs(self.value) * other.envelope, abs(other.value) * self.envelope
-        both = _UNIT * self.envelope * other.envelope  # where both factors cancel to nothing
-        return Bounded(self.value * other.value, max(mine + theirs, both))
+        one, two, mine, theirs = self.value, other.value, self.envelope, other.envelope
+        size = abs(one) * theirs + abs(two) * mine
+        both = _UNIT * mine * theirs  # where both factors cancel to nothing
+        return Bounded(one * two, size if size >= both else both)
 
     def __truediv__(self, other: Bounded) -> Bounded:
         size = abs(other.value)

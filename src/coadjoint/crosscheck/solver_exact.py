@@ -8,9 +8,10 @@ Read next: `coadjoint.crosscheck.solver_steps`, which compares steps with them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
+from fractions import Fraction
 from functools import partial
 from typing import Any, Final
 
@@ -33,12 +34,13 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import ORDER, Advance
+from coadjoint.crosscheck.solver_objects import NOISY, ORDER, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import run
 from coadjoint.render.solvers import SolverText
 from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.normals import draw_normals
 
 #: When members begin.
 START: Final = 0.5
@@ -51,6 +53,12 @@ SHORTEST: Final = 2.0**-24
 NOTHING: Final = Decimal("1e-40")
 #: The part of a step after which there is a sample.
 PART: Final = 0.375
+#: Of the noise of members, and the largest size of its normal numbers, which some have beyond it.
+SEED: Final = 0x243F6A8885A308D3
+BOUND: Final = 0.75
+#: Sweeps of an implicit step in 60 digits, and those that bound its roundings, of which each is a
+#: fraction of the one before. Steps with noise are this part of others, so that sweeps end soon.
+SWEEPS, BOUNDING_SWEEPS, NOISY_PART = 120, 8, 0.125
 
 
 @dataclass(frozen=True)
@@ -83,6 +91,8 @@ class Solvers:
             atol=TOLERANCE,
             size=size,
             max_steps=steps,
+            seed=SEED,
+            bound=BOUND,
         )
         ensemble.begin(START)
         return ensemble
@@ -120,6 +130,7 @@ def find_steps(
 
     The step is made shorter where none has one: its stages are outside of where rates have values.
     """
+    size = size * NOISY_PART if method in NOISY else size
     samples = np.array([START + PART * size, START + size])
     known = dict(list_exact_steps(solvers, method, batch, samples))
     if not known and size > SHORTEST:
@@ -136,7 +147,8 @@ def list_exact_steps(
         point = find_point(solvers, batch, member)
         try:
             with localcontext(CONTEXT):
-                step = _exact_step(solvers, method, point, after, length)
+                noise = find_noise(solvers, member, length) if method in NOISY else []
+                step = _exact_step(solvers, method, point, after, length, noise)
                 if "projection" in solvers.subject.programs:
                     step = _project(solvers, point, step, after, length)
         except (OutsideDomain, ArithmeticError):
@@ -155,21 +167,40 @@ def find_point(solvers: Solvers, batch: Batch, member: int) -> dict[str, float]:
 
 
 def _exact_step(
-    solvers: Solvers, method: str, point: Mapping[str, float], after: float, length: float
+    solvers: Solvers,
+    method: str,
+    point: Mapping[str, float],
+    after: float,
+    length: float,
+    noise: Sequence[float],
 ) -> ExactStep:
-    """A step of one member: values from the equations, envelopes and depth from what is printed."""
+    """A step of one member: values from the equations, envelopes and depth from what is printed.
+
+    The noise of the step, its increments over its length, is given.
+    """
     if method == "taylor":
         return _exact_taylor(solvers, point, after, length)
     program, h, part = solvers.subject.programs["rhs"], exact(length), exact(after)
-    reference = partial(solvers.subject.reference.evaluate, "rhs")
-    step = methods.rk4 if method == "rk4" else methods.dop853
+    reference, programs = solvers.subject.reference.evaluate, solvers.subject.programs
+    step: Any = getattr(methods, method)
+    bounding = step
+    if method == "midpoint":
+        step, bounding = (partial(step, sweeps=n) for n in (SWEEPS, BOUNDING_SWEEPS))
+
+    def by_printed(function: str, known: Any, number: Any, apply: Any) -> Any:
+        return run(programs[function], known, number, apply)
 
     def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
         def at(x: methods.Row, after: Any) -> methods.Row:
             known = dict(zip(program.state, x, strict=True))
             for name, first in given.items():
                 known[name] = first[0] if len(first) == 1 else first[0] + after * first[1]
-            return list(evaluate(known, number, apply))
+            rows = list(evaluate("rhs", known, number, apply))
+            fields = list(evaluate("noise", known, number, apply)) if noise else []
+            for place, field in enumerate(fields):
+                increment = number(Fraction(noise[place % len(noise)]))
+                rows[place // len(noise)] = rows[place // len(noise)] + field * increment
+            return rows
 
         return at
 
@@ -178,16 +209,27 @@ def _exact_step(
     bounded = {name: tuple(map(exact, values)) for name, values in given.items()}
     levels = {name: (Levels(0),) * len(values) for name, values in given.items()}
     by_equations = rates(reference, exact, call, bounded)
-    by_program = rates(partial(run, program), exact, call, bounded)
-    counted = rates(partial(run, program), level_of, lambda _, of: Levels(of.count + 1), levels)
+    by_program = rates(by_printed, exact, call, bounded)
+    counted = rates(by_printed, level_of, lambda _, of: Levels(of.count + 1), levels)
     rows = []
     for end in (part, h):
         values = step(by_equations, begin, h, end, exact)
-        sizes = step(by_program, begin, h, end, exact)
+        sizes = bounding(by_program, begin, h, end, exact)
         rows.append([_with_size(a.value, b) for a, b in zip(values, sizes, strict=True)])
     zeros, part_level = [Levels(0)] * len(begin), Levels(0)
-    depth = step(counted, zeros, Levels(0), part_level, level_of)
+    depth = bounding(counted, zeros, Levels(0), part_level, level_of)
     return ExactStep(rows[0], rows[1], max(each.count for each in depth))
+
+
+def find_noise(solvers: Solvers, member: int, length: float) -> list[float]:
+    """The increments of a member over the length of its first step, as solvers take them."""
+    first, none = np.array([member], np.uint64), np.zeros(1, np.uint64)
+    count = len(solvers.subject.programs["noise"].outputs) // len(
+        solvers.subject.programs["rhs"].state
+    )
+    normals = (float(draw_normals(SEED, first, none, k)[0]) for k in range(count))
+    root = math.sqrt(length)
+    return [min(max(normal, -BOUND), BOUND) * root / length for normal in normals]
 
 
 def _project(

@@ -9,7 +9,7 @@ Read next: `coadjoint.crosscheck.solver_steps`.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -27,6 +27,7 @@ from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
 from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
+from coadjoint.solve.stochastic import METHODS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
@@ -37,6 +38,14 @@ CHOICES: Final = {
     "dop853": Choice("dop853", 8),
     "rk4": Choice("rk4", 4),
 }
+#: Those of systems with noise, in addition.
+NOISY: Final = {"heun": Choice("heun", 2), "midpoint": Choice("midpoint", 2)}
+_ALL: Final = {**CHOICES, **NOISY}
+
+
+def list_choices(functions: Collection[str]) -> dict[str, Choice]:
+    """The methods of a system, by the names of its functions."""
+    return _ALL if "noise" in functions else CHOICES
 
 
 class Advance(Protocol):
@@ -50,7 +59,7 @@ class Advance(Protocol):
 def compile_solver(
     texts: Mapping[str, str], folder: Path, method: str, build: str, what: SolverKind = SOLVER
 ) -> Path:
-    """The object of a method.
+    """The object of a method: the exact build is not optimised, which changes no bit.
 
     Args:
         texts: The files of the solver in C.
@@ -62,7 +71,9 @@ def compile_solver(
     Raises:
         CompilerError: The compiler failed.
     """
-    compiler, kind = find_compiler(), replace(CHOICES[method], kind=what).source
+    level = 0 if build == "exact" else 3
+    compiler, kind = find_compiler(), replace(_ALL[method], kind=what).source
+    kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
     sources = {file: texts[file].encode() for file in kind.files}
@@ -127,7 +138,15 @@ class NumpySolver:
             )
         if name == "dop853":
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
-        return RungeKutta4(rates, size, branches=self.branches)
+        if name == "rk4":
+            return RungeKutta4(rates, size, branches=self.branches)
+        return METHODS[name](
+            rates=rates,
+            fields=self._fields,
+            size=size,
+            seed=ensemble.seed,
+            bound=ensemble.bound,
+        )
 
     def advance(self, name: str) -> Advance:
         """What goes on by a method."""
@@ -145,6 +164,10 @@ class NumpySolver:
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
+
+    def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        rows = self._evaluate("noise", lanes, after, state)
+        return rows.reshape(len(state), -1, state.shape[1])
 
     def _evaluate(self, function: str, lanes: Lanes, after: Array, state: Array) -> Array:
         driving = lanes.driving + after * lanes.slopes

@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import CHOICES, ORDER
+from coadjoint.crosscheck.solver_objects import ORDER, list_choices
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -201,14 +201,17 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    equal = dict.fromkeys(CHOICES, 0)
+    choices = list_choices(solvers.subject.programs)
+    equal = dict.fromkeys(choices, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed, keeps in _runs(batch, size):
+        if method not in choices:
+            continue
         targets = solvers.advance[method]
         found, rows = {}, len(solvers.subject.programs["rhs"].state)
         for target, most in (("numpy", MOST_STEPS), ("c", 3 if keeps else 5)):
             ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS)
-            record = Record.make(rows, CHOICES[method].degree, given.size * MOST_STEPS + ROOM)
+            record = Record.make(rows, choices[method].degree, given.size * MOST_STEPS + ROOM)
             for _ in range(2 * MOST_STEPS):
                 if not targets[target](ensemble, most, record if keeps else None):
                     break
@@ -248,6 +251,8 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "taylor", given, 0.0, True
         yield "dop853", given, 0.0, True
         yield "rk4", given, size * 0.3125, True
+        yield "heun", given, size * 0.3125, True
+        yield "midpoint", given, size * 0.3125, False
     yield "taylor", batch, size * 0.75, True
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
@@ -263,8 +268,9 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
     Raises:
         CrossCheckError: Two are further apart.
     """
-    few, together = _take_few(solvers, batch), dict.fromkeys(CHOICES, 0)
-    for method in CHOICES:
+    few = _take_few(solvers, batch)
+    together = dict.fromkeys(list_choices(solvers.subject.programs), 0)
+    for method in together:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)
         for target in ("numpy", "c"):

@@ -21,7 +21,13 @@ from coadjoint.lower.program import Node, Program
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import TEMPLATES, Row, name_solver
-from coadjoint.render.solvers import FunctionText, Line, SolverText, arrange_function
+from coadjoint.render.solvers import (
+    FunctionText,
+    Line,
+    SolverText,
+    arrange_function,
+    describe_noise,
+)
 from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c import solver_reader as c_reader
@@ -237,6 +243,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "state": _rows(program.state),
             "parameters": _rows(program.parameters),
             "driving": {name: rows for name, rows in driving.items() if rows},
+            **describe_noise(texts.programs),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),

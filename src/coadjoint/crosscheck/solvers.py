@@ -27,10 +27,12 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
+    NOISY,
     Advance,
     Function,
     NumpySolver,
     compile_solver,
+    list_choices,
     load_numpy,
     load_solver,
 )
@@ -83,11 +85,13 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
+    noisy: bool = False,
 ) -> Compiling:
     """Have the objects of some targets compiled in a private folder."""
+    objects = (*OBJECTS, *((method, "c", "exact") for method in NOISY if noisy))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
-        for method, target, build in OBJECTS
+        for method, target, build in objects
         if target in targets
     }
 
@@ -121,7 +125,8 @@ def check_solvers(
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
     numpy = NumpySolver(*load_numpy(texts[kind.files[2]]), functions, _list_strict(subject))
-    solvers = Solvers(subject, text, _load(subject.system.name, numpy, compiling, kind))
+    advance = _load(subject.system.name, numpy, compiling, kind)
+    solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
     size = choose_size(solvers, batch)
@@ -151,7 +156,8 @@ def _load(
     system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
 ) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    advance = {method: {"numpy": numpy.advance(method)} for method in CHOICES}
+    methods = list_choices(numpy.functions)
+    advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), system, kind)
     return advance
@@ -159,7 +165,8 @@ def _load(
 
 def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
     """The functions of the NumPy kernel by their names in the texts of solvers."""
-    bounds = [name for name in ("domain", "projection") if name in subject.programs]
+    others = ("domain", "projection", "noise")
+    bounds = [name for name in others if name in subject.programs]
     found = {name: _numpy_function(subject, (name,)) for name in bounds}
     found["rates"] = _numpy_function(subject, kind.rates)
     if "projection" in found and kind != SOLVER:
@@ -180,8 +187,9 @@ def _numpy_function(subject: Subject, names: Sequence[str]) -> Function:
         for name in names:
             each = subject.programs[name]
             own = np.ascontiguousarray(state[: len(each.state)])
-            rows.append(np.empty((len(each.outputs), state.shape[1])))
-            getattr(subject.system, name)(own, *shared, **named, target="numpy", out=rows[-1])
+            block = np.empty((*each.shape, state.shape[1]))
+            getattr(subject.system, name)(own, *shared, **named, target="numpy", out=block)
+            rows.append(block.reshape(-1, state.shape[1]))
         return np.concatenate(rows)
 
     return function

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
+from coadjoint.crosscheck.replay import Replayed
 from coadjoint.derive.reference import Reference as Derived
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError
@@ -135,9 +136,10 @@ class Subject:
     def inside(self) -> Array:
         """Points of the domain, each name of the widest function in a row; perhaps none."""
         names = self._widest.names
-        if not isinstance(self.reference, Derived):
+        of = self.reference.of if isinstance(self.reference, Replayed) else self.reference
+        if not isinstance(of, Derived):
             return np.empty((len(names), 0))
-        return points_inside(self.reference.equations, names)
+        return points_inside(of.equations, names)
 
     def values(self, batch: Batch) -> dict[str, Any]:
         """State, parameters, inputs and time of a batch by name."""

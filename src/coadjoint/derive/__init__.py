@@ -7,7 +7,7 @@ Routes share the algebra and the Setting, never each other's results: their agre
 from coadjoint.callable_module import make_callable
 from coadjoint.derive import reductions
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics import external, slipping
+from coadjoint.derive.mechanics import external, noise, slipping
 from coadjoint.derive.records import Chart, Exact, Relation, Step
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
@@ -50,7 +50,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
     slipping.check_slipping(given)
     if spec.reduction is not None:
         return reductions.restrict(given, chosen)
-    return external.add_forces(load_route(chosen)(given))
+    return noise.show_noise(external.add_forces(load_route(chosen)(given)))
 
 
 make_callable(__name__, "derive")

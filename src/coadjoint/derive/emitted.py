@@ -2,8 +2,9 @@
 
 Comes in: a Setting and a route's energy. Goes out: the energy, the claimed Casimirs, velocities,
 the reactions and momenta of constraints, what the spec declares, momentum maps, the integrals of a
-Lax pair, and momenta as seen from space where the state has the attitude: each with its unit, its
-components and what is known of its conservation, in the order in which kernels return them.
+Lax pair, and, where the state has attitudes, momenta as seen from space and what stays of them:
+each with its unit, its components and what is known of its conservation, in the order in which
+kernels return them.
 Read next: `coadjoint.derive.units`.
 """
 
@@ -17,12 +18,13 @@ from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.parts import in_parts
 from coadjoint.derive.mechanics.reconstruction import spatial_momentum
 from coadjoint.derive.mechanics.sections import section_momenta
+from coadjoint.derive.mechanics.turning import gram
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symmetries import in_formulas, momentum_maps
 from coadjoint.exact import Element
-from coadjoint.spec.core.components import Argument, Named
-from coadjoint.spec.spatial import spatial_momenta
+from coadjoint.spec.core.components import Argument, Named, unpack
+from coadjoint.spec.spatial import grams, spatial_momenta
 
 
 def list_emitted(
@@ -128,7 +130,7 @@ def _momentum_maps(setting: Setting, energy: Element | None) -> Iterator[Emitted
 
 @once
 def _list_last(setting: Setting) -> tuple[Emitted, ...]:
-    """The integrals of the Lax pair, then momenta as seen from space."""
+    """The integrals of the Lax pair, momenta as seen from space, and what stays of attitudes."""
     emitted, pair = [], lax_integrals(setting)
     for name, value in () if pair is None else pair.named:
         unit = units.of_value(setting, value)
@@ -137,6 +139,10 @@ def _list_last(setting: Setting) -> tuple[Emitted, ...]:
         inner, kept = each.of, Kept.ALWAYS if each.conserved else Kept.UNKNOWN
         seen = dict(zip(setting.momenta, spatial_momentum(setting), strict=True))
         emitted.append(_emit(each, inner.unit, [seen[n] for n in inner.components], kept))
+    for of, product in grams(setting.spec):
+        values = gram(setting, of)
+        form = unpack(values, product.form) if product.form else None
+        emitted.append(_emit(product, product.unit, values, Kept.UNLESS_WORKED_ON, form))
     return tuple(emitted)
 
 

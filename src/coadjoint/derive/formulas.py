@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -106,6 +107,19 @@ def poisson_tensor(equations: Equations) -> Rows | None:
         for b, entry in zip(state, row, strict=True)
     )
     return _rows(equations, brackets, (len(state), len(state)))
+
+
+def noise(equations: Equations) -> Rows | None:
+    """What each Wiener process does to each component of the state, row by row."""
+    state, fields = equations.setting.state, noise_fields(equations.setting)
+    if not fields:
+        return None
+    entries = (
+        (f"d{name}/d{each.name}", each.field[row])
+        for row, name in enumerate(state)
+        for each in fields
+    )
+    return _rows(equations, entries, (len(state), len(fields)))
 
 
 def constraint_residual(equations: Equations) -> Rows | None:

@@ -23,6 +23,7 @@ from coadjoint.exact.dense import (
     diagonal,
     dot,
     hat,
+    identity,
     inverse,
     product,
     scale,
@@ -33,6 +34,7 @@ from coadjoint.exact.dense import (
 from coadjoint.exact.signs import sign
 from coadjoint.exact.text import element_text
 from coadjoint.exact.witness import is_nonzero
+from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec.core import tree
 
 #: An element, a tuple of elements or a tuple of tuples of elements.
@@ -173,6 +175,19 @@ def check_divisor(divisor: Element, field: Field) -> None:
     )
 
 
+def _rotation(a: Value) -> Value:
+    """The matrix of ``v -> a v a*`` for a quaternion, or the turning part of a pose."""
+    if isinstance(a[0], tuple):
+        return tuple(row[:-1] for row in a)
+    return transpose(tuple(_rotate(a, axis) for axis in identity(3)))
+
+
+def _rotate(a: Value, v: Value) -> Value:
+    """The vector of ``a v a*``, for a quaternion of any length."""
+    q = Quaternion(*a)
+    return (q * Quaternion.pure(v) * q.conjugate).vector
+
+
 def _diag(a: Value) -> Value:
     """A vector as a diagonal matrix; the diagonal of a matrix as a vector."""
     if isinstance(a[0], tuple):
@@ -252,4 +267,9 @@ _TENSOR_FUNCTIONS: dict[str, Callable[..., Value]] = {
         *(y + x for x, y in zip(a, b, strict=True)),
     ),
     "commutator": commutator,
+    "qmul": lambda a, b: (Quaternion(*a) * Quaternion(*b)).components,
+    "conjugate": lambda a: Quaternion(*a).conjugate.components,
+    "rotate": _rotate,
+    "rotation": _rotation,
+    "translation": lambda a: tuple(row[-1] for row in a),
 }

@@ -345,6 +345,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     values: dict[str, Value] = {name: field[name] for name in names}
     for quantity in quantities:
         values[quantity.name] = assemble(quantity, values)
+    for whole in spec.variables:  # also where constraints give some of its components
+        values[whole.name] = assemble(whole, values)
     for each in spec.reconstruction:
         values[each.name] = shape([values[name] for name in each.components], each.shape)
     setting = Setting(spec, field, values)

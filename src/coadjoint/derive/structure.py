@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
 from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.first_order import first_order
 from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import product
@@ -58,6 +59,8 @@ def has_structure(setting: Setting) -> bool:
 def _of_configuration(setting: Setting) -> PoissonStructure:
     """The canonical bracket of coordinates and momenta, or what it is in velocities.
 
+    A Lagrangian of first order gives that of its one-form.
+
     With ``p = dl/dv``, the brackets {q, q}, {q, p} and {p, p} are canonical if
 
         {q, v} = M^-1,   {v, v} = M^-1 (A^T - A) M^-1,   M = dp/dv,  A = dp/dq.
@@ -66,6 +69,9 @@ def _of_configuration(setting: Setting) -> PoissonStructure:
         DerivationError: The mass matrix M cannot be inverted.
     """
     field, q = setting.field, setting.positions
+    if setting.spec.is_first_order:
+        name = setting.spec.name
+        return PoissonStructure(field, setting.state, first_order(setting).tensor, name)
     if setting.momenta:
         pairs = list(zip(q, setting.momenta, strict=True))
         return _reorder(magnetic(field, pairs, {}, setting.weights), setting.state)

@@ -233,6 +233,8 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
 def _pairs(setting: Setting) -> list[Pair]:
     """Positions with canonical momenta; empty with magnetic terms, and without momenta."""
     bracket, field, names = setting.spec.poisson, setting.field, setting.state
+    if setting.spec.is_first_order:
+        return []
     if bracket is None:
         weights = setting.weights if setting.momenta else ()
         return [

@@ -91,10 +91,15 @@ def about_hamiltonian(motion: Motion) -> Iterator[Examined]:
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
     if energy is not None and tensor is not None:
         yield (
-            f"the motion by {first.route} is {{x, h}}{_name_added_terms(first)}",
+            f"{_name_motion(first)} by {first.route} is {{x, h}}{_name_added_terms(first)}",
             "equivalence",
             partial(_bracket_defects, first, energy, tensor),
         )
+
+
+def _name_motion(first: Equations) -> str:
+    """What the rates are: of a motion with noise its drift."""
+    return "the drift of the motion" if first.spec.noise else "the motion"
 
 
 def _name_added_terms(first: Equations) -> str:

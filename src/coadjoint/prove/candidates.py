@@ -47,6 +47,7 @@ from coadjoint.prove.reversibility import reversal_defects
 from coadjoint.prove.samples import Samples, samples_of
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec import Spec
+from coadjoint.spec.core.constants import Rounded
 from coadjoint.spec.spatial import spatial_momenta
 
 #: Degrees in the velocities and in the positions up to which integrals are searched for: those of
@@ -249,7 +250,9 @@ def _at_defaults(motion: Motion) -> str:
         return motion.at_all_times
     whole = all(each.default is not None for each in motion.spec.parameters)
     others = "" if whole else " and 1 where there is none"
-    return f", at the default parameters{others}{motion.at_all_times}"
+    values = (value for each in motion.spec.parameters for value in each.default or ())
+    rounded = " as doubles" if any(isinstance(value, Rounded) for value in values) else ""
+    return f", at the default parameters{rounded}{others}{motion.at_all_times}"
 
 
 def _pass_over(search: CandidateSearch) -> Examined:

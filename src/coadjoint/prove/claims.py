@@ -19,6 +19,7 @@ from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
+from coadjoint.prove.attitudes import about_attitudes
 from coadjoint.prove.bound_symmetries import about_motion_symmetries
 from coadjoint.prove.brackets import (
     about_algebra,
@@ -31,6 +32,7 @@ from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
 from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.first_order import about_stationarity
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.integrals import about_energy, about_integrals, about_spatial
@@ -38,6 +40,7 @@ from coadjoint.prove.lax import about_pairs
 from coadjoint.prove.measures import about_measure
 from coadjoint.prove.momenta import about_momenta
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.noise import about_noise, has_noise
 from coadjoint.prove.points import Points
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.reductions import about_reduction
@@ -142,15 +145,26 @@ def has_energy(motion: Motion) -> bool:
     return motion.equations.exact.energy is not None
 
 
+def is_searched(motion: Motion) -> bool:
+    """Whether the rates are the whole motion, and written out: searches look at these alone."""
+    return is_written_out(motion) and not has_noise(motion)
+
+
 def has_transform(motion: Motion) -> bool:
     """Whether a Lagrangian is there for a free motion."""
     spec = motion.spec
-    return is_free(motion) and spec.lagrangian is not None and not spec.variational
+    regular = spec.lagrangian is not None and not spec.is_first_order
+    return is_free(motion) and regular and not spec.variational
 
 
 def is_variational(motion: Motion) -> bool:
     """Whether constraints are imposed before the variation."""
     return bool(motion.spec.variational)
+
+
+def is_first_order(motion: Motion) -> bool:
+    """Whether the Lagrangian is singular in the velocities."""
+    return motion.spec.is_first_order
 
 
 #: All that is examined, in the order of the certificate.
@@ -160,6 +174,7 @@ EXAMINATIONS = (
     Examination(about=about_constraints, applies=has_frame),
     Examination(about=about_legendre, applies=has_transform, of_routes=True),
     Examination(about=about_extremals, applies=is_variational),
+    Examination(about=about_stationarity, applies=is_first_order),
     Examination(about=lambda motion: about_reduction(motion.equations)),
     Examination(about=about_equality, of_routes=True),
     Examination(about=about_hamiltonian, applies=has_bracket),
@@ -169,6 +184,7 @@ EXAMINATIONS = (
     Examination(about=about_rolling, applies=has_frame),
     Examination(about=lambda motion: about_relaxation(motion.equations), applies=is_free),
     Examination(about=_about_relaxation_along, applies=relaxes_along_frame),
+    Examination(about=about_noise, applies=has_noise),
     Examination(about=about_casimirs, applies=has_bracket),
     Examination(about=lambda motion: about_casimirs(carry_over(motion)), applies=names_bracket),
     Examination(about=about_integrals),
@@ -179,6 +195,7 @@ EXAMINATIONS = (
     Examination(about=lambda motion: about_symmetries(carry_over(motion)), applies=names_bracket),
     Examination(about=about_motion_symmetries, applies=lacks_bracket),
     Examination(about=about_transformations),
+    Examination(about=about_attitudes),
     Examination(about=about_spatial),
     Examination(about=about_pairs, of_routes=True),
     Examination(
@@ -195,15 +212,13 @@ EXAMINATIONS = (
     ),
     Examination(
         about=about_reversal,
-        applies=is_written_out,
+        applies=is_searched,
         kind="transformation",
         subject="the reversal of time",
     ),
+    Examination(about=about_candidates, applies=is_searched, kind="integrals", subject="integrals"),
     Examination(
-        about=about_candidates, applies=is_written_out, kind="integrals", subject="integrals"
-    ),
-    Examination(
-        about=about_measure, applies=is_written_out, kind="measure", subject="invariant measures"
+        about=about_measure, applies=is_searched, kind="measure", subject="invariant measures"
     ),
 )
 

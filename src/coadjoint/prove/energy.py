@@ -26,6 +26,7 @@ from coadjoint.prove.driven import (
     own_change,
     while_constant,
 )
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.relaxation import is_dissipative
 from coadjoint.spec.model import Variable
 
@@ -35,7 +36,16 @@ def keeps_energy(equations: Equations) -> bool:
     spec, distribution = equations.spec, equations.distribution
     acted_on = spec.is_forced or (spec.relaxation is not None and spec.relaxation.S is None)
     moved = distribution is not None and not distribution.is_linear
-    return not acted_on and not moved and not changes_by_time(equations)
+    free = not acted_on and not moved and not changes_by_time(equations)
+    return free and not changes_by_noise(equations)
+
+
+def changes_by_noise(equations: Equations) -> bool:
+    """Whether Wiener processes change the energy."""
+    energy = equations.exact.energy
+    if energy is None or not equations.spec.noise:
+        return False
+    return any(not equations.setting.field.is_zero(rate) for rate in noise_rates(equations, energy))
 
 
 class Balance:
@@ -67,8 +77,10 @@ class Balance:
         if self._moving:
             terms.append("the work of the moving constraints")
         if changes_by_time(self.equations):
-            alone = not terms and self._distribution is None
+            alone = not terms and self._distribution is None and not self.spec.noise
             terms.append(OWN_CHANGE + f": {law_of_change(self.equations)}" * alone)
+        if changes_by_noise(self.equations):
+            terms.append("the noise, {h, h_k} o dW_k")
         *others, last = terms
         return f"the energy changes by {', '.join(others)}{' and ' * bool(others)}{last}{held}"
 
@@ -76,7 +88,8 @@ class Balance:
     def _only_falls(self) -> bool:
         """Whether a double bracket alone changes the energy."""
         double = self.spec.relaxation is not None and self.spec.relaxation.S is None
-        return double and not self.spec.is_forced and not changes_by_time(self.equations)
+        alone = double and not self.spec.is_forced and not changes_by_time(self.equations)
+        return alone and not changes_by_noise(self.equations)
 
     @property
     def energy(self) -> Element:

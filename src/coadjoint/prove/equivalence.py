@@ -60,6 +60,7 @@ class LegendreMap:
         """Whether velocities are other coordinates of the state, not part of it."""
         spec = equations.spec
         transformed = spec.lagrangian is not None and not spec.variational
+        transformed = transformed and not spec.is_first_order
         return transformed and bool(equations.setting.momenta)
 
     def pull_back(self, equations: Equations, element: Element) -> Element:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.setting import once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -51,6 +52,13 @@ def drift(equations: Equations, function: Element) -> list[Element]:
 def decidable_rates(equations: Equations) -> list[Element]:
     """The rates of the state with a decidable zero, computed once for all functions."""
     return in_velocities(equations, equations.exact.rates)
+
+
+def noise_rates(equations: Equations, function: Element) -> list[Element]:
+    """``{F, h_k}`` for each Wiener process; none without noise."""
+    fields = noise_fields(equations.setting)
+    slopes = gradient(equations, function) if fields else []
+    return [dot(slopes, in_velocities(equations, each.field)) for each in fields]
 
 
 def own_rate(equations: Equations, function: Element) -> Element:

@@ -10,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.reconstruction import fixed_row
+from coadjoint.derive.mechanics.turning import rational_rotation, rotation_relations
 from coadjoint.derive.records import Emitted, Kept
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Shown, Verdict
@@ -21,6 +23,7 @@ from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
 from coadjoint.spec.model import DerivedMomentum, Integral
@@ -32,8 +35,15 @@ def about_energy(motion: Motion) -> Iterator[Examined]:
     yield (
         Balance(motion.equations).statement,
         "conserved",
-        lambda: decide_zero([motion.energy_balance()], motion.field, motion.where),
+        partial(_balance, motion),
     )
+
+
+def _balance(motion: Motion) -> Decision:
+    """Whether the energy changes by nothing else than is said: by no noise where none is named."""
+    equations = motion.equations
+    noise = noise_rates(equations, Balance(equations).energy) if keeps_energy(equations) else []
+    return decide_zero([motion.energy_balance(), *noise], motion.field, motion.where)
 
 
 def about_integrals(motion: Motion) -> Iterator[Examined]:
@@ -48,15 +58,27 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
 
 def _statement(motion: Motion, claim: Integral) -> str:
     """The claim, where it holds, and what inputs must do for it."""
-    where, setting, names = _vanishing(claim), motion.setting, motion.emitted
+    where, setting, names = _vanishing(motion, claim), motion.setting, motion.emitted
     parts = (g for f in (claim.formula, *claim.where) for g in setting.components(f, names))
     held = while_constant(motion.equations, parts)
     return f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else "") + held
 
 
-def _vanishing(claim: Integral) -> str:
-    """The level set of a claim: ``dot(Pi, Gamma) = 0``."""
-    return ", ".join(f"{formula.in_one_line} = 0" for formula in claim.where)
+def _vanishing(motion: Motion, claim: Integral) -> str:
+    """The level set of a claim: ``dot(Pi, Gamma) = 0``; of attitudes what makes them rotations."""
+    level = [f"{formula.in_one_line} = 0" for formula in claim.where]
+    return ", ".join([*level, *(text for text, _ in _rotations(motion, claim))])
+
+
+def _rotations(motion: Motion, claim: Integral) -> list[tuple[str, Sequence[Element]]]:
+    """What makes attitudes rotations, if a claim without a level set needs it of some of them."""
+    if claim.where or not motion.spec.turning:
+        return []
+    parts = motion.setting.components(claim.formula, motion.emitted)
+    reached = [motion.field.reach(rate) for rate in _list_rates(motion, parts) if rate != 0]
+    named = frozenset[str]().union(*reached)
+    needed = (each for each in motion.spec.turning if named & {*each.components})
+    return [relation for each in needed for relation in rotation_relations(motion.setting, each)]
 
 
 def _integral(motion: Motion, claim: Integral) -> Decision:
@@ -67,10 +89,36 @@ def _integral(motion: Motion, claim: Integral) -> Decision:
     setting, names = motion.setting, motion.emitted
     parts = setting.components(claim.formula, names)
     level = [g for f in claim.where for g in setting.components(f, names)]
-    kept, rates = (list(map(motion.rate, functions)) for functions in (level, parts))
-    text = ", ".join(filter(None, (_vanishing(claim), motion.where.text)))
+    level += [defect for _, defects in _rotations(motion, claim) for defect in defects]
+    kept, rates = (list(_list_rates(motion, functions)) for functions in (level, parts))
+    text = ", ".join(filter(None, (_vanishing(motion, claim), motion.where.text)))
+    written = list(map(motion.in_state, parts))
+    if _rotations(motion, claim) and (seen := _look_at_rotations(motion, rates, written)):
+        return seen
     where = motion.where.also(list(map(motion.in_state, level)), text)
-    return _conserved_on(where, kept, rates, list(map(motion.in_state, parts)))
+    return _conserved_on(where, kept, rates, written)
+
+
+def _look_at_rotations(
+    motion: Motion, rates: Sequence[Element], parts: Sequence[Element]
+) -> Decision | None:
+    """A counterexample where attitudes are one rotation of rational entries; None without one."""
+    field, entries = motion.field, dict[str, Fraction]()
+    for each in motion.spec.turning:
+        entries |= rational_rotation(each)
+    at = {name: field.number(value) for name, value in entries.items()}
+    values = ([field.substitute(x, at) for x in elements] for elements in (rates, parts))
+    seen = decide_zero(next(values), field, motion.where, next(values))
+    if seen.verdict is not Verdict.REFUTED:
+        return None
+    return replace(seen, point={n: str(x) for n, x in entries.items()} | dict(seen.point or {}))
+
+
+def _list_rates(motion: Motion, functions: Sequence[Element]) -> Iterator[Element]:
+    """Rates of functions: by the motion, and by each Wiener process."""
+    for function in functions:
+        yield motion.rate(function)
+        yield from noise_rates(motion.equations, function)
 
 
 def _conserved_on(
@@ -108,5 +156,5 @@ def _seen_from_space(motion: Motion, seen: DerivedMomentum) -> Decision:
     emitted, fixed = dict(motion.equations.exact.observables), fixed_row(motion.setting)
     text = ", ".join(relation.text for relation in fixed)
     where = Ideal(motion.field, [relation.element for relation in fixed], text)
-    rates = [motion.rate(emitted[name]) for name in seen.components]
+    rates = list(_list_rates(motion, [emitted[name] for name in seen.components]))
     return decide_zero(rates, motion.field, where)

@@ -180,7 +180,8 @@ class Motion:
     @cached_property
     def matrices(self) -> list[tuple[Row, ...]]:
         """The matrices that accelerations are solved with, here ``d2l/dv2``."""
-        if self.setting.momenta or self.spec.lagrangian is None:
+        spec = self.spec
+        if self.setting.momenta or spec.lagrangian is None or spec.is_first_order:
             return []
         return [tuple(tuple(map(self.put, row)) for row in mechanics(self.setting).mass)]
 

@@ -28,7 +28,7 @@ from coadjoint.lower.program import (
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
-from coadjoint.render.solvers import arrange, arrange_function, select_programs
+from coadjoint.render.solvers import arrange, arrange_function, describe_noise, select_programs
 from coadjoint.render.tables import arrange_table, fill, tell_loops
 from coadjoint.render.targets import TARGETS
 from coadjoint.solver_kinds import FILES, SOLVER, SolverKind, list_kinds
@@ -196,6 +196,7 @@ def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     solved, table = select_programs(context.programs, kind), dop853()
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
+        **describe_noise(solved),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},

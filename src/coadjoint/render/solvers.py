@@ -12,8 +12,10 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import islice, pairwise
+from typing import Any
 
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, widen
 from coadjoint.lower.polynomials import product_of, sum_of
@@ -215,7 +217,7 @@ class FunctionText:
 
 
 def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> dict[str, Program]:
-    """The rates and what bounds the motion, by their names in the texts of solvers.
+    """The rates, what bounds the motion and its noise, by their names in the texts of solvers.
 
     Args:
         programs: The functions of the kernel.
@@ -223,10 +225,28 @@ def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> d
     """
     known = {program.name: program for program in programs}
     rates = reduce(join, (known[name] for name in kind.rates))
-    bounds = {name: known[name] for name in ("domain", "projection") if name in known}
+    others = ("domain", "projection", "noise")
+    bounds = {name: known[name] for name in others if name in known}
     return {"rates": rates} | {
         name: widen(program, rates.state, moves=name == "projection")
         for name, program in bounds.items()
+    }
+
+
+def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
+    """What templates read of noise: how many Wiener processes there are, and the tables of normals.
+
+    Args:
+        programs: As `select_programs` has them.
+    """
+    program = programs.get("noise")
+    if program is None:
+        return {"noise": 0}
+    names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
+    return {
+        "noise": len(program.outputs) // len(program.state),
+        "sweeps": normals.SWEEPS,
+        "normals": {name: getattr(normals, name) for name in names},
     }
 
 

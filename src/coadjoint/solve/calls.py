@@ -10,6 +10,7 @@ import ctypes
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.solve.choices import NOISY
 from coadjoint.solve.ensemble import Ensemble, Record
 
 if TYPE_CHECKING:
@@ -20,12 +21,14 @@ if TYPE_CHECKING:
 
 #: What a first call may add up, by the numbers of a path and their orders.
 FIRST_SUMS = 2**22
+#: What a step with noise counts for each component, in such sums.
+NOISY_SUMS = 2**10
 
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
 class _Run(ctypes.Structure):
-    """``NAME_run`` of the headers, field by field."""
+    """``NAME_run`` of the headers, field by field; the last two where a system has noise."""
 
     _fields_ = (
         ("members", _SIZE),
@@ -58,6 +61,8 @@ class _Run(ctypes.Structure):
         ("recorded", _SIZE),
         ("terms", _PLACE),
         ("term_count", _SIZE),
+        ("seed", ctypes.c_uint64),
+        ("bound", _DOUBLE),
     )
 
 
@@ -72,13 +77,16 @@ class CStepper:
 
     def __init__(self, library: Library, rows: int, choice: Choice) -> None:
         self.source, self.key, self.degree = library.source, library.key, choice.degree
-        self._rows = rows
+        self._rows, self._sums = (
+            rows,
+            NOISY_SUMS if choice.name in NOISY else (choice.degree + 1) ** 2,
+        )
         self._advance = library.take(choice.kind.advance)
 
     @property
     def first_work(self) -> int:
         """Steps of a first call, which are to take some hundredths of a second at the most."""
-        return max(1, FIRST_SUMS // (self._rows * (self.degree + 1) ** 2))
+        return max(1, FIRST_SUMS // (self._rows * self._sums))
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
@@ -142,6 +150,8 @@ def _describe(ensemble: Ensemble) -> _Run:
         atol=ensemble.atol,
         size=ensemble.size,
         max_steps=ensemble.max_steps,
+        seed=ensemble.seed,
+        bound=ensemble.bound,
     )
 
 

@@ -224,6 +224,7 @@ def _describe(
         "rtol": request.rtol,
         "atol": request.atol,
         "step": request.step,
+        "seed": request.seed,
         "max_steps": request.max_steps,
         "initial state": _hash(request.state),
         "parameters": _hash(run.parameters),

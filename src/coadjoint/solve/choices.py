@@ -14,6 +14,8 @@ from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Methods that are generated.
 GENERATED: Final = ("taylor", "dop853", "rk4")
+#: Those of systems with noise.
+NOISY: Final = ("heun", "midpoint")
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Choice:
     """A method of integration.
 
     Attributes:
-        name: One of `GENERATED`.
+        name: One of `GENERATED` or `NOISY`.
         order: Of the method.
         few: Whether it is for members that fill no more than half of the longest vectors.
         kind: What it integrates.
@@ -42,7 +44,7 @@ class Choice:
     @property
     def degree(self) -> int:
         """Of the polynomials that are recorded of its steps."""
-        return {"dop853": 7, "rk4": 3}.get(self.name, self.order)
+        return {"dop853": 7, "rk4": 3, "heun": 1, "midpoint": 1}.get(self.name, self.order)
 
     def __str__(self) -> str:
         return self.name

@@ -57,6 +57,8 @@ class Course:
         below: What is reconstructed there, ``(k, *batch)``; None if nothing is.
         driven: Inputs there, ``(m, *batch)``; None if they are constant.
         stepwise: Why the steps were made in Python; empty where a solver made them.
+        seed: Of the noise; None without any.
+        keeps: What the method keeps of what each path of a motion with noise keeps; empty without.
         start: Where the trajectories began, if no sample has it.
     """
 
@@ -73,11 +75,18 @@ class Course:
     below: Array | None = None
     driven: Array | None = None
     stepwise: str = ""
+    seed: int | None = None
+    keeps: str = ""
     start: Start | None = None
 
     def tell_stepwise(self) -> str:
         """That the steps were made in Python, and why; "" where a solver made them."""
         return f"the steps were made in Python: {self.stepwise}" if self.stepwise else ""
+
+    def tell_keeps(self) -> str:
+        """What the method keeps of what each path keeps; "" without noise."""
+        told = f"of what each path keeps, {self.method} keeps {self.keeps}"
+        return told if self.keeps else ""
 
     @property
     def status(self) -> str:

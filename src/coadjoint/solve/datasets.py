@@ -62,7 +62,10 @@ def to_xarray(solution: Solution) -> Any:
     for name, quantity in quantities.items():
         lead = _add_components(coordinates, name, quantity)
         attributes = {"units": quantity.unit}
-        variables[name] = ([*lead, *axes, "time"], solution[name], attributes)
+        values = solution[name]
+        if len(quantity.shape) > 1:  # a matrix, along the one axis of its components
+            values = values.reshape(-1, *values.shape[2:])
+        variables[name] = ([*lead, *axes, "time"], values, attributes)
     attributes = describe_run(solution) | {
         FORM + name: value for name, value in describe_form(solution).items()
     }

@@ -129,6 +129,13 @@ class Record:
         """Forget all steps, so that there is room for others."""
         self.count = 0
 
+    def hand_over(self) -> Array:
+        """The polynomials, for good: the next steps are recorded elsewhere."""
+        if 2 * self.count < len(self.rows):
+            return self.path.copy()
+        path, self.rows = self.path, np.empty_like(self.rows)
+        return path
+
     @property
     def member(self) -> NDArray[np.intp]:
         """Whose steps they are, ``(count,)``."""
@@ -211,6 +218,8 @@ class Ensemble:
         atol: Absolute tolerance.
         size: A fixed step; 0 to have steps follow the tolerances.
         max_steps: A trajectory ends after so many.
+        seed: Of the noise, where there is some.
+        bound: The largest size of its normal numbers.
         time: Where they are in time, ``(N,)``.
         step: The steps to try next, ``(N,)``; 0 to have them chosen.
         next: The sample that comes next, ``(N,)``.
@@ -229,6 +238,8 @@ class Ensemble:
     atol: float
     size: float
     max_steps: int
+    seed: int = 0
+    bound: float = np.inf
     time: Array = field(init=False)
     step: Array = field(init=False)
     next: Counts = field(init=False)
@@ -373,6 +384,8 @@ class Ensemble:
             parameters=self.parameters if self.parameters.ndim == 1 else self.parameters[:, going],
             driving=driving,
             slopes=slopes,
+            member=going.astype(np.uint64),
+            steps=self.steps[going],
         )
 
     def _store_samples(self, going: NDArray[np.intp], step: _Step) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.events`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -153,9 +153,35 @@ def _complex(a: Array, b: Array) -> Array:
     return np.concatenate([above, below], axis=0)
 
 
-def _cross(a: Array, b: Array) -> Array:
+def _cross(a: Sequence[Array] | Array, b: Sequence[Array] | Array) -> Array:
     pairs = ((1, 2), (2, 0), (0, 1))
     return _stack(a[i] * b[j] - a[j] * b[i] for i, j in pairs)
+
+
+def _multiply_quaternions(a: Array, b: Array) -> Array:
+    """The real part, then the vector."""
+    (s, *v), (t, *w) = a, b
+    sums = (s * y + t * x + z for x, y, z in zip(v, w, _cross(v, w), strict=True))
+    return _stack([s * t - _dot(v, w), *sums])
+
+
+def _conjugate(a: Array) -> Array:
+    return _stack([a[0], *(-x for x in a[1:])])
+
+
+def _rotate(a: Array, v: Array) -> Array:
+    """The vector of ``a v a*``."""
+    turned = _multiply_quaternions(
+        _multiply_quaternions(a, _stack([np.zeros(1), *v])), _conjugate(a)
+    )
+    return turned[1:]
+
+
+def _rotation(a: Array) -> Array:
+    """The matrix by which a quaternion rotates, or the turning part of a pose."""
+    if a.ndim == 3:
+        return a[:, :-1]
+    return _stack(_rotate(a, axis) for axis in np.eye(3)[..., np.newaxis]).swapaxes(0, 1)
 
 
 def _hat(a: Array) -> Array:
@@ -217,6 +243,11 @@ _FUNCTIONS: dict[str, Callable[..., Array]] = {
     "rows": lambda *rows: _stack(rows),
     "vector": lambda *components: _stack(components),
     "complex": _complex,
+    "qmul": _multiply_quaternions,
+    "conjugate": _conjugate,
+    "rotate": _rotate,
+    "rotation": _rotation,
+    "translation": lambda a: a[:, -1],
     "tan": np.tan,
     "pow": np.power,
     "abs": np.abs,

@@ -21,10 +21,12 @@ from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.march import count_threads, march, progress_bar
+from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.starts import check_starts
+from coadjoint.solve.stochastic import find_bound
 from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.twins import StepwiseStepper
 from coadjoint.solver_kinds import list_kinds
@@ -110,7 +112,9 @@ def _make_course(
     batch, n = request.state.shape[1:], len(request.state)
     return Course(
         method=request.choice.name,
-        order=request.choice.order,
+        order=None if request.seed is not None else request.choice.order,
+        seed=request.seed,
+        keeps=KEEPS.get(request.choice.name, ""),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,
         step=request.step,
@@ -175,6 +179,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
     )
+    if request.seed is not None and request.step is not None:
+        run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
     return run, signal
 
 
@@ -382,6 +388,8 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}"
         if request.step is None
+        else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
+        if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]

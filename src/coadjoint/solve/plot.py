@@ -213,7 +213,8 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
         size = float(np.abs(solution[name]).max()) or 1.0
         with np.errstate(invalid="ignore"):  # of what is infinite
             # of a vector or matrix, the largest of the components
-            change = np.abs(np.atleast_2d(solution.change(name))).max(axis=0) / size
+            moved = np.abs(solution.change(name)).reshape(-1, len(solution.time))
+            change = moved.max(axis=0) / size
         change[change == 0] = np.nan  # no place on a logarithmic axis
         largest = f"{solution.drift[name]:.0e}" if solution.drift[name] else "none"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others

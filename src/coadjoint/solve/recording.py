@@ -48,25 +48,31 @@ class Polynomials:
         member: Whose each is, ``(S,)``.
         start: When it begins.
         size: How long it is.
-        path: Coefficients, ``(S, n, degree + 1)``, that of order 0 first.
-        place: Where in path each step stands, ``(S,)``.
+        lots: Coefficients, ``(any, n, degree + 1)`` each, that of order 0 first: as solvers wrote
+            them, since moving them takes longer than computing them.
+        place: Where in the lots, one behind the other, each step stands, ``(S,)``.
     """
 
     member: Places
     start: Array
     size: Array
-    path: Array
+    lots: tuple[Array, ...]
     place: Places
 
     @property
     def degree(self) -> int:
         """Of the polynomials."""
-        return int(self.path.shape[2] - 1)
+        return int(self.lots[0].shape[2] - 1)
+
+    @property
+    def path(self) -> Array:
+        """The coefficients of all steps, ``(S, n, degree + 1)``."""
+        return self._gather(self.place)
 
     @property
     def nbytes(self) -> int:
         """The memory that they take."""
-        arrays = (self.member, self.start, self.size, self.path, self.place)
+        arrays = (self.member, self.start, self.size, *self.lots, self.place)
         return sum(each.nbytes for each in arrays)
 
     def take(self, which: Places) -> Polynomials:
@@ -75,20 +81,33 @@ class Polynomials:
             member=self.member[which],
             start=self.start[which],
             size=self.size[which],
-            path=self.path[self.place[which]],
+            lots=(self._gather(self.place[which]),),
             place=np.arange(len(which)),
         )
 
     def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
         """As `Steps.follow`, by Horner."""
-        places = self.place[rows]
-        path = self.path[places] if only is None else self.path[places[:, np.newaxis], only]
+        path = self._gather(self.place[rows], slice(None) if only is None else only)
         return partial(_evaluate, np.ascontiguousarray(path.transpose(2, 1, 0)))
 
     def enclose(self, row: int) -> Enclosure:
         """As `Steps.enclose`."""
-        path = np.ascontiguousarray(self.path[self.place, row].T)
+        path = np.ascontiguousarray(self._gather(self.place, row).T)
         return Enclosure.of_polynomial(path, self.size)
+
+    def _gather(self, places: Places, only: Any = slice(None)) -> Array:
+        """The coefficients at some places; of some components or one."""
+        if len(self.lots) == 1:
+            chosen = places[:, np.newaxis] if isinstance(only, np.ndarray) else places
+            taken: Array = self.lots[0][chosen, only]
+            return taken
+        ends = np.cumsum([len(lot) for lot in self.lots])
+        found: Array = np.empty((len(places), *self.lots[0][:0, only].shape[1:]))
+        whose = np.searchsorted(ends, places, side="right")
+        for n in np.unique(whose).tolist():
+            own = whose == n
+            found[own] = self.lots[n][:, only][places[own] - (ends[n] - len(self.lots[n]))]
+        return found
 
 
 def _evaluate(table: Array, after: Array) -> Array:
@@ -134,12 +153,15 @@ class Recording:
 
     def look(self, record: Record) -> None:
         """Look at the steps of a call, and stop members at terminal events."""
-        order = np.argsort(record.member, kind="stable")
+        member = record.member
+        order = (
+            np.argsort(member, kind="stable") if self._lookout.sought else np.arange(len(member))
+        )
         steps = Polynomials(
-            member=record.member[order],
+            member=member[order],
             start=record.begun[order],
             size=record.length[order],
-            path=record.path,
+            lots=(record.path,),
             place=order,
         )
         around = self._lookout.surroundings
@@ -149,7 +171,7 @@ class Recording:
             self._run.stop(record, row, after, ending.state)
             self._stop(ending)
         if self._keeps and len(steps.member):
-            self._kept.append(replace(steps, path=record.path.copy()))
+            self._kept.append(replace(steps, lots=(record.hand_over(),)))
 
     def finish(self) -> None:
         """Look at where members ended."""
@@ -180,11 +202,9 @@ class Recording:
             "endings.event": np.array([names.index(each.name) for each in self._endings], np.intp),
         }
         if self._keeps:
-            lots, self._kept = self._kept, []
-            if lots:
-                lot = _concatenate(lots, self._run)
-                self._kept = [lot]
-                arrays |= {f"steps.{name}": getattr(lot, name) for name in _STORED}
+            self._kept = [_join(self._kept, self._run)]
+            if len(self._kept[0].member):
+                arrays |= {f"steps.{name}": getattr(self._kept[0], name) for name in _STORED}
         return arrays
 
     def restore(self, arrays: Mapping[str, Any]) -> None:
@@ -205,8 +225,9 @@ class Recording:
         ]
         steps = take_below(arrays, "steps")
         if steps:
-            stored = {name: steps[name] for name in _STORED}
-            self._kept = [Polynomials(**stored, place=np.arange(len(steps["member"])))]
+            named = {name: steps[name] for name in _STORED if name != "path"}
+            place = np.arange(len(steps["member"]))
+            self._kept = [Polynomials(**named, lots=(steps["path"],), place=place)]
 
     # -- after the run ----------------------------------------------------------------------------
 
@@ -222,44 +243,30 @@ class Recording:
         """The steps up to where each member came; None if they were not to be kept."""
         if not self._keeps:
             return None
-        lots, self._kept = self._kept, []
-        return Dense(_concatenate(lots, self._run), signal, start)
+        return Dense(_join(self._kept, self._run), signal, start)
 
 
 #: What a checkpoint has of steps, which stand in order there.
 _STORED = ("member", "start", "size", "path")
 
 
-def _concatenate(lots: list[Polynomials], run: Ensemble) -> Polynomials:
-    """The steps of several lots by member and time, up to where each member came.
-
-    The list is empty afterwards, so that no memory is held twice.
-    """
+def _join(kept: Sequence[Polynomials], run: Ensemble) -> Polynomials:
+    """The steps of several calls by member and time, up to where each member came."""
     none = np.empty(0)
-    member = np.concatenate([none.astype(np.intp), *(lot.member for lot in lots)])
-    begun = np.concatenate([none, *(lot.start for lot in lots)])
-    size = np.concatenate([none, *(lot.size for lot in lots)])
-    order = np.lexsort((begun, member))
+    member = np.concatenate([none.astype(np.intp), *(each.member for each in kept)])
+    begun = np.concatenate([none, *(each.start for each in kept)])
+    size = np.concatenate([none, *(each.size for each in kept)])
+    lots = [lot for each in kept for lot in each.lots]
+    firsts = np.cumsum([0, *(sum(map(len, each.lots)) for each in kept)])
+    place = np.concatenate(
+        [none.astype(np.intp), *(n + each.place for n, each in zip(firsts, kept, strict=False))]
+    )
+    order = np.argsort(member, kind="stable")  # those of one member come as they were made
     order = order[begun[order] < run.time[member[order]]]
     return Polynomials(
         member=member[order],
         start=begun[order],
         size=size[order],
-        path=_gather(lots, order, len(run.state)),
-        place=np.arange(len(order)),
+        lots=tuple(lots) or (np.empty((0, len(run.state), 1)),),
+        place=place[order],
     )
-
-
-def _gather(lots: list[Polynomials], order: Places, n: int) -> Array:
-    """The coefficients of the steps of lots, in an order; each lot is let go of once it is read."""
-    total = sum(len(lot.member) for lot in lots)
-    to = np.full(total, -1)
-    to[order] = np.arange(len(order))
-    path = np.empty((len(order), n, lots[0].degree + 1 if lots else 1))
-    first = 0
-    while lots:
-        lot = lots.pop(0)
-        places = to[first : first + len(lot.member)]
-        path[places[places >= 0]] = lot.path[lot.place[places >= 0]]
-        first += len(lot.member)
-    return path

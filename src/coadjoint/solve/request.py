@@ -38,7 +38,7 @@ SCIPY = "scipy:"
 #: Tolerances where none are given.
 RTOL, ATOL = 1e-10, 1e-12
 #: Orders of the generated methods whose order is fixed.
-_ORDER = {"dop853": 8, "rk4": 4}
+_ORDER = {"dop853": 8, "rk4": 4, "heun": 2, "midpoint": 2}
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,7 @@ class Request:
         events: What to look for.
         dense: Whether the steps are kept.
         stepwise: Why a generated method makes its steps in Python; empty where it does not.
+        seed: Of the noise; None where there is none.
     """
 
     state: Array
@@ -86,6 +87,7 @@ class Request:
     events: tuple[Sought, ...]
     dense: bool
     stepwise: str
+    seed: int | None = None
 
     @property
     def choice(self) -> Choice:

@@ -25,6 +25,7 @@ from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import read_events
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
+from coadjoint.solve.noisy import check_no_noise, check_samples, choose_noisy, has_noise
 from coadjoint.solve.occurrences import Events
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.request import (
@@ -79,6 +80,7 @@ def simulate(
     checkpoint: Any,
     events: Any,
     dense: Any,
+    seed: Any = None,
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
     initial = check_state(system, state)
@@ -92,13 +94,21 @@ def simulate(
     check_progress(progress)
     obstacle = generated.find_obstacle(system, target, reconstruct)
     stepwise = generated.find_stepwise(system, inputs)
-    obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
-    if stepwise and not obstacle:
-        obstacles["taylor"] = f"it needs rates of all orders, and {stepwise}"
-    name = choose_method(system, method, step, obstacles, tolerances=tolerances)
-    within = "the path within steps is asked for" if events or dense else obstacle or stepwise
-    if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
-        name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
+    if has_noise(system):
+        given = {"rtol or atol": tolerances, "events": events, "dense": dense, "inputs": inputs}
+        given["reconstruct"] = is_asked(reconstruct)
+        name = choose_noisy(system, method, step, seed, given)
+        if obstacle:
+            raise _explain_obstacle(system, name, obstacle)
+    else:
+        check_no_noise(system, method, seed)
+        obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
+        if stepwise and not obstacle:
+            obstacles["taylor"] = f"it needs rates of all orders, and {stepwise}"
+        name = choose_method(system, method, step, obstacles, tolerances=tolerances)
+        within = "the path within steps is asked for" if events or dense else obstacle or stepwise
+        if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
+            name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
     request = Request(
         state=initial,
         start=start,
@@ -119,12 +129,25 @@ def simulate(
         events=read_events(system, events, followed=is_asked(reconstruct)),
         dense=check_dense(dense),
         stepwise=stepwise,
+        seed=None if seed is None else int(seed),
     )
     check_steps(request)
+    if has_noise(system):
+        check_samples(request)
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
     _check_alone(system, request, obstacle)
     return _simulate_alone(system, request)
+
+
+def _explain_obstacle(system: System, name: str, obstacle: str) -> KernelArgumentError:
+    """Why a motion with noise cannot be followed: there are generated solvers alone for it."""
+    return KernelArgumentError(
+        f"method {name!r} is a generated solver, which does not apply to {system.name} here: "
+        f"{obstacle}.",
+        found=name,
+        reason=obstacle,
+    )
 
 
 def _check_alone(system: System, request: Request, obstacle: str) -> None:

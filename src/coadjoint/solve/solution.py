@@ -32,7 +32,7 @@ class Solution:
     """One trajectory, or a batch of them.
 
     ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
-    ``(*batch, T)``.
+    ``(*batch, T)``; a matrix ``solution["R"]`` of shape ``(3, 3)`` is ``(3, 3, T)``.
 
     Attributes:
         system: The System that was simulated.
@@ -112,10 +112,11 @@ class Solution:
     def settings(self) -> dict[str, Any]:
         """How it was made: method, order, tolerances and step, as far as they apply.
 
+        Of a motion with noise there is its seed, and what the method keeps of what each path keeps.
         ``stepwise`` says why the steps of a generated method were made in Python.
         """
         course = self.course
-        names = ("method", "order", "rtol", "atol", "step", "stepwise")
+        names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed", "keeps")
         told = {name: getattr(course, name) for name in names}
         return {name: value for name, value in told.items() if value not in (None, "")}
 
@@ -176,7 +177,8 @@ class Solution:
         for quantities, values in self._tables:
             if name in quantities or name in quantities.components:
                 rows: Array = values[quantities.rows(name)]
-                return rows
+                whole = quantities[name].shape if name in quantities else ()
+                return rows.reshape(*whole, *rows.shape[1:]) if len(whole) > 1 else rows
         names = [each for quantities, _ in self._tables for each in quantities]
         left = self.system.RECONSTRUCTED if self.reconstructed is None else ()
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""
@@ -433,7 +435,9 @@ class Solution:
             lines += [f"  {self.message}"] if self.message else []
         else:
             lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        lines += [f"  {told}" for told in [self.course.tell_stepwise()] if told]
+        lines += [
+            f"  {told}" for told in [self.course.tell_stepwise(), self.course.tell_keeps()] if told
+        ]
         return "\n".join([*lines, *describe_drift(self)])
 
     def _repr_html_(self) -> str:

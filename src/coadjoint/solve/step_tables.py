@@ -47,7 +47,7 @@ def describe_dense(dense: Dense | None) -> dict[str, Any] | None:
         return record | {"begun": steps.start, "size": steps.size, "paths": paths}
     assert isinstance(steps, Polynomials), "there are no others"
     named = {"member": steps.member, "begun": steps.start, "size": steps.size}
-    return record | named | {"coefficients": steps.path[steps.place]}
+    return record | named | {"coefficients": steps.path}
 
 
 def _describe_path(path: Any) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def read_dense(record: Mapping[str, Any]) -> Dense:
             member=member,
             start=begun,
             size=size,
-            path=path,
+            lots=(path,),
             place=np.arange(len(begun)),
         )
         good = len(path) == len(begun) == len(member) and path.ndim == 3

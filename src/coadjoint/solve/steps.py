@@ -39,6 +39,8 @@ class Lanes:
         parameters: ``(k, N)``, or ``(k,)`` if all share them.
         driving: Inputs and time now, ``(m, N)``.
         slopes: Their rates, ``(m, N)``.
+        member: Places of the members in the whole batch, ``(N,)``.
+        steps: Steps that they have made, ``(N,)``.
     """
 
     state: Array
@@ -48,6 +50,8 @@ class Lanes:
     parameters: Array
     driving: Array
     slopes: Array
+    member: NDArray[np.uint64]
+    steps: NDArray[np.uint64]
 
 
 @dataclass
@@ -147,7 +151,7 @@ class Taylor:
         if self.branches:
             h, state, accepted = self._follow(lanes, path, asked, most)
         else:
-            h = _fixed(self.size, most) if self.size > 0 else _free(lanes, asked, most)
+            h = find_fixed_step(self.size, most) if self.size > 0 else _free(lanes, asked, most)
             state, accepted = _evaluate_path(path, h), np.ones(h.shape, bool)
         return Attempt(
             took=h,
@@ -167,7 +171,7 @@ class Taylor:
         """
         bound, adaptive = lanes.step, not self.size > 0
         wanted = np.where(bound > 0.0, _smaller(bound, asked), asked)
-        h = _free(lanes, wanted, most) if adaptive else _fixed(self.size, most)
+        h = _free(lanes, wanted, most) if adaptive else find_fixed_step(self.size, most)
         state, slopes = _evaluate_end(path, h)
         accepted = self._is_followed(lanes, path, h, state, slopes)
         # where a shorter step cannot help, there is none
@@ -175,7 +179,7 @@ class Taylor:
         ends = ~accepted & (_has_no_series(path) | known)
         state, h = np.where(ends, lanes.state, state), np.where(ends, 0.0, h)
         if adaptive:
-            longer = np.where(asked <= bound, 0.0, _larger(bound, h * 2.0))
+            longer = np.where(asked <= bound, 0.0, larger(bound, h * 2.0))
             lanes.step = np.where(accepted, np.where(bound > 0.0, longer, 0.0), h * 0.4)
         return h, state, accepted
 
@@ -185,7 +189,7 @@ class Taylor:
         """Whether a series still has the rates of the system after a step."""
         rates = self.rates(lanes, h, state)
         gaps = rates - slopes
-        gap, size = _norm(gaps), _larger(_norm(rates), _norm(slopes))
+        gap, size = _norm(gaps), larger(_norm(rates), _norm(slopes))
         tolerance, error = self._tolerance(path), h * gap
         finite = np.isfinite(gaps).all(axis=0)
         if self.size > 0:
@@ -195,7 +199,7 @@ class Taylor:
 
     def _tolerance(self, path: Array) -> Array:
         """What an error may be."""
-        return _larger(self.rtol * _norm(path[:, 0]), np.full(path.shape[2], self.atol))
+        return larger(self.rtol * _norm(path[:, 0]), np.full(path.shape[2], self.atol))
 
     def _choose(self, path: Array) -> Array:
         """The step in which the last two orders are a 64th of what the tolerances allow."""
@@ -207,7 +211,7 @@ class Taylor:
             most = size - rough_log2(self.rtol * _norm(path[:, 1])) + 2.0
             octaves = _smaller(octaves, most)
         limit = np.full(octaves.shape, 1000.0)
-        return rough_power(_smaller(_larger(octaves, -limit), limit))
+        return rough_power(_smaller(larger(octaves, -limit), limit))
 
 
 def _evaluate_path(path: Array, after: Array) -> Array:
@@ -238,7 +242,7 @@ def _norm(rows: Array) -> Array:
     """The largest row."""
     largest: Array = np.abs(rows[0])
     for row in rows[1:]:
-        largest = _larger(np.abs(row), largest)
+        largest = larger(np.abs(row), largest)
     return largest
 
 
@@ -247,12 +251,13 @@ def _free(lanes: Lanes, step: Array, most: Array) -> Array:
     return _smaller((lanes.time + step) - lanes.time, most)
 
 
-def _fixed(size: float, most: Array) -> Array:
+def find_fixed_step(size: float, most: Array) -> Array:
     """A fixed step, a little longer where it would leave next to nothing."""
     return np.where(most < size * 1.000001, most, size)
 
 
-def _larger(a: Array, b: Array) -> Array:
+def larger(a: Array, b: Array) -> Array:
+    """The larger of two, the second where they do not compare."""
     return np.where(a > b, a, b)
 
 
@@ -297,7 +302,7 @@ class RungeKutta4:
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `Method.try_step`."""
         x, none = lanes.state, np.zeros(lanes.time.shape)
-        h = _fixed(self.size, lanes.end - lanes.time)
+        h = find_fixed_step(self.size, lanes.end - lanes.time)
         half = h * 0.5
         first = self.rates(lanes, none, x)
         k = self.rates(lanes, half, x + half * first)
@@ -360,7 +365,7 @@ class DormandPrince8:
             fresh = lanes.step == 0.0
             if fresh.any():
                 lanes.step = np.where(fresh, self._first(lanes, most), lanes.step)
-        h = _fixed(self.size, most) if self.size > 0 else _free(lanes, lanes.step, most)
+        h = find_fixed_step(self.size, most) if self.size > 0 else _free(lanes, lanes.step, most)
         k: list[Array] = []
         x = lanes.state
         for stage in range(STAGES):
@@ -406,29 +411,29 @@ class DormandPrince8:
         h0 = _smaller(np.where(tiny, 1e-6, 0.01 * d0 / d1), most)
         later = self.rates(lanes, h0, x + h0 * rates) - rates
         d2 = np.sqrt(self._square_norm(later, scale)) / h0
-        d = _larger(d1, d2)
-        h1 = np.where(d <= 1e-15, _larger(np.full(d.shape, 1e-6), h0 * 1e-3), _root(0.01 / d))
+        d = larger(d1, d2)
+        h1 = np.where(d <= 1e-15, larger(np.full(d.shape, 1e-6), h0 * 1e-3), _root(0.01 / d))
         return _smaller(_smaller(100.0 * h0, h1), most)
 
     def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
-        sizes, top = _larger(np.abs(lanes.state), np.abs(end)), np.zeros(h.shape)
+        sizes, top = larger(np.abs(lanes.state), np.abs(end)), np.zeros(h.shape)
         for row in sizes:
-            top = _larger(row, top)
+            top = larger(row, top)
         # below the roundings of the largest component no error can be seen
-        least = _larger(np.full(h.shape, self.atol), ROUNDING * top)
+        least = larger(np.full(h.shape, self.atol), ROUNDING * top)
         unit = 1.0 / (least + self.rtol * sizes)
         five, three = (_square(self._add(k, row) * unit) for row in (FIFTH, THIRD))
         part, rest = h * five, (five + 0.01 * three) * float(len(end))
         accepted: Mask = (part * part < rest) | (rest == 0.0)
         octaves = (0.5 * rough_log2(rest) - rough_log2(part)) * 0.125 - 0.15200309344504997
         limit = np.full(h.shape, 3.321928094887362), np.full(h.shape, -2.321928094887362)
-        octaves = _smaller(_larger(octaves, limit[1]), limit[0])
+        octaves = _smaller(larger(octaves, limit[1]), limit[0])
         wanted = np.where(part - part == 0.0, h * rough_power(octaves), h * 0.1)
         # one that is rejected and rounds to the same would be tried for ever
         wanted = np.where(~accepted & (_free(lanes, wanted, most) >= h), h * 0.25, wanted)
         short = accepted & (h < lanes.step)
-        lanes.step = np.where(short, _larger(lanes.step, wanted), wanted)
+        lanes.step = np.where(short, larger(lanes.step, wanted), wanted)
         return accepted
 
     def _parts(self, lanes: Lanes, h: Array, k: list[Array], end: Array) -> list[Array]:

@@ -205,6 +205,7 @@ class System(Functions):
         checkpoint: str | PathLike[str] | None = None,
         events: str | Event | Sequence[str | Event] | None = None,
         dense: bool = False,
+        seed: int | None = None,
     ) -> Solution:
         """Integrate one trajectory, or many at a time.
 
@@ -250,6 +251,11 @@ class System(Functions):
                 formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
                 end the trajectory. `Solution.events` has them by name.
             dense: Whether to keep the steps, from which `Solution.at` has the state at any time.
+            seed: Of the noise of a system that has some: from 0 to 2^64 - 1. The same seed gives
+                the same paths, for any number of threads and every target but ``"c-fast"``, and a
+                member has its own by its place in the batch. Such a system has the methods
+                ``"heun"`` and ``"midpoint"``, which ``"auto"`` is, with ``step``; samples lie at
+                the ends of steps.
 
         Returns:
             The labelled trajectory or trajectories, with observables and the drift of what is
@@ -286,6 +292,7 @@ class System(Functions):
             checkpoint=checkpoint,
             events=events,
             dense=dense,
+            seed=seed,
         )
 
     def ode(

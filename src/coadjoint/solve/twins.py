@@ -19,6 +19,7 @@ from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import Limits
 from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+from coadjoint.solve.stochastic import METHODS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +49,7 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection")
+        functions = (*choice.kind.rates, "domain", "projection", "noise")
         self._sizes = {name: system.rows(name).size for name in functions}
         module = KernelModule(system, choice.kind.files[2])
         self._expansion = module.function("expand")
@@ -87,7 +88,15 @@ class NumpyStepper:
             return DormandPrince8(
                 self._rates, run.rtol, run.atol, run.size, branches=self._branches
             )
-        return RungeKutta4(self._rates, run.size, branches=self._branches)
+        if self._choice.name == "rk4":
+            return RungeKutta4(self._rates, run.size, branches=self._branches)
+        return METHODS[self._choice.name](
+            rates=self._rates,
+            fields=self._fields,
+            size=run.size,
+            seed=run.seed,
+            bound=run.bound,
+        )
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
@@ -99,6 +108,10 @@ class NumpyStepper:
     def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The rates of all that is integrated."""
         return self._evaluate(self._choice.kind.rates, lanes, after, state)
+
+    def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """What each Wiener process does to the state."""
+        return self._evaluate(("noise",), lanes, after, state)
 
     def _project(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The nearest states on the constraints; what is reconstructed stays."""

@@ -16,7 +16,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
-from coadjoint.spec.kinds import is_in_frame, is_variational, kinds_of
+from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, kinds_of
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
@@ -119,6 +119,8 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         yield _Obstacle(f"has {one_of}", energies)
     if is_in_frame(file) and not start.in_frame and kinds == ("algebra",):
         yield _Obstacle("moves momenta, and the state has velocities")
+    if is_first_order(file) and not start.is_first_order:
+        yield _Obstacle("moves velocities or momenta, and here all velocities follow")
     variational = is_variational(file)
     if variational and start.is_hamiltonian and file.lagrangian is None:
         yield _Obstacle("has no Lagrangian to vary within the constraints", ("lagrangian",))
@@ -157,7 +159,11 @@ def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
 
     They move the same state: velocities along a frame, or momenta and coordinates.
     """
-    moves = [name for name, each in ROUTES.items() if each.in_frame == is_in_frame(file)]
+    moves = [
+        name
+        for name, each in ROUTES.items()
+        if each.in_frame == is_in_frame(file) and each.is_first_order == is_first_order(file)
+    ]
     if first:
         roles = {part.role for part in file.variables.values()}
         paired = file.poisson is not None or "momentum" in roles or file.lagrangian is None
@@ -331,7 +337,8 @@ def _check_partners(reading: Reading) -> None:
         if variable.role != "coordinate":
             continue
         lacking = not any(name in owned[role] for role in wanted)
-        if lacking or (owned["momentum"] and name not in owned["momentum"]):
+        some = owned["momentum"] and not is_first_order(reading.file)
+        if lacking or (some and name not in owned["momentum"]):
             role = wanted[-1] if lacking else "momentum"
             problem = " and no ".join(wanted) if lacking else "momentum, and others have"
             partner = reading.free_name("v" if role == "velocity" else "p", name)

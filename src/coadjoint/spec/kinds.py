@@ -25,6 +25,16 @@ def is_in_frame(file: Any) -> bool:
     return after or any(ROUTES[route].in_frame for route in file.routes)
 
 
+def is_first_order(file: Any) -> bool:
+    """Whether velocities of all coordinates follow from the state.
+
+    >>> from coadjoint.spec.schema import SpecFile
+    >>> is_first_order(SpecFile.model_construct(routes=["first-order"]))
+    True
+    """
+    return any(ROUTES[route].is_first_order for route in file.routes)
+
+
 def is_variational(file: Any) -> bool:
     """Whether constraints are imposed before the variation, on the motions that are compared.
 

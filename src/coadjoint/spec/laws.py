@@ -9,6 +9,7 @@ Read next: `coadjoint.spec.reader`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
 from coadjoint.algebra.catalogue import ATTITUDES
@@ -57,6 +58,7 @@ def demand_laws(units: Units, submanifold: Submanifold | None = None) -> None:
     _demand_constraints(units)
     _demand_driving(units)
     _demand_relaxation(units)
+    _demand_noise(units)
     _demand_lax(units)
     _demand_followed(units)
     demand_emitted(units)
@@ -120,9 +122,9 @@ def _demand_advected(units: Units, each: Variable, along: dict[int, Unit]) -> No
             for unit in _of_constant(units, value):
                 moved = along[place] * unit * own[column] * units.time
                 units.require(_unit_key(each), own[row], moved, why)
-    if action.name in ATTITUDES or each.form == "quaternion":
+    if action.name in ATTITUDES or each.turning or each.form == "quaternion":
         entries = units.names[each.name]
-        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[0] + 1]
+        fixed = own if each.form == "quaternion" else entries.entries[:: entries.shape[-1] + 1]
         for entry in fixed:
             units.require(_unit_key(each), entry, ONE, "An attitude is made of pure numbers.")
 
@@ -293,6 +295,13 @@ def _demand_relaxation(units: Units) -> None:
             units.require(relaxation.G.path, G, expect(i, i), why)
     else:
         units.equate(relaxation.G, [expect(i, j) for i, j in places], why)
+
+
+def _demand_noise(units: Units) -> None:
+    """A Wiener process is the square root of a time, and its Hamiltonian over that an energy."""
+    for each in units.spec.noise:
+        why = "Times its Wiener process, which is the square root of a time, it is an action."
+        units.equate(each.formula, (units.action / units.time ** Fraction(1, 2),), why)
 
 
 def _demand_lax(units: Units) -> None:

@@ -34,6 +34,7 @@ from coadjoint.spec.sections.inputs import Input
 from coadjoint.spec.sections.lax import Lax
 from coadjoint.spec.sections.momenta import Section
 from coadjoint.spec.sections.newton import Force
+from coadjoint.spec.sections.noise import Noise
 from coadjoint.spec.sections.observables import Observable
 from coadjoint.spec.sections.parameters import Parameter
 from coadjoint.spec.sections.poisson import Poisson
@@ -44,7 +45,7 @@ from coadjoint.spec.sections.rolling import Rolling
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
-from coadjoint.spec.sections.variables import Variable, state_of
+from coadjoint.spec.sections.variables import Variable, find_defined, state_of
 
 __all__ = [
     "FORMS",
@@ -57,6 +58,7 @@ __all__ = [
     "Input",
     "Integral",
     "Lax",
+    "Noise",
     "Observable",
     "Parameter",
     "Poisson",
@@ -154,6 +156,7 @@ class Spec:
         dissipation: Rayleigh's function R, whose force is ``-dR/dxi``, or None.
         domain: Where the system is defined, as far as declared.
         relaxation: Dissipation by a symmetric bracket, or None.
+        noise: Wiener processes with Hamiltonians of their own.
         rolling: How the body rolls on a plane, if it does.
         reconstruction: Variables that follow from the motion.
         sections: Sections of the constraint distribution with their momenta.
@@ -198,6 +201,7 @@ class Spec:
     dissipation: Formula | None = None
     domain: tuple[Condition, ...] = ()
     relaxation: Relaxation | None = None
+    noise: tuple[Noise, ...] = ()
     rolling: Rolling | None = None
     reconstruction: tuple[Reconstructed, ...] = ()
     sections: tuple[Section, ...] = ()
@@ -227,9 +231,8 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """The velocities that follow from the state, emitted with the dynamics."""
-        state = self.state
-        return tuple(each for each in self.having_role("velocity") if each not in state)
+        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        return find_defined(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
         """The velocity or momentum of a coordinate; None if none is declared."""
@@ -241,6 +244,11 @@ class Spec:
         """The group element in the state, as a matrix or a unit quaternion; None without one."""
         advected = ((v, v.representation) for v in self.having_role("advected"))
         return next((v for v, action in advected if action and action.name in ATTITUDES), None)
+
+    @property
+    def turning(self) -> tuple[Variable, ...]:
+        """The attitudes, quaternions and poses of the state."""
+        return tuple(each for each in self.variables if each.turning)
 
     @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:
@@ -264,6 +272,11 @@ class Spec:
         return any(variable.independent is not None for variable in self.variables)
 
     @property
+    def is_first_order(self) -> bool:
+        """Whether a Lagrangian of first order gives all velocities in the state."""
+        return any(variable.follows for variable in self.variables)
+
+    @property
     def kind(self) -> str:
         """``algebra``, ``poisson`` or ``configuration``: what the motion is declared on."""
         if self.algebra is not None:
@@ -282,6 +295,7 @@ class Spec:
                 block=(),
                 representation=None,
                 of="",
+                turning="",
             )
             for variable in self.variables
         )

@@ -38,7 +38,7 @@ from coadjoint.spec.dimensions import infer_units
 from coadjoint.spec.laws import demand_laws
 from coadjoint.spec.model import Spec
 from coadjoint.spec.sections.reduction import REDUCTION
-from coadjoint.spec.spatial import spatial_momenta
+from coadjoint.spec.spatial import grams, spatial_momenta
 from coadjoint.spec.tables import TABLES
 from coadjoint.spec.validate import validate
 
@@ -113,6 +113,7 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
     )
     derived = (*spatial_momenta(spec), *spec.reduced_momenta)
     following = [(each.of.name, each.name, each.components) for each in derived]
+    following += [(owner.name, each.name, each.components) for owner, each in grams(spec)]
     for owner, momentum, components in following:
         reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)

@@ -30,6 +30,8 @@ class Route:
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
         needs_energy: Whether it must have one of its energies.
+        is_first_order: Whether velocities of all coordinates follow from the state, in which the
+            Lagrangian is of first order.
         is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
             before the variation give.
     """
@@ -43,6 +45,7 @@ class Route:
     emitted: bool = True
     takes_driving: bool = True
     needs_energy: bool = True
+    is_first_order: bool = False
     is_hamiltonian: bool = False
 
     @property
@@ -57,7 +60,9 @@ _ALGEBRA = ("algebra",)
 _SPACE = ("configuration", "poisson")
 #: What acts in addition to the energy, on routes where a rate of momenta is known.
 _ACTS = ("forces", "dissipation", "double_bracket", "metriplectic")
-_on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS)
+#: The same where the state has momenta, which Hamiltonians of noise move.
+_ACTS_ON_MOMENTA = (*_ACTS, "noise")
+_on_algebra = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, options=_ACTS_ON_MOMENTA)
 _chart = partial(Route, kinds=_ALGEBRA, energies=_LAGRANGIAN, emitted=False)
 _in_frame = partial(
     Route,
@@ -81,13 +86,13 @@ _ROUTES = (
     Route(name="complexification", kinds=_ALGEBRA, energies=_HAMILTONIAN),
     _lax("manakov", _ALGEBRA),
     _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
-    Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS),
-    Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS),
+    Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS_ON_MOMENTA),
+    Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS_ON_MOMENTA),
     Route(
         name="canonical",
         kinds=("canonical", "configuration"),
         energies=_EITHER,
-        options=_ACTS,
+        options=_ACTS_ON_MOMENTA,
         is_hamiltonian=True,
     ),
     Route(
@@ -96,6 +101,7 @@ _ROUTES = (
         energies=_LAGRANGIAN,
         options=_ACTS,
     ),
+    Route(name="first-order", kinds=("configuration",), energies=_LAGRANGIAN, is_first_order=True),
     Route(name="newton", kinds=_SPACE, table="newton"),
     Route(name="alignment", kinds=_SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),

@@ -1,6 +1,7 @@
-"""Momenta as seen from space, emitted where the state has the attitude.
+"""Momenta as seen from space, and what stays of attitudes, emitted where the state has these.
 
-Comes in: a Spec with an attitude. Goes out: its momenta, each with whether it stays what it is.
+Comes in: a Spec with an attitude. Goes out: its momenta, each with whether it stays what it is, and
+the products ``R R^T`` or ``|q|^2``.
 Read next: `coadjoint.derive.mechanics.reconstruction`, which derives their components.
 """
 
@@ -8,9 +9,10 @@ from __future__ import annotations
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.algebra.catalogue import inverse_by
+from coadjoint.spec.core.components import Argument
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.tree import walk
-from coadjoint.spec.model import DerivedMomentum, Spec, derive_momentum
+from coadjoint.spec.model import DerivedMomentum, Spec, Variable, derive_momentum
 
 
 def spatial_momenta(spec: Spec) -> tuple[DerivedMomentum, ...]:
@@ -29,13 +31,39 @@ def spatial_momenta(spec: Spec) -> tuple[DerivedMomentum, ...]:
     elif not inverse_by(spec.algebra):
         return ()
     advected = {n for v in spec.having_role("advected") for n in (v.name, *v.components)}
-    is_free = not spec.relaxation and not advected & _names_in(spec.lagrangian, spec.hamiltonian)
+    is_free = not spec.relaxation and not advected & _names_in(
+        spec.lagrangian, spec.hamiltonian, *(each.formula for each in spec.noise)
+    )
     acted = _places_acted_on(spec)
     acting = (acted & set(each.block) if is_quaternion else acted for each in momenta)
     return tuple(
         derive_momentum(each, "spatial", conserved=is_free and not forced)
         for each, forced in zip(momenta, acting, strict=True)
     )
+
+
+def grams(spec: Spec) -> tuple[tuple[Variable, Argument], ...]:
+    """What stays of each attitude, quaternion or pose, emitted with the dynamics."""
+    return tuple((each, _name_gram(each)) for each in spec.turning)
+
+
+def _name_gram(each: Variable) -> Argument:
+    rows = 0 if each.turning == "quaternion" else each.shape[0]
+    shape, form = ((rows * (rows + 1) // 2,), "symmetric") if rows else ((), "")
+    return Argument(name=gram_name(each), shape=shape, unit="1", form=form)
+
+
+def gram_name(each: Variable) -> str:
+    """What the product that stays is called."""
+    return f"{each.name}_gram"
+
+
+def describe_gram(spec: Spec, each: Variable) -> str:
+    """The product that stays, as a formula."""
+    R = f"rotation({each.name})" if each.turning == "pose" else each.name
+    if each.turning == "quaternion":
+        return f"dot({R}, {R})"
+    return f"{R}*transpose({R})" if spec.invariance == "left" else f"transpose({R})*{R}"
 
 
 def _places_acted_on(spec: Spec) -> set[int]:

@@ -28,6 +28,7 @@ from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.lax import LAX
 from coadjoint.spec.sections.momenta import MOMENTA
 from coadjoint.spec.sections.newton import NEWTON
+from coadjoint.spec.sections.noise import NOISE
 from coadjoint.spec.sections.observables import OBSERVABLES
 from coadjoint.spec.sections.parameters import PARAMETERS
 from coadjoint.spec.sections.poisson import POISSON
@@ -61,6 +62,7 @@ TABLES: tuple[Table[Any], ...] = (
     DISSIPATION,
     DOUBLE_BRACKET,
     METRIPLECTIC,
+    NOISE,
     DOMAIN,
     ROLLING,
     RECONSTRUCTION,

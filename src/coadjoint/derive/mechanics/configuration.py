@@ -11,6 +11,7 @@ Read next: `coadjoint.derive.mechanics.legendre`, `coadjoint.derive.routes.euler
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -18,13 +19,13 @@ from functools import cached_property, partial
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.mechanics.radial import radial_solution
-from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.setting import Setting, fault, once, sampled_setting
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.dense import apply, determinant, dot, inverse
 from coadjoint.exact.ranks import witness_regular
-from coadjoint.spec import Formula
+from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.components import kept_places, matrix_size, unpack
 
 #: Largest set of coupled velocities solved symbolically; the cofactors of more would explode.
@@ -92,6 +93,11 @@ class Mechanics:
         return inverse_in_blocks(self.setting.field, self.mass, self.refusal)
 
     @cached_property
+    def is_long(self) -> bool:
+        """Whether M couples more velocities than are solved for by a written inverse."""
+        return any(len(block) > LARGEST_BLOCK for block in coupled_blocks(self.mass))
+
+    @cached_property
     def bending(self) -> dict[str, list[str]]:
         """The velocities on which rows of the mass matrix depend, by the velocity of the row.
 
@@ -151,6 +157,28 @@ def mechanics(setting: Setting) -> Mechanics:
     result = Mechanics(setting, setting.lagrangian)
     result.check_smooth()
     return result
+
+
+def moves_along_frame(setting: Setting) -> bool:
+    """Whether the kernel solves for the accelerations of coordinates that nothing binds.
+
+    Their velocities are the state, and more of them are coupled than a written inverse is for.
+    """
+    spec = setting.spec
+    free = spec.kind == "configuration" and spec.lagrangian is not None and not setting.momenta
+    return free and mechanics(setting).is_long
+
+
+def sampled_mechanics(spec: Spec) -> Mechanics:
+    """The declared Lagrangian with random numbers for everything but the velocities.
+
+    Which velocities are coupled shows there, before there is a field with the symbols that a solve
+    needs; unused symbols would slow down every operation in it.
+
+    Raises:
+        DerivationError: The Lagrangian has no derivatives; the route will say so.
+    """
+    return mechanics(sampled_setting(spec, "velocity", random.Random(1)))  # noqa: S311 (no secret)
 
 
 def declared_energy(setting: Setting) -> Element | None:

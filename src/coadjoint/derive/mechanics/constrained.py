@@ -254,10 +254,17 @@ def _check_regular(
     """The leading minors of a block, of which the pivots are quotients, vanish nowhere generic."""
     setting = motion.frame.setting
     if len(solve.block) > COUPLED_VELOCITIES:
+        bound = bool(setting.spec.constraints)
+        what = "accelerations and multipliers" if bound else "accelerations"
+        way = (
+            "Write constraints as Y == ..., which gives velocities"
+            if bound
+            else "Choose coordinates that decouple them"
+        )
         raise LimitError(
-            f"{setting.spec.path}: constraints and kinetic energy couple {len(solve.block)} "
-            f"accelerations and multipliers; at most {COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are "
-            "solved for in the kernel. Write constraints as Y == ..., which gives velocities.",
+            f"{setting.spec.path}: {'constraints and ' * bound}kinetic energy couple"
+            f"{'s' * (not bound)} {len(solve.block)} {what}; at most {COUPLED_VELOCITIES} "
+            f"(COUPLED_VELOCITIES) are solved for in the kernel. {way}.",
             path=str(setting.spec.path),
             found=len(solve.block),
         )

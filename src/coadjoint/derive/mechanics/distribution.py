@@ -176,7 +176,7 @@ def _equations(setting: Setting, frame: Frame, constraint: Constraint) -> list[E
         [field.zero] * len(constraint.components) if len(side) == 1 and side[0] == 0 else side
         for side in sides
     )
-    variable = next((v for v in setting.spec.variables if v.name == constraint.solves), None)
+    variable = next((v for v in setting.spec.defined if v.name == constraint.solves), None)
     given = variable.components if variable is not None else ("",) * len(left)
     parts = zip(constraint.components, constraint.reactions, left, right, given, strict=True)
     equations = [Equation(name, reaction, a - b, solves) for name, reaction, a, b, solves in parts]

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.mechanics.configuration import sampled_mechanics
 from coadjoint.derive.mechanics.contact import contact_names
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
@@ -23,6 +24,7 @@ from coadjoint.derive.mechanics.frames import Frame
 from coadjoint.derive.mechanics.parts import part_names, parts
 from coadjoint.derive.mechanics.solver import Definition, solver_names
 from coadjoint.derive.setting import Setting, make_setting, once
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 from coadjoint.spec.core.names import derived_names
@@ -47,7 +49,7 @@ def shift_name(place: int) -> str:
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """The names that the definitions of a motion over a frame need."""
-    if not spec.in_frame:
+    if not spec.in_frame and not _couples_many(spec):
         return ()
     known = kinematics(make_setting(spec))
     of = known.distribution
@@ -67,6 +69,21 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         *map(shift_name, range(len(of.independent) if of.kept else 0)),
         *(equation.reaction for equation in of.equations),
     )
+
+
+def _couples_many(spec: Spec) -> bool:
+    """Whether velocities of coordinates are the state, too many for a written inverse."""
+    if (
+        spec.kind != "configuration"
+        or spec.lagrangian is None
+        or spec.having_role("momentum")
+        or "euler-lagrange" not in spec.routes
+    ):
+        return False
+    try:
+        return sampled_mechanics(spec).is_long
+    except DerivationError:  # the route will say so
+        return False
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 
 from __future__ import annotations
 
-import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -22,8 +21,10 @@ from coadjoint.derive.mechanics.configuration import (
     coupled_blocks,
     inverse_in_blocks,
     mechanics,
+    sampled_mechanics,
 )
 from coadjoint.derive.mechanics.radial import radial_solution
+from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
     Definition,
     Solve,
@@ -32,7 +33,7 @@ from coadjoint.derive.mechanics.solver import (
     solver_names,
 )
 from coadjoint.derive.mechanics.variational import normal_extremals
-from coadjoint.derive.setting import Setting, calls_of, fault, once, sampled_setting
+from coadjoint.derive.setting import Setting, calls_of, fault, once
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
@@ -168,21 +169,19 @@ def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Elemen
 def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the intermediates of velocities that are solved for in the kernel, or are curved.
 
-    Which velocities are coupled shows with random numbers for everything else, before there is a
-    field; unused symbols would slow down every operation in it.
+    Which velocities are coupled shows before there is a field; see `sampled_mechanics`.
     """
     count = sum(len(variable.components) for variable in spec.having_role("velocity"))
     called = calls_of(spec, "velocity")
     if spec.lagrangian is None or spec.in_frame or (count <= LARGEST_BLOCK and not called):
         return ()
-    setting = sampled_setting(spec, "velocity", random.Random(1))  # noqa: S311 (no secret)
     try:
-        mass = mechanics(setting).mass
+        known = sampled_mechanics(spec)
     except DerivationError:  # the route will say so
         return ()
     names = list[str]()
-    for block in coupled_blocks(mass):
-        if setting.velocities[block[0]] in mechanics(setting).bending:
+    for block in coupled_blocks(known.mass):
+        if known.setting.velocities[block[0]] in known.bending:
             names += map(forward_name, block)
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
@@ -276,7 +275,9 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
     if len(matrix) > LARGEST_BLOCK or setting.field.is_zero(determinant(matrix)):
         problem = f"the Lagrangian has no invertible Legendre transform: {what} is 0"
         remedy = "expected every velocity in the kinetic energy. Add the missing kinetic term of "
-        remedy += f"{' and '.join(names)}."
+        remedy += f"{' and '.join(names)}.{tell_constraints(mechanics(setting))}"
+        if setting.spec.algebra is None:
+            remedy += " Or take the route first-order, without the momenta that these are of."
     else:
         problem = "the Legendre transform may be invertible nowhere: no point was found at which "
         problem += f"{what} is certainly not 0"

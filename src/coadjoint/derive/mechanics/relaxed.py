@@ -26,6 +26,7 @@ from coadjoint.derive.mechanics.configuration import (
     Mechanics,
     inverse_in_blocks,
     mechanics,
+    moves_along_frame,
 )
 from coadjoint.derive.mechanics.distribution import Row
 from coadjoint.derive.mechanics.external import metric, symbols
@@ -154,5 +155,7 @@ class Relaxed:
 @once
 def relaxed(setting: Setting) -> Relaxed | None:
     """The declared symmetric bracket where velocities along a frame are the state."""
-    declared = setting.spec.relaxation
-    return Relaxed(setting, declared) if declared is not None and setting.spec.in_frame else None
+    spec = setting.spec
+    if spec.relaxation is None or not (spec.in_frame or moves_along_frame(setting)):
+        return None
+    return Relaxed(setting, spec.relaxation)

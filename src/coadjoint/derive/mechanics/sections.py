@@ -43,7 +43,7 @@ def section_components(setting: Setting, section: Section) -> Row:
     bound = setting.spec.in_frame
     names = distribution(setting).independent if bound else frame_of(setting).velocities
     parts = dict.fromkeys(names, setting.field.zero)
-    for variable in setting.spec.variables:
+    for variable in (part for each in setting.spec.variables for part in each.parts):
         if variable.name in section.section:
             values = setting.components(section.section[variable.name])
             parts |= dict(zip(variable.components, values, strict=True))

@@ -13,20 +13,31 @@ With momenta p in the state these are rates of p. Without them the left side is 
 which for a kinetic energy alone is the geodesic equation :math:`\dot v^c = -\Gamma^c_{ab} v^a v^b`
 (section 2.2.4). Where l depends on time explicitly, :math:`-\partial^2 l/\partial v\,\partial t`
 stands on the right side, too.
+The kernel solves for the accelerations of more velocities than the inverse of M is written for.
 Comes in: a Setting with a Lagrangian and no algebra. Goes out: Equations.
 Read next: `coadjoint.derive.routes.canonical`, the same motion from a Hamiltonian.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import Mechanics, in_state_order, mechanics
+from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.emission import emit, emit_in_momenta
+from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
-from coadjoint.derive.records import Step, write_entries, write_rates, write_slopes, write_step
+from coadjoint.derive.records import (
+    Exact,
+    Step,
+    write_entries,
+    write_rates,
+    write_slopes,
+    write_step,
+)
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
@@ -55,10 +66,32 @@ def _in_velocities(known: Mechanics) -> Equations:
     carried = apply(known.mixed, v)
     own = [explicit_rate(setting, p, "a momentum dl/dv") for p in known.momenta]
     forces = [slope - c - e for slope, c, e in zip(known.slopes, carried, own, strict=True)]
+    if known.is_long:
+        return _solve_in_kernel(known, forces)
     moved = apply(known.inverse_mass, forces)
     named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
     rates = in_state_order(setting, named)
     return emit(setting, "euler-lagrange", rates, _steps(known, rates), known.energy)
+
+
+def _solve_in_kernel(known: Mechanics, forces: Sequence[Element]) -> Equations:
+    """``M dv/dt = dl/dq - d2l/dvdq v + f``, solved for more velocities than M^-1 is written for."""
+    setting = known.setting
+    acting = external_forces(setting, setting.velocities)
+    right = tuple(a + b for a, b in zip(forces, acting, strict=True))
+
+    def steps(exact: Exact) -> tuple[Step, ...]:
+        law = (
+            "Accelerations, solved for in the kernel",
+            "M dv/dt = dl/dq - d2l/dvdq v + f",
+            r"M \dot v = \partial l / \partial q - (\partial^2 l / \partial v\,\partial q) v + f",
+        )
+        lines = ((f"(M dv/dt)_{n}", value) for n, value in enumerate(right, 1))
+        solved = write_step(*law, lines)
+        *before, last = _steps(known, exact.rates, show_geometry=False)
+        return (*before, solved, last)
+
+    return emit_motion(start_motion(setting), "euler-lagrange", known.mass, right, steps)
 
 
 def _in_momenta(known: Mechanics) -> Equations:
@@ -119,7 +152,11 @@ def is_natural(known: Mechanics) -> bool:
 
 
 def _steps(
-    known: Mechanics, rates: tuple[Element, ...], transform: LegendreTransform | None = None
+    known: Mechanics,
+    rates: tuple[Element, ...],
+    transform: LegendreTransform | None = None,
+    *,
+    show_geometry: bool = True,
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     setting = known.setting
@@ -141,7 +178,7 @@ def _steps(
     if transform is not None:
         solved = transform.definitions
         steps.append(write_step("Velocities", "v solved from p = dl/dv", "v = v(q, p)", solved))
-    elif is_natural(known):
+    elif show_geometry and is_natural(known):
         steps += _geometry(known)
     latex = r"E = v \cdot \partial l / \partial v - l"
     steps.append(write_step("Energy", "E = v . dl/dv - l", latex, {"E": known.energy}))

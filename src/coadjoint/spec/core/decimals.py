@@ -15,14 +15,6 @@ from coadjoint.limits import DECIMAL_DIGITS, INTEGER_DIGITS
 
 _TEXT = re.compile(r"([-+]?)(\d+)(?:\.(\d+))?(?:/(\d+))?", re.ASCII)
 
-#: The same rule for editors.
-NUMBER_SCHEMA = {
-    "anyOf": [
-        {"type": "number"},
-        {"type": "string", "pattern": r"^[-+]?[0-9]+(\.[0-9]+)?(/[0-9]+)?$"},
-    ]
-}
-
 
 def read_float(text: str) -> Decimal:
     """A TOML float, for `tomllib.loads(parse_float=...)`; what Decimal cannot hold becomes NaN."""

@@ -13,9 +13,19 @@ from coadjoint.spec.core.faults import fault_at
 from coadjoint.spec.core.tree import Binary, Call, Index, Name, Negate, Node, Number, Power, fold
 
 #: Functions that are linear in each argument, so that degrees add up.
-_MULTILINEAR = ("dot", "cross", "outer", "commutator")
+_MULTILINEAR = ("dot", "cross", "outer", "commutator", "qmul")
 #: Functions that are linear in all arguments together.
-_LINEAR = ("trace", "transpose", "hat", "diag", "rows", "vector", "complex")
+_LINEAR = (
+    "trace",
+    "transpose",
+    "hat",
+    "diag",
+    "rows",
+    "vector",
+    "complex",
+    "conjugate",
+    "translation",
+)
 
 
 def degree_in(tree: Node, names: Sequence[str]) -> int | None:
@@ -45,6 +55,8 @@ def _degree(node: Node, below: Sequence[int | None], names: Sequence[str]) -> in
             return sum(known) if len(known) == len(below) else None
         case Call(function=function) if function in _MULTILINEAR:
             return sum(known) if len(known) == len(below) else None
+        case Call(function="rotate"):
+            return 2 * known[0] + known[1] if len(known) == len(below) else None
         case Power(exponent=exponent) if exponent > 0:
             return known[0] * exponent if known else None
     same = all(a == b for a, b in combinations(known, 2))

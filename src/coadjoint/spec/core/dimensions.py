@@ -319,6 +319,22 @@ def _cross(asking: _Asking, a: Measured, b: Measured) -> Measured:
     )
 
 
+def _qmul(asking: _Asking, a: Measured, b: Measured) -> Measured:
+    x, y = a.entries, b.entries
+    rows = (range(4), (1, 0, 3, 2), (2, 3, 0, 1), (3, 2, 1, 0))
+    sums = (asking.same(_times(x[i], y[j]) for i, j in enumerate(row)) for row in rows)
+    return Measured(a.shape, tuple(sums))
+
+
+def _rotation(asking: _Asking, a: Measured) -> Measured:
+    """Sums of squares of a quaternion, or a pose without its last column."""
+    if len(a.shape) == 2:
+        rows = a.shape[:1] * 2
+        return Measured(rows, tuple(entry for row in a.rows() for entry in row[:-1]))
+    square = asking.same(_times(x, x) for x in a.entries)
+    return Measured((3, 3), (square,) * 9)
+
+
 def _commutator(asking: _Asking, a: Measured, b: Measured) -> Measured:
     both = zip(_multiply(asking, a, b).entries, _multiply(asking, b, a).entries, strict=True)
     return Measured(a.shape, tuple(asking.same(pair) for pair in both))
@@ -407,6 +423,11 @@ _RULES: Mapping[str, Callable[..., Measured]] = MappingProxyType(
         "diag": _diag,
         "norm": _norm,
         "outer": _outer,
+        "qmul": _qmul,
+        "conjugate": lambda asking, a: a,
+        "rotation": _rotation,
+        "rotate": lambda asking, q, v: _multiply(asking, _rotation(asking, q), v),
+        "translation": lambda asking, a: Measured(a.shape[:1], tuple(r[-1] for r in a.rows())),
         "rows": _stack,
         "vector": _stack,
         "sqrt": lambda asking, a: scalar(_root(a.entries[0])),

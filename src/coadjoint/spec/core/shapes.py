@@ -33,6 +33,8 @@ SCALAR = {each.name: each.arity for each in ELEMENTARY.values()} | {"tan": 1}
 PIECEWISE = ("abs", "min", "max")
 #: Determinants and inverses are written out; larger systems are solved inside the kernel.
 LARGEST_INVERSE = 3
+#: A quaternion in formulas: its real part, then its vector.
+QUATERNION = (4,)
 
 
 def _is_square(a: Shape) -> bool:
@@ -41,6 +43,17 @@ def _is_square(a: Shape) -> bool:
 
 def _is_small_square(a: Shape) -> bool:
     return _is_square(a) and a[0] <= LARGEST_INVERSE
+
+
+def _rotation(a: Shape) -> Shape | None:
+    """The turning part: of a quaternion, or of a pose with one column more than rows."""
+    if a == QUATERNION:
+        return (3, 3)
+    return (a[0], a[0]) if _is_pose(a) else None
+
+
+def _is_pose(a: Shape) -> bool:
+    return len(a) == 2 and a[1] == a[0] + 1
 
 
 _Rule = Callable[..., Shape | None]
@@ -61,6 +74,11 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
         "rows": lambda *a: (len(a), *a[0]) if len(a[0]) == 1 and set(a) == {a[0]} else None,
         "vector": lambda *a: None if any(a) else (len(a),),
+        "qmul": lambda a, b: a if a == b == QUATERNION else None,
+        "conjugate": lambda a: a if a == QUATERNION else None,
+        "rotate": lambda a, b: b if a == QUATERNION and b == (3,) else None,
+        "rotation": _rotation,
+        "translation": lambda a: a[:1] if _is_pose(a) else None,
         **dict.fromkeys((*SCALAR, *PIECEWISE, "pow"), lambda *a: None if any(a) else ()),
     }
 )
@@ -102,6 +120,19 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "vector": Function(0, "scalars", "vector of these components"),
         "rows": Function(0, "vectors of one length", "matrix with these rows"),
         "norm": Function(1, "a vector", "sqrt(dot(a, a))"),
+        "qmul": Function(2, "two quaternions, vectors of 4", "product of quaternions a b"),
+        "conjugate": Function(1, "a quaternion, a vector of 4", "conjugate a* of a quaternion"),
+        "rotate": Function(
+            2,
+            "a quaternion and a 3-vector",
+            "the vector of a b a*, which is b turned by a where a has length 1",
+        ),
+        "rotation": Function(
+            1,
+            "a quaternion, or a pose with one column more than rows",
+            "matrix of `rotate(a, b)`, or R of a pose `[R, x]`",
+        ),
+        "translation": Function(1, "a pose with one column more than rows", "x of a pose `[R, x]`"),
         "tan": Function(1, "a scalar", "tangent"),
         "pow": Function(2, "two scalars", "power with any exponent, of a positive base: a^b"),
         "abs": Function(1, "a scalar", "absolute value"),

@@ -18,7 +18,7 @@ from coadjoint import limits
 from coadjoint.elementary import ELEMENTARY, has_constant_value
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, fault_at
-from coadjoint.spec.core.shapes import PIECEWISE, SCALAR, shapes
+from coadjoint.spec.core.shapes import PIECEWISE, QUATERNION, SCALAR, shapes
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
@@ -243,6 +243,12 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             return _largest(below)
         case "cross":
             return _product(a, below[1], 2)
+        case "qmul":
+            return _product(a, below[1], n)
+        case "rotate":
+            return _product(_product(a, a, 4), below[1], 3)
+        case "rotation" if shape[0] == QUATERNION:
+            return _product(a, a, 4)
         case "commutator":
             products = _product(a, below[1], _count_products(below, shape))
             return _sum(products, products)
@@ -252,6 +258,8 @@ def _tensor(node: Node, function: str, below: list[Size], shape: list[Shape]) ->
             return Size(terms=a.terms, degree=a.degree, bits=a.bits, diagonal=len(shape[0]) == 1)
         case "transpose":
             return a
+        case "conjugate" | "rotation" | "translation":
+            return replace(a, diagonal=False, constant=None)
         case "hat":
             return Size(terms=a.terms, degree=a.degree, bits=a.bits)
         case "norm":

@@ -15,7 +15,8 @@ from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
 from coadjoint.errors import CoadjointError
 from coadjoint.limits import STATE_COMPONENTS, TITLE_CHARACTERS, UNIT_CHARACTERS
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.decimals import NUMBER_SCHEMA, is_number_text, read_number
+from coadjoint.spec.core.constants import read_constant
+from coadjoint.spec.core.decimals import is_number_text, read_number
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
@@ -69,6 +70,17 @@ def _number(value: object) -> Fraction:
         raise ValueError(f"an exact number such as 2, 0.5 or '1/3'; this one {error}") from None
 
 
+def _constant(value: object) -> Fraction:
+    """A number, or a text that is a formula of numbers."""
+    if not isinstance(value, str) or is_number_text(value):
+        return _number(value)
+    try:
+        return read_constant(value)
+    except ValueError as error:
+        problem = f"an exact number such as 2, '1/3' or 'sqrt(2)/2'; this one {error}"
+        raise ValueError(problem) from None
+
+
 def _entry(value: object) -> Fraction | str:
     """A number, or a text that a later step reads as a formula of the parameters."""
     if isinstance(value, str) and not is_number_text(value):
@@ -80,10 +92,10 @@ def _numbers(value: object) -> Any:
     """A number, or lists of numbers, nested at most twice."""
     if isinstance(value, list):
         return [
-            [_number(entry) for entry in part] if isinstance(part, list) else _number(part)
+            [_constant(entry) for entry in part] if isinstance(part, list) else _constant(part)
             for part in value
         ]
-    return _number(value)
+    return _constant(value)
 
 
 def _block(value: object) -> str | list[str]:
@@ -93,18 +105,18 @@ def _block(value: object) -> str | list[str]:
     return value if isinstance(value, str) else list(names)
 
 
+_NUMBER_OR_TEXT: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 _NUMBER_OR_LISTS: dict[str, Any] = {
     "anyOf": [
-        *NUMBER_SCHEMA["anyOf"],
+        *_NUMBER_OR_TEXT["anyOf"],
         {
             "type": "array",
             "items": {
-                "anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "array", "items": NUMBER_SCHEMA}]
+                "anyOf": [*_NUMBER_OR_TEXT["anyOf"], {"type": "array", "items": _NUMBER_OR_TEXT}]
             },
         },
     ]
 }
-_NUMBER_OR_TEXT: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 _TEXTS: dict[str, Any] = {
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]
 }

@@ -1,7 +1,8 @@
 """Matrices over the basis of an algebra, and the representations that they are.
 
 Comes in: tables of matrices and names of representations. Goes out: exact `Representation` records
-that have been checked to commute like the algebra; or an error with file, line and key.
+that have been checked to commute like the algebra, and forms of variables that have been checked
+to fit the basis; or an error with file, line and key.
 Read next: `coadjoint.spec.sections.algebras`.
 """
 
@@ -17,11 +18,14 @@ from coadjoint.algebra.catalogue import (
     representation_by_name,
     representation_on_block,
 )
+from coadjoint.algebra.families import so, so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
+from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.limits import MATRIX_ENTRIES, STATE_COMPONENTS
 from coadjoint.spec.core.coefficients import Scalars, read_coefficient
+from coadjoint.spec.core.components import matrix_size
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.positions import KeyPath
@@ -202,3 +206,50 @@ def representation_of(
         if places:
             return representation_on_block(algebra, places, name, invariance)
         return representation_by_name(algebra, name, invariance)
+
+
+def check_elements(
+    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
+) -> None:
+    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
+    rows = matrix_size(len(block), form)
+    sign = -1 if form == "antisymmetric" else 1
+    for i in block:
+        matrix = algebra.elements[i]
+        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
+        if form == "matrix" or len(block) < algebra.dimension:
+            turned = {}
+        if size(algebra.elements) != rows or turned != dict(matrix):
+            problem = f"the matrix of {algebra.basis[i]} is not of the form {form!r}"
+            expected = f"a basis of all {form} matrices with {rows} rows"
+            hint = "Remove form, or declare the algebra by such matrices."
+            raise source.fault(key, problem, algebra.basis[i], expected, hint)
+
+
+def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
+    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
+
+    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
+    and no invariant would show it.
+    """
+    size = matrix_size(len(block), "antisymmetric")
+    assert size is not None, block
+    place = {b: n for n, b in enumerate(block)}
+    constants: dict[tuple[int, int], dict[int | None, object]] = {}
+    for (i, j), row in algebra.constants.items():
+        if i in place and j in place:
+            a, b = place[i], place[j]
+            sign = 1 if a < b else -1
+            constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
+    planes = so_indefinite(3, 0) if size == 3 else so(size)  # so(3) has other axes
+    if size > 2 and constants != dict(planes.constants):
+        names = list_names(algebra.basis[b] for b in block)
+        raise source.fault(
+            key,
+            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
+            names,
+            "a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
+            "Leave form out, and write hat(...) where a matrix is meant."
+            if size == 3
+            else "Leave form out, or declare the algebra by these matrices.",
+        )

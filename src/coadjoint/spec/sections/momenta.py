@@ -73,7 +73,9 @@ def read_sections(reading: Reading, parts: Mapping[str, SectionPart]) -> tuple[S
         hint = "Name the momentum in [observables], and claim it in claims.conserved."
         raise reading.fault(("momenta",), problem, "momenta", expected, hint)
     scope = reading.scope("a section", position_roles(reading), driven=())
-    velocities = [each for each in VARIABLES.of(reading) if each.role == "velocity"]
+    velocities = [
+        part for each in VARIABLES.of(reading) if each.role == "velocity" for part in each.parts
+    ]
     independent = {each.name: each for each in velocities if each.independent is not False}
     return tuple(
         Section(

@@ -1,4 +1,4 @@
-"""Solved velocities: those that a constraint gives, which are not part of the state.
+"""Solved velocities: those that a constraint gives, whole or by component; no part of the state.
 
 Comes in: the checked tables, before there are variables, since this decides what the state is. Goes
 out: the velocities with their constraints. Read next: `coadjoint.spec.sections.variables`.
@@ -16,15 +16,16 @@ from coadjoint.spec.core.tree import Index, Name, Node, walk
 from coadjoint.spec.kinds import VARIATIONAL, is_in_frame
 
 _COMPONENT = re.compile(r"(?P<name>.*?)_?\d+(_\d+)?")
+_INDICES = re.compile(r"_?\d+(_\d+)?")
 _SIDES = 2
 
 
 def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
     """The velocities that constraints give, each with its constraint and the side it stands on.
 
-    A constraint gives a velocity if one side is that velocity alone and the other one does not
-    depend on it, also not through velocities that earlier constraints give; and if no force names
-    its reaction, which is then solved for together with the accelerations.
+    A constraint gives a velocity, or a component of one, if one side is that name alone and the
+    other one does not depend on it, also not through velocities that earlier constraints give; and
+    if no force names its reaction, which is then solved for together with the accelerations.
 
     Args:
         file: The validated tables; formulas that cannot be read yet are passed over.
@@ -46,20 +47,46 @@ def find_solved_velocities(file: Any) -> Mapping[str, tuple[str, int]] | None:
             continue
         left, right = sides
         for own, other, sign in ((left, right, 1), (right, left, -1)):
-            free = isinstance(own, Name) and own.name in velocities - set(solved)
-            if not isinstance(own, Name) or not free or other is None:
+            if not isinstance(own, Name) or other is None:
                 continue
-            names = _find_names(other, file) & velocities
-            names = names.union(*(reached[name] for name in names if name in reached))
-            if own.name not in names:
+            if not _is_velocity(file, own.name, velocities) or _meets(own.name, solved):
+                continue
+            names = {n for n in _list_named(other, file) if _is_velocity(file, n, velocities)}
+            names = names.union(*(reached[each] for each in reached if _meets(each, names)))
+            if not _meets(own.name, names):
                 solved[own.name] = constraint, sign
                 reached = {
-                    name: {*rest, *names} if own.name in rest else rest
+                    name: {*rest, *names} if _meets(own.name, rest) else rest
                     for name, rest in reached.items()
                 }
                 reached[own.name] = names
                 break
     return solved
+
+
+def is_component(component: str, name: str) -> bool:
+    """Whether a name is one that a component of a quantity may have.
+
+    >>> is_component("Omega12", "Omega"), is_component("v1_2", "v1"), is_component("v12", "v1")
+    (True, True, False)
+    """
+    rest = component.removeprefix(name)
+    apart = rest.startswith("_") or not name[-1].isdigit()
+    return rest != component and apart and _INDICES.fullmatch(rest) is not None
+
+
+def _is_velocity(file: Any, name: str, velocities: Iterable[str]) -> bool:
+    """Whether a name is that of a velocity or, unless declared otherwise, of a component of one."""
+    if any(name in table for table in (file.variables, file.parameters, file.inputs)):
+        return name in velocities
+    return any(is_component(name, each) for each in velocities)
+
+
+def _meets(name: str, others: Iterable[str]) -> bool:
+    """Whether a velocity, or component, is among others, is part of one or has one as its part."""
+    return any(
+        name == other or is_component(name, other) or is_component(other, name) for other in others
+    )
 
 
 def constraint_texts(file: Any) -> dict[str, str]:
@@ -104,6 +131,12 @@ def _parse(text: str, file: Any) -> Node | None:
 
 def _find_names(node: Node, file: Any) -> set[str]:
     """Variables that an expression names, whole or by component, through definitions, and these."""
+    names = _list_named(node, file)
+    return names | {match["name"] for name in names if (match := _COMPONENT.fullmatch(name))}
+
+
+def _list_named(node: Node, file: Any) -> set[str]:
+    """What an expression names, as it is written, also through definitions, and these."""
     defined = {key.split("(")[0].strip(): text for key, text in file.definitions.items()}
     pending, seen, names = [node], set[str](), set[str]()
     while pending:
@@ -115,6 +148,5 @@ def _find_names(node: Node, file: Any) -> set[str]:
                 inner = _parse(defined[name], file)
                 pending += [] if inner is None else [inner]
             elif isinstance(part, Name | Index):
-                match = _COMPONENT.fullmatch(name)
-                names |= {name, match["name"]} if match else {name}
+                names.add(name)
     return names

@@ -7,18 +7,17 @@ Read next: `coadjoint.spec.sections.definitions`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from math import prod
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.catalogue import REPRESENTATIONS as KNOWN
-from coadjoint.algebra.families import so, so_indefinite
 from coadjoint.algebra.lie_algebra import LieAlgebra, SparseMatrix
-from coadjoint.algebra.matrices import size
 from coadjoint.algebra.representation import Representation
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import FORMS, Components, Shape, matrix_size
@@ -28,6 +27,7 @@ from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.units import split_units
 from coadjoint.spec.core.values import (
     Block,
     Length,
@@ -37,10 +37,17 @@ from coadjoint.spec.core.values import (
     misfit_form,
     read_default,
 )
+from coadjoint.spec.kinds import is_first_order
 from coadjoint.spec.sections.algebras import ALGEBRA
-from coadjoint.spec.sections.matrices import block_places, representation_of
+from coadjoint.spec.sections.matrices import (
+    block_places,
+    check_elements,
+    check_planes,
+    representation_of,
+)
 from coadjoint.spec.sections.representations import REPRESENTATIONS
 from coadjoint.spec.sections.solved import find_solved_velocities
+from coadjoint.spec.sections.turning import TURNING, advect, find_shape, read_rotation
 
 #: Keys that say how large a variable is, and the variables that each is for.
 _OWN_KEYS = {
@@ -48,13 +55,18 @@ _OWN_KEYS = {
     "representation": "advected quantities",
     "shape": "coordinates",
     "of": "velocities and momenta of coordinates",
+    "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
+    "follows": "coordinates",
 }
 _KEYS_OF = {
-    "velocity": ("block", "of", "default"),
-    "momentum": ("block", "of", "default"),
-    "advected": ("representation", "block", "default"),
-    "coordinate": ("shape", "default"),
+    "velocity": ("block", "of", "form", "default"),
+    "momentum": ("block", "of", "form", "default"),
+    "advected": ("representation", "block", "form", "default"),
+    "coordinate": ("shape", "form", "default", "follows"),
+    "attitude": ("block", "default"),
+    "quaternion": ("block", "default"),
+    "pose": ("block", "default"),
     "contact": ("default",),
 }
 
@@ -63,12 +75,22 @@ SPACE = 3
 
 
 class VariablePart(Part):
-    """A velocity, a momentum, an advected quantity, a coordinate or a point of contact."""
+    """A velocity, a momentum, an advected quantity, a coordinate, an attitude or a contact."""
 
-    role: Literal["velocity", "momentum", "advected", "coordinate", "contact"] = Field(
+    role: Literal[
+        "velocity",
+        "momentum",
+        "advected",
+        "coordinate",
+        "attitude",
+        "quaternion",
+        "pose",
+        "contact",
+    ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
-        "with a 'velocity' or 'momentum' of it; 'contact' for a point at which [rolling] has a "
-        "body touch a surface"
+        "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'contact' "
+        "for a point at which [rolling] has a body touch a surface"
     )
     block: Block | None = Field(
         None,
@@ -92,6 +114,11 @@ class VariablePart(Part):
         None,
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
+    )
+    follows: bool | None = Field(
+        None,
+        description="true for a coordinate that the constraints of a singular Lagrangian give in "
+        "terms of the others, on the route first-order",
     )
     default: Numbers | None = Field(
         None,
@@ -120,6 +147,10 @@ class Variable(Components):
             empty where the form says it all.
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
+        turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
+        given: The components that constraints give one by one; the others are state by themselves.
+        follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
+            coordinate that is declared to follow.
     """
 
     name: str
@@ -134,6 +165,32 @@ class Variable(Components):
     elements: tuple[SparseMatrix, ...] = ()
     default: tuple[Fraction, ...] | None = None
     independent: bool | None = None
+    turning: str = ""
+    given: tuple[str, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Variable, ...]:
+        """The variable; its components, each a variable, where constraints give some of them."""
+        if not self.given:
+            return (self,)
+        units = split_units(self.unit, len(self.components)) or ()
+        return tuple(
+            replace(
+                self,
+                name=name,
+                shape=(),
+                form="",
+                elements=(),
+                block=self.block[n : n + 1],
+                unit=units[n][0] if units else self.unit,
+                default=self.default and self.default[n : n + 1],
+                independent=name not in self.given,
+                given=(),
+            )
+            for n, name in enumerate(self.components)
+        )
+
+    follows: bool = False
 
 
 def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -141,11 +198,22 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
     given = {variable.of for variable in variables if variable.role == "momentum"}
     return tuple(
         variable
-        for variable in variables
-        if variable.independent
-        or variable.role != "velocity"
-        or (variable.independent is None and variable.of and variable.of not in given)
+        for whole in variables
+        for variable in whole.parts
+        if not variable.follows
+        and (
+            variable.independent
+            or variable.role != "velocity"
+            or (variable.independent is None and variable.of and variable.of not in given)
+        )
     )
+
+
+def find_defined(variables: Sequence[Variable]) -> tuple[Variable, ...]:
+    """Velocities, or components of them, and coordinates that follow from the state."""
+    state, roles = state_of(variables), ("velocity", "coordinate")
+    parts = (part for each in variables if each.role in roles for part in each.parts)
+    return tuple(part for part in parts if part not in state)
 
 
 def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple[Variable, ...]:
@@ -163,7 +231,7 @@ def read_variables(reading: Reading, parts: Mapping[str, VariablePart]) -> tuple
 
 
 def _read_variable(
-    reading: Reading, name: str, part: VariablePart, solved: Collection[str] | None
+    reading: Reading, name: str, part: VariablePart, solved: Mapping[str, Any] | None
 ) -> Variable:
     """One variable; velocities that constraints give are not part of the state."""
     source, parts = reading.source, reading.file.variables
@@ -172,9 +240,18 @@ def _read_variable(
     for alien in _OWN_KEYS:
         if alien not in _KEYS_OF[part.role] and getattr(part, alien) is not None:
             raise _alien_key(source, (*key, alien), part)
-    if part.default is not None and not _is_state(name, part, parts, solved):
+    follows = bool(part.follows) or (part.role == "velocity" and is_first_order(reading.file))
+    if part.follows and not is_first_order(reading.file):
+        problem = f"{name!r} follows from constraints that only the route first-order finds"
+        expected = 'routes = ["first-order"], or a coordinate of the state'
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    if part.default is not None and (follows or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
+    turning = part.role if part.role in TURNING else ""
+    if turning and algebra is not None:
+        part = advect(part, algebra)
     block: tuple[int, ...] = ()
+    given: Shape = ()
     representation = None
     constrained = solved is not None
     if part.role == "momentum" and constrained:
@@ -183,7 +260,7 @@ def _read_variable(
         _check_rolling(reading, key)
         count, flat = SPACE, True
     elif part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
-        if not constrained or part.role == "advected":
+        if not constrained or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
             part = _as_partner(source, key, part, parts)
@@ -203,6 +280,9 @@ def _read_variable(
             block = block_places(source, (*key, "block"), part.block, algebra)
         count, flat = len(block), len(block) > 1
     form = part.form or _own_form(part.representation, count)
+    if turning and representation is not None:
+        given = find_shape(source, key, turning, representation, invariance)
+        form = form if turning == "quaternion" else ""
     if form in FORMS and matrix_size(count, form) is None:
         raise misfit_form(source, (*key, "form"), count, form)
     elements: tuple[SparseMatrix, ...] = ()
@@ -212,7 +292,9 @@ def _read_variable(
     elif form == "antisymmetric" and block and algebra is not None:
         check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
-    return Variable(
+    read_start = partial(read_rotation, role=turning) if turning else read_default
+    shape = given or shape
+    variable = Variable(
         name=name,
         role=part.role,
         shape=shape,
@@ -223,9 +305,33 @@ def _read_variable(
         form=form,
         of=part.of or "",
         elements=elements,
-        default=read_default(source, (*key, "default"), part.default, shape),
-        independent=name not in solved if solved is not None and part.role == "velocity" else None,
+        default=read_start(source, (*key, "default"), part.default, shape),
+        turning=turning,
+        follows=follows,
     )
+    return variable if part.role != "velocity" else _bind(reading, variable, solved)
+
+
+def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None) -> Variable:
+    """A velocity with what constraints give of it.
+
+    Raises:
+        SpecError: A component that a constraint gives has a default.
+    """
+    if solved is None:
+        return variable
+    given = tuple(x for x in variable.components if x in solved and variable.shape)
+    for name, value in zip(variable.components, variable.default or (), strict=False):
+        if name in given and value:
+            raise reading.fault(
+                ("variables", variable.name, "default"),
+                f"{name} has the default {value}, and the constraint {solved[name][0]} gives it",
+                str(value),
+                f"0 in the place of {name}, which is not part of the state",
+                f"Write 0 in the place of {name}.",
+            )
+    free = variable.name not in solved and given != variable.components
+    return replace(variable, independent=free, given=given)
 
 
 def _check_rolling(reading: Reading, key: KeyPath) -> None:
@@ -301,61 +407,16 @@ def _check_role(
     source: Source, key: KeyPath, part: VariablePart, algebra: LieAlgebra | None
 ) -> None:
     """Coordinates do without an algebra, advected quantities do not."""
+    hint = ""
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
-    elif part.role == "advected" and algebra is None:
+        hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
+    elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
         return
     problem = f"{key[-1]!r} has the role {part.role!r} {place}"
-    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}")
-
-
-def check_elements(
-    source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...], form: str
-) -> None:
-    """The matrices of an algebra with a bracket of its own are of the form that is declared."""
-    rows = matrix_size(len(block), form)
-    sign = -1 if form == "antisymmetric" else 1
-    for i in block:
-        matrix = algebra.elements[i]
-        turned = {(c, r): sign * value for (r, c), value in matrix.items()}
-        if form == "matrix" or len(block) < algebra.dimension:
-            turned = {}
-        if size(algebra.elements) != rows or turned != dict(matrix):
-            problem = f"the matrix of {algebra.basis[i]} is not of the form {form!r}"
-            expected = f"a basis of all {form} matrices with {rows} rows"
-            hint = "Remove form, or declare the algebra by such matrices."
-            raise source.fault(key, problem, algebra.basis[i], expected, hint)
-
-
-def check_planes(source: Source, key: KeyPath, algebra: LieAlgebra, block: tuple[int, ...]) -> None:
-    """Components above a diagonal go along E_12, E_13, ...: the planes of so(n) in their order.
-
-    Along J1, J2, J3 = E_32, E_13, E_21 the equation dM/dt = [M, Omega] would have the other sign,
-    and no invariant would show it.
-    """
-    size = matrix_size(len(block), "antisymmetric")
-    assert size is not None, block
-    place = {b: n for n, b in enumerate(block)}
-    constants: dict[tuple[int, int], dict[int | None, object]] = {}
-    for (i, j), row in algebra.constants.items():
-        if i in place and j in place:
-            a, b = place[i], place[j]
-            sign = 1 if a < b else -1
-            constants[min(a, b), max(a, b)] = {place.get(k): sign * c for k, c in row.items()}
-    planes = so_indefinite(3, 0) if size == 3 else so(size)  # so(3) has other axes
-    if size > 2 and constants != dict(planes.constants):
-        names = list_names(algebra.basis[b] for b in block)
-        raise source.fault(
-            key,
-            f"the block {names} of {algebra.name} does not commute like the planes of so({size})",
-            names,
-            "a basis E12, E13, ... of matrices e_i e_j^T - e_j e_i^T for i < j",
-            "Leave form out, and write hat(...) where a matrix is meant."
-            if size == 3
-            else "Leave form out, or declare the algebra by these matrices.",
-        )
+    raise source.fault((*key, "role"), problem, part.role, f"{roles} {place}", hint)
 
 
 def _representation(
@@ -394,9 +455,9 @@ def _own_form(representation: str | None, count: int) -> str:
 
 def _name_all(table: str, variables: Sequence[Variable]) -> Iterator[Naming]:
     """The names of variables, of their components, and of the rates of the state."""
-    state = state_of(variables)
+    state = {name for each in state_of(variables) for name in each.components}
     for each in variables:
-        rates = tuple(derived_names(each.components)) if each in state else ()
+        rates = tuple(derived_names(x for x in each.components if x in state))
         yield Naming(
             key=(table, each.name), name=each.name, components=each.components, rates=rates
         )

@@ -21,7 +21,10 @@ _FUNCTIONS = {
     **{
         f"find_{name}": f"{kind} void find_{name}(\n    const Block *restrict _block, V _after, "
         "const V *restrict _state, V *restrict _rows)"
-        for name, kind in {"rates": "LINKAGE", "domain": "static", "projection": "static"}.items()
+        for name, kind in {
+            "rates": "LINKAGE",
+            **dict.fromkeys(("domain", "projection", "noise"), "static"),
+        }.items()
     },
 }
 #: The functions that are loops where the rates are, which belong to the template then.

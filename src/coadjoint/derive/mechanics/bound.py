@@ -1,0 +1,289 @@
+r"""Motions bound by a singular two-form: Dirac's steps, in the form of Gotay, Nester and Hinds.
+
+The equations :math:`\omega\,\dot x = \partial h` have a solution where
+:math:`n \cdot \partial h = 0` for every n with :math:`n\,\omega = 0`. A solution along what is left
+asks for
+
+.. math:: \begin{pmatrix} \omega \\ \partial \phi \end{pmatrix} \dot x
+    = \begin{pmatrix} \partial h \\ 0 \end{pmatrix}
+
+with the constraints :math:`\phi = 0` so far, which may bind x further, until nothing is added. Then
+the rates are determined, if the matrix has full rank there. Each constraint is solved for a
+component of x that has a number for its factor, those first that are declared to follow.
+Comes in: a one-form and a Hamiltonian. Goes out: what follows, or why there is no motion.
+Read next: `coadjoint.derive.mechanics.first_order`.
+
+Source:
+    Dirac (1964), Lectures on Quantum Mechanics, lecture 1; Gotay, Nester and Hinds (1978), Journal
+    of Mathematical Physics 19, 2388-2399.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from dataclasses import field as attribute
+
+from coadjoint.derive.mechanics.configuration import Matrix, coupled_blocks
+from coadjoint.derive.setting import Setting, fault
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.dense import apply, dot, inverse, pfaffian, transpose
+from coadjoint.exact.ranks import independent_rows
+from coadjoint.exact.witness import is_nonzero
+
+#: Coupled components of x up to which the inverse of omega is written out, by Pfaffians.
+LARGEST = 8
+Row = tuple[Element, ...]
+
+
+@dataclass(frozen=True)
+class Form:
+    """``theta(x) dx/dt - h(x)``.
+
+    Attributes:
+        names: Of the components of x.
+        theta: A component for each of them.
+        energy: h.
+    """
+
+    names: tuple[str, ...]
+    theta: Row
+    energy: Element
+
+    def two_form(self, field: Field) -> Matrix:
+        """``omega_ij = d theta_j/dx_i - d theta_i/dx_j``."""
+        slopes = [field.gradient(value, self.names) for value in self.theta]
+        size = range(len(self.names))
+        return tuple(tuple(slopes[j][i] - slopes[i][j] for j in size) for i in size)
+
+    def put(self, field: Field, name: str, value: Element) -> Form:
+        """The same on ``name = value``: theta is pulled back."""
+        named = dict(zip(self.names, self.theta, strict=True))
+        own = named.pop(name)
+        slopes = zip(named, field.gradient(value, list(named)), strict=True)
+        pulled = (field.substitute(named[x] + own * slope, {name: value}) for x, slope in slopes)
+        return Form(tuple(named), tuple(pulled), field.substitute(self.energy, {name: value}))
+
+
+def invert(setting: Setting, form: Form) -> Matrix:
+    """The inverse of omega, block by block: quotients of Pfaffians.
+
+    Raises:
+        DerivationError: It is singular, or couples too many components.
+    """
+    field, names, omega = setting.field, form.names, form.two_form(setting.field)
+    whole = [[field.zero] * len(names) for _ in names]
+    for block in coupled_blocks(omega):
+        if len(block) > LARGEST:
+            message = (
+                f"omega couples {len(block)} components of the state; expected at most {LARGEST}, "
+                "whose inverse can be written out. Choose coordinates that decouple them."
+            )
+            raise _fault(setting, message, names[block[0]])
+        own = [[omega[i][j] for j in block] for i in block]
+        root = field.zero + pfaffian(own)
+        if not is_nonzero(field, root):
+            message = (
+                "omega = d theta may be singular everywhere: no point was found at which its "
+                f"Pfaffian is certainly not 0 along {', '.join(names[i] for i in block)}; expected "
+                "a regular one. Write the Lagrangian in simpler functions, or give its [domain]."
+            )
+            raise _fault(setting, message, names[block[0]])
+        for a, i in enumerate(block):
+            for b, j in enumerate(block[:a]):
+                rest = [k for k in range(len(block)) if k not in (a, b)]
+                minor = pfaffian([[own[k][m] for m in rest] for k in rest])
+                whole[j][i] = (-1) ** (a + b) * minor / root
+                whole[i][j] = -whole[j][i]
+    return tuple(map(tuple, whole))
+
+
+def left_kernel(field: Field, matrix: Sequence[Row]) -> list[Row]:
+    """Vectors n with ``n matrix = 0``, which span them all.
+
+    Independent rows have a regular part A in as many columns, and each other row b is a sum of
+    them: ``n = e - b A^-1``.
+
+    >>> field = Field(["x"])
+    >>> x = field["x"]
+    >>> left_kernel(field, ((x**2, x), (x, field.one), (field.zero, x)))
+    [((-1)/x, 1, 0)]
+    """
+    kept, vectors = _independent(field, matrix), list[Row]()
+    columns = _independent(field, transpose([matrix[i] for i in kept])) if kept else []
+    part = tuple(tuple(matrix[i][j] for j in columns) for i in kept)
+    turned = transpose(inverse(part)) if kept else ()
+    for place in (i for i in range(len(matrix)) if i not in kept):
+        factors = apply(turned, [matrix[place][j] for j in columns])
+        vector = dict.fromkeys(range(len(matrix)), field.zero) | {place: field.one}
+        vector |= {i: -x for i, x in zip(kept, factors, strict=True)}
+        values = tuple(vector.values())
+        if all(field.is_zero(dot(values, column)) for column in zip(*matrix, strict=True)):
+            vectors.append(values)
+    return vectors
+
+
+def _independent(field: Field, matrix: Sequence[Row]) -> list[int]:
+    rows = [{j: e for j, e in enumerate(row) if e != 0} for row in matrix]
+    return independent_rows(field, rows)
+
+
+@dataclass
+class Constraints:
+    """Linear equations ``matrix u = right`` for rates or velocities u at x, bound to have one.
+
+    Attributes:
+        field: Where everything lives.
+        names: Of the components of x, in the order in which constraints are solved for them.
+        matrix: In x, with a row for each equation.
+        right: The same.
+        tangent: The row and right side by which a function of x stays zero.
+        bound: What constraints give, by name in terms of what is left of x.
+        steps: Constraints in their order, in words, and what they give.
+        unsolved: A constraint in which no component has a number for its factor; None while all are
+            solved.
+    """
+
+    field: Field
+    names: Sequence[str]
+    matrix: Matrix
+    right: Row
+    tangent: Callable[[Element], tuple[Row, Element]]
+    bound: dict[str, Element] = attribute(default_factory=dict)
+    steps: list[str] = attribute(default_factory=list)
+    unsolved: Element | None = None
+
+    def follow(self) -> None:
+        """Solve constraints until there are no more, or one cannot be solved."""
+        while left := self._conditions():
+            solved = next(filter(None, map(self._solve, left)), None)
+            if solved is None:
+                self.unsolved = left[0]
+                self.steps.append(f"{element_text(self.field, left[0])} = 0")
+                return
+            self._put(*solved)
+
+    def _conditions(self) -> list[Element]:
+        """What must vanish for the equations to have a solution."""
+        vectors = left_kernel(self.field, self.matrix)
+        values = (self.field.normal(dot(each, self.right)).combine() for each in vectors)
+        return [value for value in values if not self.field.is_zero(value)]
+
+    def _solve(self, value: Element) -> tuple[str, Element, Element] | None:
+        """A component with a number for its factor, what it is, and the value that is zero."""
+        for name in self.names:
+            slope = self.field.derivative(value, name)
+            if (number := self.field.as_number(slope)) is not None and number != 0:
+                return name, self.field[name] - value / slope, value
+        return None
+
+    def _put(self, name: str, solution: Element, value: Element) -> None:
+        """Go on where ``name = solution``, and ask that it stays so."""
+        given = f"{name} = {element_text(self.field, solution)}"
+        found = f"{element_text(self.field, value)} = 0"
+        self.steps.append(found if found == given else f"{found}, so {given}")
+        row, side = self.tangent(self.field[name] - solution)
+        put = {name: solution}
+        self.bound = {x: self.field.substitute(e, put) for x, e in self.bound.items()} | put
+        # the new row last: the others have no poles where it has zeros
+        pairs = zip((*self.matrix, row), (*self.right, side), strict=True)
+        whole = [self.field.substitute(e, self.bound) for row, side in pairs for e in (*row, side)]
+        width = len(row) + 1
+        rows = [whole[n : n + width] for n in range(0, len(whole), width)]
+        self.matrix = tuple(tuple(each[:-1]) for each in rows)
+        self.right = tuple(each[-1] for each in rows)
+
+    def is_contradicted(self) -> bool:
+        """Whether the constraint that is not solved holds nowhere: it names no component of x."""
+        return self.unsolved is not None and not self.field.reach(self.unsolved) & {*self.names}
+
+    @property
+    def free(self) -> list[Row]:
+        """Directions of u that nothing gives."""
+        return left_kernel(self.field, transpose(self.matrix))
+
+    @property
+    def chain(self) -> str:
+        """All steps, with their numbers."""
+        return "; ".join(f"({n}) {step}" for n, step in enumerate(self.steps, 1)) or "none"
+
+
+def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, ...]]:
+    """What the constraints of a form give, by name in terms of what is left, and all steps.
+
+    Raises:
+        DerivationError: There is no motion, or it is not determined, or a constraint cannot be
+            solved; or what follows is not what the spec declares to follow.
+    """
+    field, omega = setting.field, form.two_form(setting.field)
+    resting = [x for x, row in zip(form.names, omega, strict=True) if not any(row)]
+    given = [name for name in form.names if name not in setting.state]
+    known = Constraints(
+        field=field,
+        names=tuple(dict.fromkeys((*given, *resting, *form.names))),
+        matrix=omega,
+        right=field.gradient(form.energy, form.names),
+        tangent=lambda value: (field.gradient(value, form.names), field.zero),
+    )
+    known.follow()
+    _check_determined(setting, form, known)
+    _check_declared(setting, form, known)
+    return known.bound, tuple(known.steps)
+
+
+def _check_determined(setting: Setting, form: Form, known: Constraints) -> None:
+    """There is one motion through each point that satisfies the constraints."""
+    if known.unsolved is not None:
+        text = f"{element_text(setting.field, known.unsolved)} = 0"
+        problem = f"the motion is bound to {text}, in which no component has a number for a factor"
+        hint = "Solve it by hand, and write what it gives in the Lagrangian."
+        if known.is_contradicted():
+            problem, hint = f"no motion satisfies {text}", "Correct the Lagrangian."
+        raise _refuse(setting, known, problem, hint)
+    if free := known.free:
+        along = " and ".join(write_direction(setting.field, form.names, each) for each in free)
+        hint = "Add the term that determines it, or leave that combination of coordinates out."
+        raise _refuse(setting, known, f"nothing gives the velocity along {along}", hint)
+    if len(known.bound) == len(form.names):
+        problem, hint = "constraints give all of it, and nothing moves", "Correct the Lagrangian."
+        raise _refuse(setting, known, problem, hint)
+
+
+def _check_declared(setting: Setting, form: Form, known: Constraints) -> None:
+    """What follows is what the spec declares to follow."""
+    declared = {name for name in form.names if name not in setting.state}
+    more, less = sorted(known.bound.keys() - declared), sorted(declared - known.bound.keys())
+    if more:
+        hint = f"Write follows = true for {' and '.join(more)}, or choose other coordinates."
+        raise _refuse(setting, known, f"constraints give {', '.join(more)}", hint)
+    if less:
+        hint = f"Remove follows = true of {' and '.join(less)}."
+        raise _refuse(setting, known, f"no constraint gives {', '.join(less)}", hint)
+
+
+def _refuse(setting: Setting, known: Constraints, problem: str, hint: str) -> DerivationError:
+    """The error, with all steps."""
+    names = ", ".join((*setting.positions, *setting.momenta))
+    message = (
+        f"the Lagrangian does not determine the rates of a state of {names}: {problem}. "
+        f"Constraints in their order: {known.chain}. {hint}"
+    )
+    return _fault(setting, message, names)
+
+
+def write_direction(field: Field, names: Sequence[str], vector: Row) -> str:
+    """A direction of x: ``d/dx + (-y) d/dz``."""
+    parts = zip(names, vector, strict=True)
+    return " + ".join(
+        f"d/d{name}" if x == 1 else f"({element_text(field, x)}) d/d{name}"
+        for name, x in parts
+        if x
+    )
+
+
+def _fault(setting: Setting, message: str, found: str) -> DerivationError:
+    """An error that points at the Lagrangian."""
+    formula = setting.spec.lagrangian
+    assert formula is not None, "the reader asks for a Lagrangian"
+    return fault(setting, formula, message, found)

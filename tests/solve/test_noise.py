@@ -1,0 +1,317 @@
+"""Noise: random words and normals, orders, closed forms, what methods keep, and bad input."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.special import ndtri
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve import stochastic
+from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
+from coadjoint.solve.steps import Lanes
+from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
+from coadjoint.systems import rigid_body
+from coadjoint.systems import stochastic_rigid_body as body
+from tests.kernels import COMPILER
+
+TARGETS = ["numpy", *(["c"] if COMPILER else [])]
+START = np.array([0.6, 0.0, 0.8])
+ONES = 0xFFFFFFFF
+
+
+@pytest.mark.parametrize(
+    ("counter", "key", "words"),
+    [
+        ([0] * 4, (0, 0), "6627e8d5 e169c58d bc57ac4c 9b00dbd8"),
+        ([ONES] * 4, (ONES, ONES), "408f276d 41c83b0e a20bc7c6 6d5451fd"),
+        (
+            [0x243F6A88, 0x85A308D3, 0x13198A2E, 0x03707344],
+            (0xA4093822, 0x299F31D0),
+            "d16cfe09 94fdcceb 5001e420 24126ea1",
+        ),
+    ],
+)
+def test_words_are_those_of_random123(counter, key, words):
+    """The known answers that its authors publish for philox4x32 with 10 rounds."""
+    assert " ".join(f"{int(word):08x}" for word in philox(counter, key)) == words
+
+
+def test_normals_are_the_inverse_of_the_distribution():
+    """Against 40 digits in the middle and both tails, and SciPy everywhere."""
+    source = np.random.default_rng(0)
+    tails = 2.0 ** -np.arange(2.0, 54.0)
+    some = np.concatenate([source.random(150), tails, 1 - tails[:-1], [0.075, 0.925, 2.0**-53]])
+    with mpmath.workdps(40):
+        for p, found in zip(some.tolist(), normal_of(some).tolist(), strict=True):
+            x = mpmath.findroot(lambda t, p=p: mpmath.log(mpmath.ncdf(t) / p), float(ndtri(p)))
+            assert abs(found - x) <= 1.5e-15 * abs(x) + 1e-17
+    many = source.random(100_000)
+    assert np.allclose(normal_of(many), ndtri(many), rtol=2e-15, atol=1e-16)
+    assert np.allclose(minus_log(many), -np.log(many), rtol=1e-15, atol=0)
+
+
+def test_numbers_of_different_places_are_independent():
+    """Mean, variance, and correlation of seeds, members, steps and processes, within 4.5 sigma."""
+    members, steps = (each.ravel() for each in np.indices((400, 100)).astype(np.uint64))
+    draws = [
+        draw_normals(1, members, steps, 0),
+        draw_normals(2, members, steps, 0),
+        draw_normals(1, members, steps, 1),
+        draw_normals(1, members + np.uint64(400), steps, 0),
+        draw_normals(1, members, steps + np.uint64(2**32), 0),
+    ]
+    size = draws[0].size
+    assert np.abs(np.mean(draws, axis=1)).max() < 4.5 / math.sqrt(size)
+    off = np.corrcoef(draws) - np.eye(len(draws))
+    assert np.abs(off).max() < 4.5 / math.sqrt(size)
+    assert np.abs(np.var(draws, axis=1) - 1).max() < 4.5 * math.sqrt(2 / size)
+
+
+# -- orders ---------------------------------------------------------------------------------------
+
+INERTIA = np.array([1.0, 2.0, 3.0])[:, np.newaxis]
+
+
+def turn(sigmas):
+    """Rates of a body, and ``Pi x sigma`` for each process, as textbooks have them."""
+
+    def rates(lanes, after, x):
+        return np.cross(x, x / INERTIA, axis=0)
+
+    def fields(lanes, after, x):
+        turned = [np.cross(x, np.array(s)[:, np.newaxis], axis=0) for s in sigmas]
+        return np.stack(turned, axis=1)
+
+    return {"rates": rates, "fields": fields}
+
+
+def follow(kind, system, increments, end):
+    """Members that take given increments, ``(w, steps, N)``, in equal steps."""
+    processes, steps, members = increments.shape
+    h = end / steps
+
+    class Given(kind):
+        def find_noise(self, lanes, h, process):
+            return increments[process, int(lanes.steps[0])] / h
+
+    method = Given(**system, size=h, seed=0, bound=math.inf)
+    x = np.repeat(START[:, np.newaxis], members, axis=1)
+    none, place = np.zeros((0, members)), np.arange(members, dtype=np.uint64)
+    for n in range(steps):
+        lanes = Lanes(
+            state=x,
+            time=np.full(members, n * h),
+            end=np.full(members, math.inf),
+            step=np.zeros(members),
+            parameters=np.zeros(0),
+            driving=none,
+            slopes=none,
+            member=place,
+            steps=np.full(members, n, np.uint64),
+        )
+        attempt = method.try_step(lanes)
+        assert attempt.accepted.all()
+        x = attempt.state
+    assert processes == len(system["fields"](lanes, 0, x)[0])
+    return x
+
+
+def find_strong_order(kind, sigmas, members, finest):
+    """The slope of the mean error at the end against the step, over three octaves."""
+    source = np.random.default_rng(5)
+    fine = source.normal(size=(len(sigmas), finest, members)) * math.sqrt(1 / finest)
+    exact = follow(kind, turn(sigmas), fine, 1.0)
+    errors = []
+    for steps in (8, 16, 32, 64):
+        coarse = fine.reshape(len(sigmas), steps, -1, members).sum(axis=2)
+        end = follow(kind, turn(sigmas), coarse, 1.0)
+        errors.append(np.linalg.norm(end - exact, axis=0).mean())
+    return np.polyfit(np.log2([8, 16, 32, 64]), -np.log2(errors), 1)[0]
+
+
+APART = [(0.8, 0, 0), (0, 0.6, 0), (0, 0, 0.7)]
+
+
+@pytest.mark.parametrize("kind", [Heun, Midpoint])
+@pytest.mark.parametrize(("sigmas", "order"), [(APART, 0.5), ([(0.4, -0.3, 0.5)], 1.0)])
+def test_the_strong_order_is_half_where_processes_do_not_commute(kind, sigmas, order):
+    """Three axes; and one process, which commutes with itself."""
+    assert abs(find_strong_order(kind, sigmas, 100, 512) - order) < 0.15
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("kind", [Heun, Midpoint])
+@pytest.mark.parametrize(("sigmas", "order"), [(APART, 0.5), ([(0.4, -0.3, 0.5)], 1.0)])
+def test_the_strong_order_to_a_tenth(kind, sigmas, order):
+    """With more paths and a finer reference."""
+    assert abs(find_strong_order(kind, sigmas, 2000, 8192) - order) < 0.1
+
+
+def draw_mean(method, h, members, seed, sigma=1.0, end=1.0):
+    """The mean end of paths of a ball that noise turns about all axes."""
+    start = np.repeat(START[:, np.newaxis], members, axis=1)
+    ball = {"I": [2.0, 2.0, 2.0], "sigma": [sigma] * 3}
+    run = body.simulate(start, (0, end), ball, method=method, step=h, seed=seed, samples=1)
+    return run.state[:, :, -1].mean(axis=1)
+
+
+@pytest.mark.parametrize("method", ["heun", "midpoint"])
+def test_the_mean_of_a_ball_decays(method):
+    """``E[Pi] = Pi0 exp(-sigma^2 t)`` for equal moments and noise about all axes."""
+    members = 4000
+    found = draw_mean(method, 0.02, members, seed=3, sigma=0.7)
+    expected = START * math.exp(-0.49)
+    # components have variances below 1; the bias of the step is below a hundredth
+    assert np.abs(found - expected).max() < 4.5 / math.sqrt(members) + 0.01
+    assert np.abs(found - START).max() > 0.2
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("method", ["heun", "midpoint"])
+def test_the_weak_order_is_one(method):
+    """The error of that mean falls in proportion to the step."""
+    exact, sizes = START * math.exp(-1.0), [0.5, 0.25, 0.125]
+    errors = [np.linalg.norm(draw_mean(method, h, 4_000_000, seed=11) - exact) for h in sizes]
+    slope = np.polyfit(np.log2(sizes), np.log2(errors), 1)[0]
+    assert 0.8 < slope < 1.6
+
+
+def test_one_process_turns_a_ball_about_its_axis():
+    """The closed form of each path: a rotation by ``sigma W(t)``, with the very numbers drawn."""
+    steps, seed, member = 64, 9, 3
+    turned = {"I": [1.0, 1.0, 1.0], "sigma": [0.3, 0.0, 0.0]}
+    start = np.repeat(START[:, np.newaxis], 5, axis=1)
+    run = body.simulate(start, (0, 1), turned, step=1 / steps, seed=seed, samples=1)
+    place, made = np.full(steps, member, np.uint64), np.arange(steps, dtype=np.uint64)
+    bound = find_bound("midpoint", 1 / steps)
+    W = np.clip(draw_normals(seed, place, made, 0), -bound, bound).sum() / math.sqrt(steps)
+    angle = -0.3 * W  # dPi = Pi x e1 sigma o dW turns against e1
+    expected = [
+        START[0],
+        START[1] * math.cos(angle) - START[2] * math.sin(angle),
+        START[1] * math.sin(angle) + START[2] * math.cos(angle),
+    ]
+    assert np.abs(run.state[:, member, -1] - expected).max() < 2e-4
+    assert abs(W) > 0.05
+
+
+# -- what methods keep, and bits ------------------------------------------------------------------
+
+
+def test_the_midpoint_keeps_the_quadratic_casimir_and_heun_does_not():
+    """To rounding, and by far not; each says so."""
+    runs = {
+        m: body.simulate(START, (0, 20), method=m, step=0.02, seed=1) for m in ("midpoint", "heun")
+    }
+    assert runs["midpoint"].drift["casimir1"] < 1e-12
+    assert runs["heun"].drift["casimir1"] > 1e-5
+    assert runs["midpoint"].settings["keeps"].startswith("linear and quadratic integrals")
+    assert runs["heun"].settings["keeps"] == "nothing exactly"
+    assert "heun keeps nothing exactly" in repr(runs["heun"])
+    assert "energy" not in runs["midpoint"].drift
+
+
+@pytest.mark.parametrize("method", ["heun", "midpoint"])
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_path_has_the_same_bits_in_any_company(method, target):
+    """Other members, threads and targets change nothing; another seed and step do."""
+    start = np.random.default_rng(0).normal(size=(3, 40))
+    options = {"method": method, "step": 0.0625, "samples": 5}
+    whole = body.simulate(start, (0, 2), seed=4, target="numpy", **options).state
+    again = body.simulate(start, (0, 2), seed=4, target=target, threads=3, **options).state
+    assert np.array_equal(whole, again)
+    first = body.simulate(start[:, :7], (0, 2), seed=4, target=target, threads=1, **options).state
+    assert np.array_equal(whole[:, :7], first)
+    alone = body.simulate(start[:, 0], (0, 2), seed=4, target=target, **options).state
+    assert np.array_equal(whole[:, 0], alone)
+    other = body.simulate(start, (0, 2), seed=5, target=target, **options).state
+    assert not np.array_equal(whole, other)
+
+
+def test_equal_starts_have_paths_of_their_own():
+    """Members differ by their place alone."""
+    start = np.repeat(START[:, np.newaxis], 3, axis=1)
+    end = body.simulate(start, (0, 1), step=0.1, seed=0, samples=1).state[:, :, 0]
+    assert len(np.unique(end[0])) == 3
+
+
+def test_samples_at_the_ends_of_steps_are_the_path():
+    """Every fourth step, and all of them."""
+    options = {"step": 0.125, "seed": 6}
+    all_of_them = body.simulate(START, (0, 4), samples=33, **options).state
+    some = body.simulate(START, (0, 4), samples=9, **options).state
+    assert np.allclose(all_of_them[:, ::4], some, rtol=0, atol=1e-15)
+
+
+def test_a_checkpoint_goes_on_with_the_same_seed_alone(tmp_path):
+    """The same call goes on; another seed is told."""
+    options = {"step": 0.1, "samples": 11, "checkpoint": tmp_path / "run.npz"}
+    one = body.simulate(START, (0, 1), seed=1, **options)
+    assert np.array_equal(body.simulate(START, (0, 1), seed=1, **options).state, one.state)
+    with pytest.raises(KernelArgumentError, match="its seed is 1, and that of this run is 2"):
+        body.simulate(START, (0, 1), seed=2, **options)
+
+
+def test_a_step_that_is_not_solved_ends_the_path():
+    """No wrong number is returned, and the reason is told."""
+    fast = {"I": [1.0, 2.0, 3.0], "sigma": [0.0, 0.0, 0.0]}
+    ended = {}
+    for target in TARGETS:
+        options = {"step": 1.0, "seed": 0, "samples": 5, "target": target}
+        run = body.simulate([3.0, 2.0, 1.0], (0, 4), fast, **options)
+        ended[target] = (run.status, run.message, len(run))
+    assert len(set(ended.values())) == 1
+    status, message, _ = ended["numpy"]
+    assert status == "STEP_UNDERFLOW"
+    assert message.startswith("the equation of a step of 1 has no solution that is found")
+
+
+def test_the_bound_of_normals():
+    """``sqrt(4 |log h|)``, at least 2, and none for Heun's method."""
+    assert find_bound("midpoint", math.exp(-4)) == 4.0
+    assert find_bound("midpoint", 5.0) == 2.0
+    assert find_bound("heun", 0.01) == math.inf
+    assert stochastic.SWEEPS == 100
+
+
+BAD = [
+    ({"step": None}, "expected step="),
+    ({"seed": None}, "expected seed=, a whole number from 0 to 2^64 - 1"),
+    ({"seed": -1}, "expected seed="),
+    ({"seed": 2**64}, "expected seed="),
+    ({"seed": 1.5}, "expected seed="),
+    ({"seed": True}, "expected seed="),
+    ({"method": "taylor"}, "expected one of 'auto', 'heun', 'midpoint'"),
+    ({"method": "DOP853"}, "Wiener processes move the state of stochastic_rigid_body"),
+    ({"method": "scipy:Radau"}, "expected one of 'auto', 'heun', 'midpoint'"),
+    ({"rtol": 1e-6}, "expected no rtol or atol"),
+    ({"events": "Pi1"}, "expected no events"),
+    ({"dense": True}, "expected no dense"),
+    ({"target": "python"}, "they are written for the targets c, c-fast and numpy"),
+    ({"samples": 8}, "lies between the ends of steps of 0.1, where nothing is known"),
+    ({"step": 0.25}, "as those of samples=5 are"),
+    ({"step": 1e-9}, "max_steps"),
+]
+
+
+@pytest.mark.parametrize(("changes", "said"), BAD)
+def test_bad_input_is_refused_before_the_first_step(changes, said):
+    """What was found and what is expected."""
+    options = {"step": 0.1, "seed": 1, "samples": 11} | changes
+    with pytest.raises(KernelArgumentError) as caught:
+        body.simulate(START, (0, 1), **options)
+    assert said in str(caught.value)
+
+
+def test_the_advice_about_samples_helps():
+    """The number that the message says is taken."""
+    assert body.simulate(START, (0, 1), step=0.25, seed=1, samples=5).status == "OK"
+
+
+@pytest.mark.parametrize("options", [{"seed": 1}, {"method": "midpoint", "step": 0.1}])
+def test_a_system_without_noise_refuses_seeds_and_methods_of_noise(options):
+    """They would do nothing."""
+    with pytest.raises(KernelArgumentError, match="rigid_body has none"):
+        rigid_body.simulate(START, (0, 1), **options)
