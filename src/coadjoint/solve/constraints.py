@@ -9,6 +9,7 @@ Read next: `coadjoint.derive.mechanics.projection`.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
 
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9
-#: Projections by which a start is moved onto constraints; steps of Newton for points of contact.
-PROJECTIONS = 20
+#: Projections after which a state is on the constraints, or will not be.
+SETTLING = 20
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
@@ -59,6 +60,23 @@ def find_excess(
             moved[row] += step
             off -= np.abs(residuals(moved) - here) / step * (TYPED * sizes[row] + atol)
     return off
+
+
+def settle(
+    system: System,
+    state: Array,
+    residuals: Callable[[Array], Array],
+    project: Callable[[Array], Array],
+) -> Array | None:
+    """States on the constraints, by as many projections as it takes; None where they do not help.
+
+    One is enough but for attitudes that are far from rotations.
+    """
+    for _ in range(SETTLING):
+        if not (find_excess(system, state, residuals, 0.0) > 0).any():
+            return state
+        state = project(state)
+    return None
 
 
 class Constraints:
@@ -132,23 +150,6 @@ class Constraints:
             raise self._refusal(time, state, row, atol)
         return self.project(time, state)
 
-    def _advise(self, time: float, state: Array, atol: float) -> str:
-        """Where a start would be right; "" where that is not found.
-
-        Velocities come there in one projection, points of contact in a few.
-        """
-        nearest = state
-        for _ in range(PROJECTIONS):
-            nearest = self.project(time, nearest)
-        if not (find_excess(self.system, nearest, self._residuals, atol) <= 0).all():
-            return " Give a state that is on them."
-        moved = zip(self.system.STATE.components, state, nearest, strict=True)
-        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
-        return (
-            f" The nearest state on the constraints has {told}: begin there (System.projection "
-            "gives it)."
-        )
-
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
@@ -160,7 +161,18 @@ class Constraints:
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
         return KernelArgumentError(
             f"{self.system.name}: the constraint{constraint} does not hold at the given state: "
-            f"left minus right is {residual:.6g}; expected 0.{self._advise(time, state, atol)}",
+            f"left minus right is {residual:.6g}; expected 0.{self._advise(time, state)}",
             found=residual,
             expected=0,
         )
+
+    def _advise(self, time: float, state: Array) -> str:
+        """A state on the constraints that is near, if there is one."""
+        once = self.project(time, state)
+        near = settle(self.system, once, self._residuals, partial(self.project, time))
+        if near is None:
+            return " Give a state that is on them."
+        moved = zip(self.system.STATE.components, state, near, strict=True)
+        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
+        how = " (System.projection gives it)" if near is once else ""
+        return f" The nearest state on the constraints has {told}: begin there{how}."
