@@ -208,8 +208,8 @@ _REWRITE = (
 _FIX = "Correct the claim, or the formulas of the spec that contradict it."
 _FIXES = MappingProxyType(
     {
-        "rolling": "The body slips or leaves the plane: correct the arm in [rolling], the profile "
-        "of the body that it stands for, or the constraints."
+        "rolling": "The body slips or leaves what it rolls on: correct the arm in [rolling], the "
+        "profile of the body that it stands for, the surfaces, or the constraints."
     }
 )
 
