@@ -16,7 +16,7 @@ from tests.adversary.specs import FAMILIES, generate
 #: Cases of one test, and specs that are enough for them.
 CASES, SPECS = 100, 40
 #: Tests of every run, and of campaigns.
-REGULAR, WHOLE = 5, 500
+REGULAR, WHOLE = 3, 500
 #: Kinds of case that every test meets, and the rare ones that the first test meets.
 KINDS, RARE = ("proved", "refuted", "count"), ("numerically supported", "integrals")
 

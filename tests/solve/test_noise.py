@@ -124,11 +124,11 @@ def find_strong_order(kind, sigmas, members, finest):
     fine = source.normal(size=(len(sigmas), finest, members)) * math.sqrt(1 / finest)
     exact = follow(kind, turn(sigmas), fine, 1.0)
     errors = []
-    for steps in (8, 16, 32, 64):
+    for steps in (4, 8, 16, 32):
         coarse = fine.reshape(len(sigmas), steps, -1, members).sum(axis=2)
         end = follow(kind, turn(sigmas), coarse, 1.0)
         errors.append(np.linalg.norm(end - exact, axis=0).mean())
-    return np.polyfit(np.log2([8, 16, 32, 64]), -np.log2(errors), 1)[0]
+    return np.polyfit(np.log2([4, 8, 16, 32]), -np.log2(errors), 1)[0]
 
 
 APART = [(0.8, 0, 0), (0, 0.6, 0), (0, 0, 0.7)]
@@ -138,7 +138,7 @@ APART = [(0.8, 0, 0), (0, 0.6, 0), (0, 0, 0.7)]
 @pytest.mark.parametrize(("sigmas", "order"), [(APART, 0.5), ([(0.4, -0.3, 0.5)], 1.0)])
 def test_the_strong_order_is_half_where_processes_do_not_commute(kind, sigmas, order):
     """Three axes; and one process, which commutes with itself."""
-    assert abs(find_strong_order(kind, sigmas, 100, 512) - order) < 0.15
+    assert abs(find_strong_order(kind, sigmas, 100, 256) - order) < 0.15
 
 
 @pytest.mark.campaign
@@ -171,8 +171,8 @@ def test_the_mean_of_a_ball_decays(method):
 @pytest.mark.campaign
 @pytest.mark.parametrize("method", ["heun", "midpoint"])
 def test_the_weak_order_is_one(method):
-    """The error of that mean falls in proportion to the step."""
-    exact, sizes = START * math.exp(-1.0), [0.5, 0.25, 0.125]
+    """The error of that mean falls in proportion to the step; longer ones have short tails."""
+    exact, sizes = START * math.exp(-1.0), [0.125, 0.0625, 0.03125]
     errors = [np.linalg.norm(draw_mean(method, h, 4_000_000, seed=11) - exact) for h in sizes]
     slope = np.polyfit(np.log2(sizes), np.log2(errors), 1)[0]
     assert 0.8 < slope < 1.6

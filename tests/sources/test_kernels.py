@@ -5,6 +5,7 @@ that a change anywhere between a spec and a compiled kernel shows. Some are buil
 """
 
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -77,46 +78,70 @@ def check(found, expected):
         assert abs(Fraction(float(a)) - b) <= TOLERANCE * max(1, abs(b)), (float(a), float(b))
 
 
+@cache
+def rates_of_the_book(name, shared):
+    """Of all members, one after the other; targets are compared with the same numbers."""
+    given = members(*inputs(name, shared))
+    return [rate for _, x, p in given for rate in textbook.RATES[name](x, p)]
+
+
+@cache
+def slopes_of_the_book(name):
+    """Of each member row by row.
+
+    Rates quadratic in each component: central differences of the textbook's are exact. Where rates
+    are quotients, a step of 1e-20 is as good as exact.
+    """
+    size = Fraction(1, 10**20) if name in textbook.QUOTIENTS else Fraction(1)
+    found = []
+    for _, x, p in members(*inputs(name, shared=False)):
+        slopes = []
+        for j in range(len(x)):
+            step = [size * (i == j) for i in range(len(x))]
+            up = textbook.RATES[name]([a + b for a, b in zip(x, step, strict=True)], p)
+            down = textbook.RATES[name]([a - b for a, b in zip(x, step, strict=True)], p)
+            slopes.append([(a - b) / (2 * size) for a, b in zip(up, down, strict=True)])
+        found.append([row[i] for i in range(len(x)) for row in slopes])
+    return found
+
+
+@cache
+def observables_of_the_book(name):
+    """Of each member by name."""
+    return [textbook.OBSERVABLES[name](x, p) for _, x, p in members(*inputs(name, shared=False))]
+
+
+@cache
+def tensors_of_the_book(name):
+    """Of each member row by row."""
+    given = members(*inputs(name, shared=True))
+    return [[value for row in textbook.TENSORS[name](x, p) for value in row] for _, x, p in given]
+
+
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("shared", [True, False], ids=["shared", "own"])
 def test_rates_are_those_of_the_book(built, target, shared):
     """The rhs of every member equals the textbook's rates."""
-    state, parameters = inputs(built.name, shared)
-    found = call(built, "rhs", state, parameters, target)
+    found = call(built, "rhs", *inputs(built.name, shared), target)
     # of all members at once: some of them may rest
-    rates = [r for _, x, p in members(state, parameters) for r in textbook.RATES[built.name](x, p)]
-    check(found.T.ravel(), rates)
+    check(found.T.ravel(), rates_of_the_book(built.name, shared))
 
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_jacobian_is_the_derivative_of_the_book_formula(built, target):
-    """Rates quadratic in each component: central differences of the textbook's are exact.
-
-    Where rates are quotients, a step of 1e-20 is as good as exact.
-    """
-    size = Fraction(1, 10**20) if built.name in textbook.QUOTIENTS else Fraction(1)
-    state, parameters = inputs(built.name, shared=False)
-    found = call(built, "jacobian", state, parameters, target)
-    for n, x, p in members(state, parameters):
-        slopes = []
-        for j in range(len(x)):
-            step = [size * (i == j) for i in range(len(x))]
-            up = textbook.RATES[built.name]([a + b for a, b in zip(x, step, strict=True)], p)
-            down = textbook.RATES[built.name]([a - b for a, b in zip(x, step, strict=True)], p)
-            slopes.append([(a - b) / (2 * size) for a, b in zip(up, down, strict=True)])
-        # rates need not depend on every component, but they do on some
-        check(found[:, :, n].ravel(), [row[i] for i in range(len(x)) for row in slopes])
+    """Rates need not depend on every component, but they do on some."""
+    found = call(built, "jacobian", *inputs(built.name, shared=False), target)
+    for n, slopes in enumerate(slopes_of_the_book(built.name)):
+        check(found[:, :, n].ravel(), slopes)
 
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_observables_are_those_of_the_book(built, target):
     """Every observable under its name; energy alone, too."""
-    state, parameters = inputs(built.name, shared=False)
-    found = call(built, "observables", state, parameters, target)
-    energy = call(built, "energy", state, parameters, target)
-    for n, x, p in members(state, parameters):
-        expected = textbook.OBSERVABLES[built.name](x, p)
-        names = built.OBSERVABLES.components
+    given = inputs(built.name, shared=False)
+    found, energy = (call(built, each, *given, target) for each in ("observables", "energy"))
+    names = built.OBSERVABLES.components
+    for n, expected in enumerate(observables_of_the_book(built.name)):
         assert set(names) == set(expected)
         check(found[:, n], [expected[name] for name in names])
         check([energy[n]], [expected["energy"]])
@@ -129,10 +154,8 @@ def test_poisson_tensor_is_that_of_the_book(built, target):
         with pytest.raises(KernelArgumentError, match="no function 'poisson_tensor'"):
             built.poisson_tensor(*inputs(built.name, shared=True), target=target)
         return
-    state, parameters = inputs(built.name, shared=True)
-    found = call(built, "poisson_tensor", state, parameters, target)
-    for n, x, p in members(state, parameters):
-        expected = [value for row in textbook.TENSORS[built.name](x, p) for value in row]
+    found = call(built, "poisson_tensor", *inputs(built.name, shared=True), target)
+    for n, expected in enumerate(tensors_of_the_book(built.name)):
         check(found[:, :, n].ravel(), expected)
 
 

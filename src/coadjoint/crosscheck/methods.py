@@ -1,9 +1,10 @@
 """Cross-check, methods: one step of each method in any arithmetic, as textbooks write it.
 
 Comes in: rates or coefficients in some arithmetic, and the length of a step. Goes out: the state
-after a part of the step. Run in 60 digits on the equations this is the exact step; run on the
-Program in numbers with envelopes, and in numbers that count operations, it bounds what rounding
-does to a step in doubles: to first order no more than depth * 2^-53 * envelope, as for kernels.
+after a part of the step, and at its end. Run in 60 digits on the equations this is the exact step;
+run on the Program in numbers with envelopes, and in numbers that count operations, it bounds what
+rounding does to a step in doubles: to first order no more than depth * 2^-53 * envelope, as for
+kernels.
 Read next: `coadjoint.crosscheck.solver_steps`.
 """
 
@@ -39,7 +40,7 @@ def taylor(coefficients: Sequence[Sequence[Any]], after: Any) -> Row:
     return state
 
 
-def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
+def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:
     """The classical method, and between its ends the cubic with their states and rates.
 
     E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, II.1, II.6.
@@ -53,8 +54,6 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
     k4 = rates([a + h * k for a, k in zip(x, k3, strict=True)], h)
     sums = [a + two * b + two * c + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
     end = [a + h * number(SIXTH) * each for a, each in zip(x, sums, strict=True)]
-    if after is h:
-        return end
     part, last = after / h, rates(end, h)
     state = []
     for a, b, first, final in zip(x, end, k1, last, strict=True):
@@ -62,32 +61,32 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
         start = minus(h * first, chord)
         both = h * minus(final, first) + two * start
         state.append(a + part * (chord + minus(one, part) * minus(start, part * both)))
-    return state
+    return state, end
 
 
-def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
+def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:
     """Heun's method, and between its ends a straight line."""
     first = rates(x, number(Fraction(0)))
     later = rates([a + h * k for a, k in zip(x, first, strict=True)], h)
     half = h * number(Fraction(1, 2))
     end = [a + half * (b + c) for a, b, c in zip(x, first, later, strict=True)]
-    return _draw_line(x, end, h, after)
+    return _draw_line(x, end, h, after), end
 
 
-def midpoint(rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int) -> Row:
+def midpoint(
+    rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
     """The implicit midpoint by so many sweeps, and between its ends a straight line."""
     half, middle = h * number(Fraction(1, 2)), list(x)
     for _ in range(sweeps):
         middle = [a + half * k for a, k in zip(x, rates(middle, half), strict=True)]
     two = number(Fraction(2))
     end = [minus(two * m, a) for a, m in zip(x, middle, strict=True)]
-    return _draw_line(x, end, h, after)
+    return _draw_line(x, end, h, after), end
 
 
 def _draw_line(x: Row, end: Row, h: Any, after: Any) -> Row:
     """A straight line from one state to another, after a part of the step."""
-    if after is h:
-        return end
     part = after / h
     return [a + part * minus(b, a) for a, b in zip(x, end, strict=True)]
 
@@ -96,7 +95,7 @@ def _draw_line(x: Row, end: Row, h: Any, after: Any) -> Row:
 SIXTH: Final = Fraction(float(Fraction(1, 6)))
 
 
-def dop853(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
+def dop853(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:
     """The method of order 8 and its path of order 7, from the dense tables of SciPy.
 
     E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, II.5, II.6.
@@ -120,8 +119,6 @@ def dop853(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
     for row, node in zip(DOP853.A[1:12], DOP853.C[1:12], strict=True):
         ks.append(rates(moved(row, ks), at(node)))
     end = moved(DOP853.B, ks)
-    if after is h:
-        return end
     ks.append(rates(end, h))
     for row, node in zip(DOP853.A_EXTRA, DOP853.C_EXTRA, strict=True):
         ks.append(rates(moved(row, ks), at(node)))
@@ -138,4 +135,4 @@ def dop853(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> Row:
     for place in range(6, -1, -1):
         factor = minus(one, part) if place % 2 else part
         total = [(t + p) * factor for t, p in zip(total, path[place], strict=True)]
-    return [a + t for a, t in zip(x, total, strict=True)]
+    return [a + t for a, t in zip(x, total, strict=True)], end

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import partial
@@ -69,11 +69,13 @@ class Solvers:
         subject: The system.
         text: Its recurrences.
         advance: What advances members, by method and target.
+        depths: How many operations follow one another in a step, by method, where that is known.
     """
 
     subject: Subject
     text: SolverText
     advance: Mapping[str, Mapping[str, Advance]]
+    depths: dict[str, int] = field(default_factory=dict)
 
     def begin(self, batch: Batch, samples: Array, *, size: float, steps: int) -> Ensemble:
         """Members at the start of a run."""
@@ -197,9 +199,9 @@ def _exact_step(
                 known[name] = first[0] if len(first) == 1 else first[0] + after * first[1]
             rows = list(evaluate("rhs", known, number, apply))
             fields = list(evaluate("noise", known, number, apply)) if noise else []
-            for place, field in enumerate(fields):
+            for place, each in enumerate(fields):
                 increment = number(Fraction(noise[place % len(noise)]))
-                rows[place // len(noise)] = rows[place // len(noise)] + field * increment
+                rows[place // len(noise)] = rows[place // len(noise)] + each * increment
             return rows
 
         return at
@@ -207,18 +209,25 @@ def _exact_step(
     state, given = split(program, point)
     begin = [exact(value) for value in state.values()]
     bounded = {name: tuple(map(exact, values)) for name, values in given.items()}
-    levels = {name: (Levels(0),) * len(values) for name, values in given.items()}
     by_equations = rates(reference, exact, call, bounded)
     by_program = rates(by_printed, exact, call, bounded)
-    counted = rates(by_printed, level_of, lambda _, of: Levels(of.count + 1), levels)
-    rows = []
-    for end in (part, h):
-        values = step(by_equations, begin, h, end, exact)
-        sizes = bounding(by_program, begin, h, end, exact)
-        rows.append([_with_size(a.value, b) for a, b in zip(values, sizes, strict=True)])
-    zeros, part_level = [Levels(0)] * len(begin), Levels(0)
-    depth = bounding(counted, zeros, Levels(0), part_level, level_of)
-    return ExactStep(rows[0], rows[1], max(each.count for each in depth))
+    values = step(by_equations, begin, h, part, exact)
+    sizes = bounding(by_program, begin, h, part, exact)
+    within, end = (
+        [_with_size(a.value, b) for a, b in zip(*both, strict=True)]
+        for both in zip(values, sizes, strict=True)
+    )
+    if method not in solvers.depths:
+        zeros = {name: (Levels(0),) * len(values) for name, values in given.items()}
+        counted = rates(by_printed, level_of, _raise_level, zeros)
+        depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
+        solvers.depths[method] = max(each.count for each in depth)
+    return ExactStep(within, end, solvers.depths[method])
+
+
+def _raise_level(_: str, *of: Levels) -> Levels:
+    """A function is one operation."""
+    return Levels(max(each.count for each in of) + 1)
 
 
 def find_noise(solvers: Solvers, member: int, length: float) -> list[float]:
@@ -254,7 +263,7 @@ def _project(
             ]
         )
     levels = dict.fromkeys((*program.names,), Levels(step.depth))
-    depth = run(program, levels, level_of, lambda _, of: Levels(of.count + 1))
+    depth = run(program, levels, level_of, _raise_level)
     return ExactStep(moved[0], moved[1], max(each.count for each in depth))
 
 
@@ -266,17 +275,15 @@ def _exact_taylor(
     series = solve(rates_of(solvers.subject), state, given, ORDER)
     sizes = bounded_coefficients(solvers.text, state, given, ORDER)
     known = [list(map(_with_size, series[name], sizes[name])) for name in state]
-    counted = run_recurrences(
-        solvers.text,
-        dict.fromkeys(state, Levels(0)),
-        {name: (Levels(0),) * len(values) for name, values in given.items()},
-        ORDER,
-        level_of,
-        lambda _, of: Levels(of.count + 1),
-    )
-    depth = methods.taylor(list(counted.values()), Levels(0))
     within, end = (methods.taylor(known, exact(part)) for part in (after, length))
-    return ExactStep(within, end, max(each.count for each in depth))
+    if "taylor" not in solvers.depths:
+        zero = Levels(0)
+        levels = {name: (zero,) * len(values) for name, values in given.items()}
+        begin = dict.fromkeys(state, zero)
+        counted = run_recurrences(solvers.text, begin, levels, ORDER, level_of, _raise_level)
+        depth = methods.taylor(list(counted.values()), zero)
+        solvers.depths["taylor"] = max(each.count for each in depth)
+    return ExactStep(within, end, solvers.depths["taylor"])
 
 
 def _with_size(value: Decimal, size: Bounded) -> Bounded:

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from coadjoint.elementary import ELEMENTARY, Arithmetic, slopes_of
 from coadjoint.lower.polynomials import (
@@ -117,8 +118,9 @@ class Plan:
     cost: float
 
 
+@lru_cache(maxsize=4)
 def find_plan(rhs: Program) -> Plan:
-    """The plan that costs least of those that were tried.
+    """The plan that costs least of those that were tried; solvers are printed and checked by it.
 
     First all statements from one on are kept, each in turn; then each is changed alone.
     """

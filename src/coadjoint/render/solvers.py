@@ -240,11 +240,9 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
         programs: As `select_programs` has them.
     """
     program = programs.get("noise")
-    if program is None:
-        return {"noise": 0}
     names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
     return {
-        "noise": len(program.outputs) // len(program.state),
+        "noise": 0 if program is None else len(program.outputs) // len(program.state),
         "sweeps": normals.SWEEPS,
         "normals": {name: getattr(normals, name) for name in names},
     }
