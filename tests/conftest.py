@@ -17,7 +17,13 @@ from tests import specs
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-SYSTEMS = tuple(sorted(path.stem for path in Path(derivations_folder()).glob("*.toml")))
+_TEXTS = {
+    path.stem: path.read_text(encoding="utf-8")
+    for path in sorted(Path(derivations_folder()).glob("*.toml"))
+}
+#: Systems whose state is written out, and those of N equal members.
+SYSTEMS = tuple(name for name, text in _TEXTS.items() if "\n[index]\n" not in text)
+FAMILIES = tuple(name for name in _TEXTS if name not in SYSTEMS)
 
 
 @pytest.fixture(params=SYSTEMS)

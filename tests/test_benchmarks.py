@@ -172,3 +172,14 @@ def test_operations_of_peers_are_those_that_move(monkeypatch):
     # x*y; its sum with a; x*y*p, b*b and their sum
     assert operations.count(lines, {x, y}, sympy.cse) == 5
     assert operations.count(lines, {x, y, p}, sympy.cse) == 6
+
+
+@pytest.mark.parametrize("name", ["heisenberg_lattice", "point_vortices"])
+def test_kernels_of_families_by_hand_compute_the_same(monkeypatch, tmp_path, name):
+    """For a number of members that fills no vector, in each way."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    families = import_module("families")
+    contest = families.Contest(name, 21, tmp_path)
+    found = contest.competitors(families.FUSED[:1])
+    assert len(found) == 2 + len(families.WAYS[name])
+    families.check_equal(contest, found)

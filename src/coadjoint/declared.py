@@ -63,8 +63,9 @@ class Bound:
     """What a row of the function ``domain`` is: positive where a system is defined.
 
     Attributes:
-        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is.
-        kind: ``condition``, ``acceleration`` or ``reaction``.
+        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is; of the
+            velocity that a Legendre transform gives.
+        kind: ``condition``, ``acceleration``, ``reaction`` or ``transform``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """
@@ -77,6 +78,8 @@ class Bound:
     @property
     def label(self) -> str:
         """What the row is, for comments and messages."""
+        if self.kind == "transform":
+            return f"argument of a root in {self.name}"
         return self.name if self.kind == "condition" else f"pivot of {self.name}"
 
 
@@ -92,6 +95,7 @@ class KernelFunction:
         shape: The shape of its result, for documents: ``(n, n, *batch)``.
         doc: What a reader of a System is told beyond that.
         constrained: The summary of a system with constraints, where it is another one.
+        turning: The summary of a system whose attitudes are moved back, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
         below: What follows the rows of the state in its first argument: what is reconstructed, or
             a vector with a row for each of them.
@@ -103,6 +107,7 @@ class KernelFunction:
     shape: str
     doc: str = ""
     constrained: str = ""
+    turning: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
     below: Literal["", "reconstructed", "vector"] = ""
     looped: Literal["", "only", "never"] = ""
@@ -129,6 +134,7 @@ class KernelContext:
         inputs: Quantities of the inputs, in order; empty where there are none.
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
+        turning: Names of the attitudes that the projection moves back to rotations.
     """
 
     name: str
@@ -146,3 +152,4 @@ class KernelContext:
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"
+    turning: tuple[str, ...] = ()

@@ -80,18 +80,22 @@ Systems whose rates are loops over a table have no such matrix.""",
     KernelFunction(
         name="constraint_residual",
         summary="Left minus right sides of the constraints",
+        turning="How far attitudes are from rotations, products and determinants minus 1",
         shape="(c, *batch)",
         doc="""Rows follow the declared constraints. What a constraint gives a velocity is put in,
 so that its rows are 0; those of other constraints stay at the level of rounding along a
-trajectory that `simulate` follows.""",
+trajectory that `simulate` follows. Of attitudes in a system without constraints the rows are those
+of ``R*transpose(R) - 1`` on and above the diagonal and ``det(R) - 1``, or ``dot(q, q) - 1``.""",
     ),
     KernelFunction(
         name="projection",
         summary="State moved onto the constraints by the least change of velocities",
+        turning="State with attitudes moved back to rotations by one step of Newton",
         shape="(n, *batch)",
         doc="""Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2``
 with which all constraints hold to rounding. Only systems have it that keep a constraint, one that
-gives no velocity outright.""",
+gives no velocity outright, and systems without constraints that have attitudes in the state. Those
+are moved by ``R -> (3 - R R^T) R/2`` and ``q -> (3 - |q|^2) q/2``.""",
     ),
     KernelFunction(
         name="reconstruction",

@@ -84,7 +84,14 @@ OPERATIONS = 20_000
 #: components as a state may have, so(23) would have 10 626.
 TABLE_ENTRIES = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
-C_STATEMENTS = 1000
+C_STATEMENTS = 1500
+
+#: How many members away a neighbour may be in a sum over members.
+NEIGHBOURS = 4
+#: Members that an index counts: a state of three components each has 2.4 GB.
+FAMILY_MEMBERS = 100_000_000
+#: Members up to which a claim is proved that does not follow for every number of them.
+PROVED_MEMBERS = 12
 
 # -- children -------------------------------------------------------------------------------------
 

@@ -7,17 +7,24 @@ and without SymPy.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 
 from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, regenerate
+from coadjoint.solve.family import resize
 from coadjoint.solve.system import System, load_folder
 
 
 def load(
-    path: str | PathLike[str], *, seconds: float | None = None, progress: Progress = lambda *_: None
+    path: str | PathLike[str],
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    progress: Progress = lambda *_: None,
 ) -> System:
     """Derive, prove, compile and load the system of a spec file.
 
@@ -26,6 +33,8 @@ def load(
 
     Args:
         path: A spec in TOML.
+        sizes: How many members an index counts, by its name: ``{"i": 1000}``. Kernels are the same
+            for all sizes.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all.
@@ -35,7 +44,9 @@ def load(
         DerivationError: Its equations cannot be derived.
         ClaimError: One of its claims is false.
         CrossCheckError: Two forms of one function disagree.
-        ResourceError: Deriving took more time or memory than it may.
+        ResourceError: Deriving took more time or memory than it may, or so many members take more
+            memory than there is.
+        KernelArgumentError: A size is none of a spec's index, or too small.
     """
     source = Path(path)
     # One folder for each place of a spec, so that equal names of different people do not collide.
@@ -44,4 +55,5 @@ def load(
     for error in outcome.failures.values():
         raise error
     note_use(folder)
-    return load_folder(folder / source.stem)
+    system = load_folder(folder / source.stem)
+    return resize(system, sizes) if sizes else system

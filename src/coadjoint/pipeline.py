@@ -14,25 +14,54 @@ Comes in: a Spec. Goes out: the texts of its generated folder, proved and checke
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
+from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.ladder import Report, crosscheck
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.reference import Reference
+from coadjoint.families import Family
 from coadjoint.lower.check import check_programs, check_sizes
+from coadjoint.lower.families import lower_family
+from coadjoint.lower.family_check import check_loops
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
-from coadjoint.prove.declaration import kernel_context
+from coadjoint.prove.declaration import family_context, kernel_context
 from coadjoint.prove.record import certificate_json
+from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.system import load_texts
 from coadjoint.spec import Spec
+from coadjoint.spec.model import Windows
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
 STAGES = ("derive", "lower", "prove", "render", "compile and cross-check")
+
+
+@dataclass(frozen=True)
+class RenderedFamily:
+    """What the functions of a system of equal members were made from.
+
+    Attributes:
+        windows: Equations of two small numbers of members, which kernels are compared with.
+        declared: What the spec says of the other members.
+        family: Equations of the generic member.
+        context: What the generated files say.
+    """
+
+    windows: tuple[Equations, ...]
+    declared: Windows
+    family: Family
+    context: FamilyContext
+
+    @property
+    def printed(self) -> dict[str, str]:
+        """What the templates print, once more."""
+        return render_family(self.context)
 
 
 @dataclass(frozen=True)
@@ -43,6 +72,7 @@ class Rendered:
     certificate: Certificate
     programs: dict[str, Program]
     texts: dict[str, str]
+    family: RenderedFamily | None = None
 
 
 def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
@@ -51,6 +81,8 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     setting = make_setting(spec)
     routes = [derive(spec, route, setting=setting) for route in spec.routes]
     first = routes[0]
+    if spec.family is not None:
+        return _render_family(spec, routes, progress)
     progress("lower")
     programs = lower(first)
     check_sizes(first, programs)  # a system that is too large is refused before it is proved
@@ -63,9 +95,37 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     return Rendered(first, certificate, programs, texts)
 
 
+def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:
+    """The same for a system of equal members, whose functions are loops over them."""
+    declared, first = spec.family, routes[0]
+    assert declared is not None, spec.name
+    windows = tuple(derive(each, spec.routes[0]) for each in declared.windows)
+    family = derive_family(first)
+    progress("lower")
+    loops = lower_family(family)
+    progress("prove")
+    certificate = prove(spec, list(routes)).require()
+    check_loops(family, loops)
+    progress("render")
+    context = family_context(first, family, loops, certificate.count(Verdict.SUPPORTED))
+    texts = {**render_family(context), "certificate.json": certificate_json(spec, certificate)}
+    member = loops["rhs"].member
+    assert member is not None, spec.name
+    return Rendered(
+        equations=first,
+        certificate=certificate,
+        programs={"rhs": replace(member.program, state=tuple(map(str, family.states)))},
+        texts=texts,
+        family=RenderedFamily(windows, declared, family, context),
+    )
+
+
 def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Report:
     """Compile, load and cross-check: the numeric rungs, each of which raises what it refuses."""
     progress("compile and cross-check")
     with load_texts(rendered.texts) as system:
+        if (own := rendered.family) is not None:
+            given = (own.windows, own.declared, own.family, own.context)
+            return crosscheck_family(*given, rendered.texts, own.printed, system)
         reference = Reference(rendered.equations)
         return crosscheck(rendered.programs, rendered.texts, reference, system)

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import sympy
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.derive.mechanics import bound, first_order
@@ -200,7 +201,75 @@ def test_a_constraint_gives_a_coordinate_that_is_declared_to_follow():
     certificate = prove_claims(sample)
     assert {claim.verdict for claim in certificate.claims} == {Verdict.PROVED}
     (step,) = [each for each in equations.steps if "Constraints" in each.title]
-    assert "x - y + z = 0, so z = y - x" in step.title.replace("-x + y", "y - x")
+    field = equations.setting.field
+    a, b, c = (field[name] for name in "xyz")
+    assert [left.text for left, _ in step.lines] == ["0", "z"]
+    assert [value for _, value in step.lines] == [a - b + c, b - a]
+
+
+def test_what_follows_moves_with_time_too():
+    """Of z = y - x + sin(t) the velocity is x + y + cos(t), as u = -x - sin(t) and v = y."""
+    rest = ("REST", "z*(y - x + sin(t)) - z^2/2")
+    equations = derive(spec(THREE, rest, FOLLOWS, ("[lagrangian]", "[time]\n[lagrangian]")))
+    field, point = equations.setting.field, {"x": 0.3, "y": -0.8, "t": 0.6}
+
+    def value(name):
+        closed = equations.close(field[name])
+        return field.evaluate(closed, point, float, lambda called, u: getattr(math, called)(u))
+
+    x, y, t = point.values()
+    z = y - x + math.sin(t)
+    u, v = -y + z, x + z  # along y: u = z - y; along x: v = x + z
+    np.testing.assert_allclose([value(name) for name in "zuv"], [z, u, v], rtol=1e-14)
+    np.testing.assert_allclose(value("w"), v - u + math.cos(t), rtol=1e-14)
+
+
+def test_what_follows_needs_the_rate_of_an_input():
+    """Nobody knows it, unless it is declared."""
+    rest = ("REST", "z*(y - x + f) - z^2/2")
+    driven = ("[lagrangian]", "[inputs]\nf = { default = 0 }\n[lagrangian]")
+    assert "needs the rate of f" in refuse(THREE, rest, FOLLOWS, driven)
+    known = ("f = { default = 0 }", 'f = { default = 0, rate = "g" }\ng = { default = 0 }')
+    assert derive(spec(THREE, rest, FOLLOWS, driven, known)).rates
+
+
+def test_a_momentum_along_a_section_is_one_of_velocities():
+    """Along x it is dl/du = p; along z it is (p + b) y."""
+    sections = '[momenta.J]\nsection = { u = "1" }\n[momenta.K]\nsection = { w = "1" }\n'
+    equations = derive(spec(MIXED + sections))
+    p, y, b = (equations.setting.field[name] for name in ("p", "y", "b"))
+    closed = {name: equations.close(value) for name, value in equations.exact.observables}
+    assert equations.setting.field.is_zero(closed["J"] - p)
+    assert equations.setting.field.is_zero(closed["K"] - (p + b) * y)
+
+
+PINNED = """
+title = "A point that is held at an oscillator"
+routes = ["first-order"]
+[variables]
+x = { role = "coordinate", follows = true }
+z = { role = "coordinate", follows = true }
+y = { role = "coordinate", default = 1 }
+s = { role = "coordinate", default = 0 }
+p = { role = "momentum", of = "x", follows = true }
+u = { role = "velocity", of = "x" }
+f = { role = "velocity", of = "z" }
+v = { role = "velocity", of = "y" }
+w = { role = "velocity", of = "s" }
+[lagrangian]
+l = "u^2/2 + 3*x - z*(x - y) + y*w - s^2/2"
+"""
+
+
+def test_constraints_of_constraints_give_momenta_and_multipliers():
+    """By hand: x = y lasts for p = x' = y' = -s, and that for 3 - z = p' = -s' = z."""
+    equations = derive(spec(PINNED))
+    y, s = equations.state
+    assert equations.velocities["x"] == y
+    assert equations.velocities["p"] == -s
+    half = sympy.Rational(3, 2)
+    assert [equations.velocities["z"], *equations.rates] == [half, -s, -half]
+    assert {c.verdict for c in prove_claims(spec(PINNED)).claims} == {Verdict.PROVED}
 
 
 CHAINS = [

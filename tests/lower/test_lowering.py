@@ -207,12 +207,15 @@ BY_HAND = {
     + 2 * 9
     + 4,  # three velocities, one of one product; torque of two components
     "maxwell_bloch": 3,  # x1 x3, -x1 x2
-    "magnetic_bottle": 10 + 9 + 3,  # z/L^2 and B with B0; a cross product; q/m
+    # q B/m: with a = q B0 z/(m L^2) -a x, -a y and a z + q B0/m; a cross product and a sign
+    "magnetic_bottle": 5 + 9 + 1,
     # B, |B|, b and grad |B|; b . grad b, as (dB b - b (b . grad |B|))/|B|; both b x .. of these
     # drifts u, mu/(q |B|) and m u^2/(q |B|) along three vectors; du/dt
-    "guiding_centre": 10 + 6 + 3 + 14 + 8 + 5 + 9 + 18 + 5 + 15 + 12,
-    # row by row: k_j w_j w_i; the squares of the others times k_i; their difference over K_i + j
-    "suslov_so5": 4 * (8 + 3 + 1 + 1) + 4,
+    # with B_x and B_y as multiples of x and y, so that each vector is two numbers: a third less
+    "guiding_centre": 2 * (10 + 6 + 3 + 14 + 8 + 5 + 9 + 18 + 5 + 15 + 12) // 3,
+    # k_j w_j, squares; row by row the sums of the others, less two that recur; both products, their
+    # difference over K_i + j
+    "suslov_so5": 4 + 4 + 4 * (2 + 2) - 2 + 4 * (2 + 1 + 1),
     # functions, B, the rate of phi; entries of B^T M B; rates of momenta at fixed velocities, ad*,
     # the slope by phi; dB/dt, M dB/dt and B^T; L D L^T of 2 x 2 and solves
     "roller_racer": 2 + 3 + 3 + 2 + 22 + 14 + 8 + 6 + 6 + 5 + 4 + 11,

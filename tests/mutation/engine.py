@@ -420,7 +420,7 @@ MUTANTS = (
         "value: let closed = self.field.zero",
         tests=("tests/derive/test_decided.py",),
     ),
-    *of("lowering", "_signed_coefficient: flip 1", "_apply_sign: compare-Lt sign"),
+    *of("lower/sums", "_signed_coefficient: flip 1", "_apply_sign: compare-Lt sign"),
     *of(
         "graph",
         "multiply: rewrite self.negate(self.multiply(a, _1)) -> self.multiply(a, _1)",

@@ -8,7 +8,7 @@ import pytest
 
 from coadjoint.algebra import attitudes, catalogue
 from coadjoint.algebra.representation import Representation
-from coadjoint.derive import derive
+from coadjoint.derive import derive, equations
 from coadjoint.errors import AlgebraError
 from coadjoint.spec import read_spec
 from tests.specs import prove_claims, spec
@@ -53,10 +53,21 @@ def verdicts(declared, routes=()):
 @pytest.mark.parametrize(
     ("declared", "laws"),
     [
-        (spec(TOP), ["dR/dt = R*hat(Omega)", "R_gram = R*transpose(R) is conserved"]),
+        (
+            spec(TOP),
+            [
+                "dR/dt = R*hat(Omega)",
+                "R_gram = R*transpose(R) is conserved",
+                "the solvers move R back: R_gram = 1 + D becomes 1 + D^2 (D - 3)/4",
+            ],
+        ),
         (
             spec(TOP, *BY_QUATERNION),
-            ["dq/dt = qmul(q, (0, Omega))/2", "q_gram = dot(q, q) is conserved"],
+            [
+                "dq/dt = qmul(q, (0, Omega))/2",
+                "q_gram = dot(q, q) is conserved",
+                "the solvers move q back: q_gram = 1 + D becomes 1 + D^2 (D - 3)/4",
+            ],
         ),
         (
             spec(TIED),
@@ -115,6 +126,19 @@ def test_a_quaternion_without_its_half_is_caught(monkeypatch):
     wrong = replace(right, exact=replace(right.exact, rates=tuple(rates)))
     found = verdicts(declared, [wrong])
     assert found["dq/dt = qmul(q, (0, Omega))/2"] == "refuted"
+
+
+def test_a_wrong_step_back_is_caught(monkeypatch):
+    """The residuals as the step is proved to leave them are not those of half the step."""
+    right = equations.turned_back
+
+    def half(setting):
+        return {name: (setting.field[name] + x) / 2 for name, x in right(setting).items()}
+
+    monkeypatch.setattr(equations, "turned_back", half)
+    found = verdicts(spec(TOP, *BY_QUATERNION))
+    refuted = [statement for statement, verdict in found.items() if verdict == "refuted"]
+    assert refuted == ["the solvers move q back: q_gram = 1 + D becomes 1 + D^2 (D - 3)/4"]
 
 
 def test_a_torque_of_the_wrong_sign_is_caught(monkeypatch):

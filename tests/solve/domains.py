@@ -45,6 +45,18 @@ l = "m*v^2/2 + k/r"
 apart = "r > closest"
 """
 
+#: A motion whose momentum is v/sqrt(1 + v^2), of a size below 1, and grows by x.
+BENT = """
+title = "A bounded momentum"
+routes = ["euler-lagrange", "canonical"]
+[variables]
+x = { role = "coordinate", default = 0 }
+p = { role = "momentum", of = "x", default = "0.5" }
+v = { role = "velocity", of = "x" }
+[lagrangian]
+l = "sqrt(1 + v^2) + x^2/2"
+"""
+
 #: Holm 12.2.3: a disk of radius r on its sharp rim, which cannot lie flat.
 DISK = """
 title = "Disk"

@@ -10,8 +10,8 @@ import pytest
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.system import Bound
 from coadjoint.solve.tables import write_table
-from coadjoint.systems import rigid_body
-from tests.solve.domains import BALL, DISK, KEPLER, STONE, SUSLOV, built
+from coadjoint.systems import relativistic_particle, rigid_body
+from tests.solve.domains import BALL, BENT, DISK, KEPLER, STONE, SUSLOV, built
 
 #: Steps of 1e-10 and a bisection to 1e-12 of a step; a stone crosses a distance d in d/2 seconds.
 CLOSE = 1e-9
@@ -34,6 +34,23 @@ def test_rows_are_the_larger_side_minus_the_other():
     turned = built(STONE, ('"h > 0"', '"0 < h"'), ('"m >= g"', '"g <= m"'))
     found = turned.domain(np.array([[3.0, -2.0], [0, 0]]), {"m": 5.0, "g": 7.0}, target="numpy")
     assert found.tolist() == rows.tolist()
+
+
+def test_a_momentum_that_no_velocity_has_is_refused_before_any_work():
+    """Of p = v/sqrt(1 + v^2), v = p/sqrt(1 - p^2) has a value for p^2 < 1 alone."""
+    bent = built(BENT)
+    (bound,) = bent.DOMAIN
+    assert bound == Bound("v", "transform", strict=True, inputs=("p",))
+    rows = bent.domain(np.array([[0.0, 0.0], [0.5, 2.0]]), target="numpy")
+    assert rows.tolist() == [[0.75, -3.0]]
+    with pytest.raises(KernelArgumentError, match=r"no v has these momenta.* is -3; .*p = 2"):
+        simulate(bent, [0, 2], 1)
+    assert "argument of a root in v" in simulate(bent, [0, 0.5], 5).message
+
+
+def test_a_transform_that_always_has_a_solution_is_no_bound():
+    """Momenta of a relativistic particle may have any size."""
+    assert relativistic_particle.system.DOMAIN == ()
 
 
 def test_a_system_without_conditions_or_constraints_has_no_domain():

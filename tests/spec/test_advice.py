@@ -17,6 +17,7 @@ from tests.spec.test_consistency import KIRCHHOFF, MOMENTA_ONLY
 from tests.spec.test_poisson import CANONICAL, NAMBU
 from tests.spec.test_routes import OSCILLATOR
 from tests.spec.test_symmetries import TEXT as PARTICLES
+from tests.spec.test_windows import INDEXED
 from tests.spec.texts import BY_BRACKETS, BY_MATRICES
 from tests.specs import RIGID_BODY, shipped, spec
 
@@ -92,6 +93,7 @@ def of_unit(text):
 
 #: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    *INDEXED,
     # -- units
     (
         RIGID_BODY,
@@ -685,6 +687,7 @@ FORMULAS = [
     ("a \u00d7 b", "The cross product is cross(a, b).", "cross(a, b)"),
     ("a \u00b7 b", "The dot product is dot(a, b), a product *.", "dot(a, b)"),
     ("m \u2212 c", "Write the minus sign of the keyboard, -.", "m - c"),
+    ("sum(a, b)", "Sums over members need a table [index].", "dot(a, b)"),
     ("m^2^c", "Write (a^b)^c, or multiply the exponents out.", "(m^2)^2"),
     ("m c", "Write m*c.", "m*c"),
     ("2(m + c)", "Write * for a product.", "2*(m + c)"),
@@ -744,6 +747,7 @@ ELSEWHERE = {
     "Write vector(": "tests/derive/test_external.py",
     "Remove the momentum ": "below",
     "Declare an angle, as theta = ": "test_followed.py",
+    "Leave sizes out, or declare [index].": "test_windows.py",
     "The first is in line ": "names the place",
     "Blocks of ": "names what there is",
     "Declared are ": "names what there is",

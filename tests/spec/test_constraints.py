@@ -241,3 +241,19 @@ def test_names_of_momenta_are_taken():
     with pytest.raises(SpecError, match="'v_momentum' is doubled") as caught:
         spec(SLEIGH, ("k = {", "v_momentum = {"))
     assert "parameters.v_momentum has that name too" in str(caught.value)
+
+
+def test_sections_and_forces_know_components():
+    """A section goes along a component that is left; a force along the whole velocity."""
+    more = [
+        (BLADE, 'c = "Omega3 == 0"'),
+        (
+            "[constraints]",
+            '[momenta.J]\nsection = { Omega1 = "r" }\n[forces]\nOmega = "-Omega"\n[constraints]',
+        ),
+    ]
+    ball = spec(FREE_BALL, *more)
+    assert list(ball.sections[0].section) == ["Omega1"]
+    assert list(ball.forces) == ["Omega"]
+    with pytest.raises(SpecError, match="Omega3"):
+        spec(FREE_BALL, *more, ("{ Omega1 =", "{ Omega3 ="))

@@ -99,11 +99,20 @@ def _draw(system: System, count: int, seed: int, one: Members) -> Members:
     state = middle + SPREAD * sizes * source.uniform(-1.0, 1.0, (len(middle), count))
     origin = f"random states within {100 * SPREAD:g} % around the start, seed {seed}"
     if "projection" in system.functions:
+        from coadjoint.solve.constraints import settle
+
         time = np.zeros(count) if system.TIME else None
-        state, origin = (
-            system.projection(state, one.parameters, one.inputs, time=time),
-            f"{origin}, moved onto the constraints",
-        )
+
+        def project(states: Any) -> Any:
+            return system.projection(states, one.parameters, one.inputs, time=time)
+
+        def measure(states: Any) -> Any:
+            return system.constraint_residual(states, one.parameters, one.inputs, time=time)
+
+        once = project(state)
+        settled = settle(system, once, measure, project)
+        state = once if settled is None else settled
+        origin = f"{origin}, moved onto the constraints"
     return replace(one, state=state, origin=origin)
 
 

@@ -1,10 +1,12 @@
 """Domain: where a system is defined and regular, as values that are positive there.
 
 Comes in: Equations. Goes out: a bound for each declared condition, the side that is to be larger
-minus the other, then those of a contact of surfaces, then, for constrained motions, one for each pivot of the solves in the kernel, with
-the sign that it has for a positive kinetic energy: plus for accelerations, minus for multipliers,
-since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A M^-1 A^T``. It is one place for every
-route, since conditions are the spec's and pivots those of the emitted solves.
+minus the other, then those of a contact of surfaces, then, for constrained motions, one for each
+pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
+accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A
+M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
+solution where the arguments of its roots are positive. It is one place for every route, since
+conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
 """
@@ -17,10 +19,12 @@ from types import MappingProxyType
 
 from coadjoint.declared import Bound
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.kinematics import kinematics, multiplier_name
 from coadjoint.derive.mechanics.solver import pivot_name
 from coadjoint.exact import Condition, Element, Region
+from coadjoint.exact.signs import sign
 
 
 def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
@@ -34,7 +38,7 @@ def bounds(equations: Equations) -> tuple[tuple[Bound, Element], ...]:
         strict = not condition.sign.endswith("=")
         inputs = _inputs(equations, value)
         conditions.append((Bound(condition.name, "condition", strict, inputs), value))
-    return (*conditions, *_contact(equations), *_pivots(equations))
+    return (*conditions, *_contact(equations), *_transforms(equations), *_pivots(equations))
 
 
 def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyType({})) -> Region:
@@ -46,7 +50,7 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
     """
     known = equations.setting.field.region
     conditions = [Condition(value, bound.strict) for bound, value in bounds(equations)]
-    conditions += _arguments(equations)
+    conditions += [each for each in _arguments(equations) if each not in conditions]
     return replace(
         known,
         bounds=tuple(each for each in conditions if each not in known.conditions),
@@ -81,6 +85,25 @@ def _contact(equations: Equations) -> list[tuple[Bound, Element]]:
     known = kinematics(equations.setting).decided
     found = [(name, known.value(value)) for name, value in touch.bounds]
     return [(Bound(name, "condition", True, _inputs(equations, v)), v) for name, v in found]
+
+
+def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
+    """A bound for each root by which velocities follow from momenta, where it may have no value."""
+    setting, velocities = equations.setting, {*equations.setting.velocities}
+    field, pairs, seen = setting.field, list[tuple[Bound, Element]](), set[str]()
+    if setting.spec.lagrangian is None or not setting.momenta or setting.spec.is_first_order:
+        return []
+    bending = {} if setting.spec.variational else mechanics(setting).bending
+    for name, value in equations.exact.definitions:
+        if name not in velocities or name not in bending:
+            continue
+        for generator in sorted(field.functions_in(value) - seen):
+            seen.add(generator)
+            positive = field.domain_of(field.adjoined[generator])
+            if positive is not None and sign(field, positive) != 1:
+                bound = Bound(name, "transform", True, _inputs(equations, positive))
+                pairs.append((bound, positive))
+    return pairs
 
 
 def _pivots(equations: Equations) -> list[tuple[Bound, Element]]:

@@ -22,6 +22,7 @@ from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.projection import nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
+from coadjoint.derive.mechanics.turning import turned_back, turning_residuals
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import Setting
@@ -183,6 +184,27 @@ class Equations:
         """The nearest state on the constraints that are kept, in place of the rates."""
         nearest = nearest_state(self.setting, self.distribution, self.exact)
         return None if nearest is None else replace(self, exact=nearest, steps=())
+
+    @cached_property
+    def turning_back(self) -> Equations | None:
+        """The state with its attitudes moved back to rotations, in place of the rates.
+
+        Under constraints, and where noise acts, attitudes are left as they are.
+        """
+        setting = self.setting
+        if not self.spec.turns_back:
+            return None
+        moved = turned_back(setting)
+        state = tuple(moved.get(name, setting.field[name]) for name in setting.state)
+        nearest = Exact(
+            definitions=(),
+            rates=state,
+            energy=None,
+            emitted=(),
+            poisson_tensor=None,
+            residuals=tuple(turning_residuals(setting)),
+        )
+        return replace(self, exact=nearest, steps=())
 
     @cached_property
     def intermediates(self) -> frozenset[str]:

@@ -123,14 +123,14 @@ def noise(equations: Equations) -> Rows | None:
 
 
 def constraint_residual(equations: Equations) -> Rows | None:
-    """What vanishes on the constraints."""
-    residuals = equations.exact.residuals
+    """What vanishes on the constraints, or where attitudes are rotations."""
+    residuals = (equations.turning_back or equations).exact.residuals
     return _rows(equations, residuals) if residuals else None
 
 
 def projection(equations: Equations) -> Rows | None:
-    """The nearest state on the constraints, by equations of its own."""
-    own = equations.projection
+    """The nearest state on the constraints, or with rotations, by equations of its own."""
+    own = equations.projection or equations.turning_back
     if own is None:
         return None
     nearest = _rows(own, zip(own.setting.state, own.exact.rates, strict=True))

@@ -413,6 +413,7 @@ class Element:
             for number, exponent in powers.items():
                 slope = self.factors.slope(number, place)
                 if slope:
+                    self.factors.spend(len(numer) * len(slope))
                     raised = {**powers, number: exponent + 1}
                     quotients.append((numer * slope * -exponent, raised))
         return Element(self.factors, quotients)

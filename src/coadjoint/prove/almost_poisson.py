@@ -142,11 +142,12 @@ class ReducedBracket:
         added = []
         for name in self.names:
             if name not in self.basis.fields:
-                added.append(carried[name])
+                added.append(carried[name] + frame.drift(self.field[name]))
                 continue
             along = self.basis.fields[name]
             turned = frame.bracket(drift, along) if any(drift) else (self.field.zero,) * len(along)
-            moved = [explicit(setting, a) + x for a, x in zip(along, turned, strict=True)]
+            own = [explicit(setting, a) + frame.drift(a) for a in along]
+            moved = [a + x for a, x in zip(own, turned, strict=True)]
             pairs = [*zip(along, forces, strict=True), *zip(moved, momenta, strict=True)]
             added.append(self.field.sum(a * b for a, b in pairs if a and b))
         return tuple(added)

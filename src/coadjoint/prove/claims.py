@@ -17,6 +17,7 @@ from typing import Any
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.domain import region
 from coadjoint.exact import Element, Field, Region
+from coadjoint.prove import indexed
 from coadjoint.prove.agreement import about_equality, about_legendre
 from coadjoint.prove.almost_poisson import about_reduced_bracket, about_reduced_jacobi
 from coadjoint.prove.attitudes import about_attitudes
@@ -239,6 +240,14 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         DerivationError: A route cannot be followed.
         UndecidedError: No point is found at which a claim has a value.
     """
+    if spec.family is None:
+        return _certify(spec, routes)
+    windows = indexed.list_windows(spec)
+    return indexed.extend(spec, [_certify(each, searched=False) for each in windows])
+
+
+def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = True) -> Certificate:
+    """The certificate of a system whose state is written out, with or without searches."""
     if not routes:
         setting = make_setting(spec)
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
@@ -246,7 +255,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     field.region = _region(routes[0])
     _check_domain(spec.name, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
-    for statement, kind, examine in _claims(routes):  # what is found out takes its time here
+    for statement, kind, examine in _claims(routes, searched=searched):  # finding takes its time
         result = _examine(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
         entry = make_entry(statement, kind, result, seconds)
@@ -257,11 +266,11 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     return Certificate(spec.name, tuple(claims), tuple(findings))
 
 
-def _claims(routes: Sequence[Equations]) -> Iterator[Examined]:
-    """All statements in the order of the certificate."""
+def _claims(routes: Sequence[Equations], *, searched: bool) -> Iterator[Examined]:
+    """All statements in the order of the certificate, those of searches included or not."""
     motion = motion_of(routes[0])
     for part in EXAMINATIONS:
-        if part.applies(motion):
+        if part.applies(motion) and (searched or not part.kind):
             examined = part.about(routes if part.of_routes else motion)
             if part.kind:
                 examined = within_budget(motion.field, part.kind, part.subject, examined)

@@ -1,7 +1,7 @@
 r"""Contact: what is claimed of a body that rolls on any surface.
 
-With f and F that are zero on the surfaces of the body and in space, g and G their gradients: (i) the
-point of the body at the contact moves with the surface; (ii) the points of contact stay on both
+With f and F that are zero on the surfaces of the body and in space, g and G their gradients: (i)
+the point of the body at the contact moves with the surface; (ii) the points of contact stay on both
 surfaces; (iii) the normals stay opposite; (iv) the centre of mass is where the arm says; (v) a
 surface that turns goes over into itself; (vi) the projection of a state is a step of Newton, and
 leaves a state that is in contact.
@@ -96,8 +96,8 @@ def _about_points(motion: ConstrainedRates, touch: Touch) -> Iterator[Examined]:
 class _Normals:
     r"""The rates of what two curved surfaces keep, without the curvatures written out.
 
-    With :math:`c = g \times G`, which is 0 where the normals are parallel, and any velocity w of the
-    point of contact along the body,
+    With :math:`c = g \times G`, which is 0 where the normals are parallel, and any velocity w of
+    the point of contact along the body,
 
     .. math::
         g^2 \dot c = g \times (Q w - k\, g \times \Omega)
@@ -133,8 +133,8 @@ class _Normals:
         own = [self._along(x) for x in c]
         Q = [[self._close(x) for x in row] for row in self.touch.named.Q]
         k = -dot(g, G)
-        first = [dot(row, w) for row in Q]
-        first = cross(g, subtract(tuple(first), scale(k, cross(g, Omega))))
+        turned = tuple(dot(row, w) for row in Q)
+        first = cross(g, subtract(turned, scale(k, cross(g, Omega))))
         bent = tuple(dot(field.gradient(x, self.touch.point), w) for x in g)
         aside = cross(g, c)
         rest = add(cross(bent, aside), cross(g, cross(aside, Omega)))
@@ -175,7 +175,7 @@ class _Normals:
         return list(subtract(moved, self.touch.in_space(self._s)))
 
     def _along(self, function: Element) -> Element:
-        """The rate of a function of positions, the velocity of the contact along the body being w."""
+        """The rate of a function of positions, w being the velocity of the contact on the body."""
         frame = self.motion.distribution.frame
         rates = frame.rates_apart(self.motion.setting.elements(frame.velocities))
         rates |= zip(self.touch.point, self.w, strict=True)
@@ -252,7 +252,8 @@ def _about_projection(motion: ConstrainedRates, touch: Touch) -> Iterator[Examin
     if touch.contact.centre:
         yield _claim(
             motion,
-            f"the projection moves the centre {touch.contact.centre} to the radius from the surface",
+            f"the projection moves the centre {touch.contact.centre} to the radius from the "
+            "surface",
             lambda: [field.substitute(x, after) for _, x in touch.residuals[1:]],
         )
 

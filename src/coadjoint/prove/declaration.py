@@ -9,7 +9,10 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
+
+import sympy
 
 from coadjoint.declared import KernelContext, Quantity
 from coadjoint.derive import Equations
@@ -17,10 +20,15 @@ from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
+from coadjoint.families import Family
+from coadjoint.lower.families import Loops
 from coadjoint.lower.program import Program
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.integrals import is_conserved
+from coadjoint.render.families import FamilyContext
 from coadjoint.spec import Spec
+from coadjoint.spec.core.components import component_names
+from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Reconstructed
 
 
@@ -53,7 +61,112 @@ def kernel_context(
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         unit_of_time=spec.units.time,
         domain=tuple(bound for bound, _ in bounds(equations)),
+        turning=tuple(v.name for v in spec.turning if equations.turning_back is not None),
     )
+
+
+def family_context(
+    equations: Equations, family: Family, loops: dict[str, Loops], supported: int = 0
+) -> FamilyContext:
+    """What the generated files of a system of equal members say.
+
+    Args:
+        equations: Of the first route, for a few members.
+        family: Those of the generic member.
+        loops: Its functions.
+        supported: How many claims are numerically supported and not proved.
+    """
+    spec = equations.spec
+    declared = spec.family
+    assert declared is not None, spec.name
+    first, *others = spec.routes
+    known: dict[str, Any] = {each.name: each for each in (*spec.variables, *spec.parameters)}
+    kept = {each.name: each for each in equations.exact.emitted}
+
+    def name_generic(name: str) -> Quantity:
+        """A quantity of member 0 by the name that it has for every member."""
+        own = _quantity(known[member_name(name, 0)])
+        generic = known[member_name(name, 0)]
+        return replace(
+            own, name=name, components=component_names(name, generic.shape, generic.form)
+        )
+
+    return FamilyContext(
+        name=spec.name,
+        spec=f"derivations/{spec.name}.toml",
+        license=spec.license,
+        routes=(
+            f"Route {first} for every number of members.",
+            *(f"Proved equal to the route {route}." for route in others),
+        ),
+        equations=family_lines(family),
+        index=family.index,
+        small=family.small,
+        state=tuple(map(name_generic, declared.variables)),
+        shared=tuple(_quantity(known[name]) for name in declared.shared),
+        indexed=tuple(map(name_generic, declared.indexed)),
+        defaults={name: tuple(map(float, values)) for name, values in declared.defaults.items()},
+        observables=tuple(
+            _observable(equations, kept[name])
+            for name in (
+                *(["energy"] if spec.hamiltonian else []),
+                *(o.name for o in spec.observables),
+            )
+        ),
+        loops=loops,
+        supported=supported,
+        unit_of_time=spec.units.time,
+    )
+
+
+def family_lines(family: Family) -> tuple[str, ...]:
+    """The equations of the generic member, one line each, then those of the ends of a chain.
+
+    >>> from coadjoint.families import Index
+    >>> q, before = sympy.symbols("q q[-1]")
+    >>> ring = Family(
+    ...     index=Index("i"),
+    ...     states=(q,),
+    ...     shifts=(-1,),
+    ...     neighbours={(q, -1): before},
+    ...     shared=(),
+    ...     indexed=(),
+    ...     partners={},
+    ...     rates=(before - q,),
+    ...     pair_sums=(),
+    ...     ends={},
+    ...     totals=(),
+    ...     small=1,
+    ... )
+    >>> family_lines(ring)
+    ('dq[i]/dt = -q[i] + q[i-1]',)
+    """
+    i, own = family.index.name, (*family.states, *family.indexed)
+
+    def name(member: str) -> dict[Any, Any]:
+        """Symbols of a member and those next to it, as they are shown."""
+        shown = {each: sympy.Symbol(f"{each}[{member}]") for each in own}
+        shown |= {
+            symbol: sympy.Symbol(f"{each}[{member}{shift:+d}]")
+            for (each, shift), symbol in family.neighbours.items()
+        }
+        return shown
+
+    generic = name(i)
+    sums = {
+        each.symbol: sympy.Symbol(f"sum(j != {i}, {each.term.xreplace(generic)})")
+        for each in family.pair_sums
+    }
+    lines = list[str]()
+    places = [(i, family.rates)]
+    places += [(str(k) if k >= 0 else f"N{k}", rates) for k, rates in family.ends.items()]
+    for member, rates in places:
+        shown = name(member) | sums
+        lines += [
+            f"d{each}[{member}]/dt = {rate.xreplace(shown)}".replace("**", "^")
+            for each, rate in zip(family.states, rates, strict=True)
+        ]
+    return tuple(lines)
 
 
 def _origin(spec: Spec) -> str:

@@ -172,7 +172,7 @@ class Balance:
         return terms
 
     def _work_of_constraints(self) -> list[Element]:
-        """``-lambda r`` with the residual r of each constraint at rest; work by a point of contact."""
+        """``-lambda r`` with the residual r of each constraint at rest; and by the contact."""
         distribution = self._distribution
         if distribution is None:
             return []

@@ -38,5 +38,6 @@ def _defects(motion: Motion) -> list[Element]:
         assert whole is variable, "each coordinate has one momentum"
         for p, q in zip(variable.components, position.components, strict=True):
             slope = momenta[setting.positions.index(q)]
-            defects.append(setting.field[p] * (1 / declared[p]) - slope)
+            own = motion.close(setting.field[p])
+            defects.append(own * (1 / declared[p]) - slope)
     return defects

@@ -14,6 +14,7 @@ from typing import Any
 from coadjoint.derive.setting import Declared
 from coadjoint.prove.certificate import Certificate
 from coadjoint.spec import Spec
+from coadjoint.spec.spatial import turning_rows
 
 
 def certificate_json(spec: Spec, certificate: Certificate) -> str:
@@ -39,6 +40,10 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
     if spec.constraints:  # in the order of the rows of the function constraint_residual
         record["constraints"] = {
             name: each.in_one_line for each in spec.constraints for name in each.components
+        }
+    if spec.turns_back:
+        record["constraints"] = {
+            name: text for each in spec.turning for name, text in turning_rows(spec, each).items()
         }
     if spec.rolling is not None and spec.rolling.contact is not None:
         record["constraints"] |= spec.rolling.contact.texts

@@ -10,8 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
@@ -107,7 +108,12 @@ class Function:
 
 def render_system(context: KernelContext) -> dict[str, str]:
     """The kernels of one generated folder and the package that declares them, by file name."""
-    texts = _render(context, PLACE)
+    return identify(partial(_render, context))
+
+
+def identify(render: Callable[[str], dict[str, str]]) -> dict[str, str]:
+    """Texts by file name, given a function of the id that they carry, which follows from them."""
+    texts = render(PLACE)
     blank = {file: text.replace(PLACE, "0" * len(PLACE)) for file, text in texts.items()}
     identity = fingerprint(blank)
     return {file: text.replace(PLACE, identity) for file, text in texts.items()}
@@ -125,11 +131,11 @@ def fingerprint(texts: Mapping[str, str]) -> str:
 
 def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
     """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
-    called = _list_called(programs)
+    called = list_called(programs)
     return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
 
 
-def _list_called(programs: Iterable[Program]) -> list[str]:
+def list_called(programs: Iterable[Program]) -> list[str]:
     """All functions that Programs call, in alphabetical order, as imports have them."""
     values = (value for program in programs for value in program.values())
     called = {operation(node) for value in values for node in walk(value)}
@@ -139,16 +145,16 @@ def _list_called(programs: Iterable[Program]) -> list[str]:
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
     table, firsts = arrange_table(context.programs)
-    state = _rows(context.state)
-    reconstructed = _rows(context.reconstructed, len(state))
+    state = rows_of(context.state)
+    reconstructed = rows_of(context.reconstructed, len(state))
     shared: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
-        "licence": _licence(context.license),
+        "licence": tell_licence(context.license),
         "id": identity,
-        "parameters": _rows(context.parameters),
+        "parameters": rows_of(context.parameters),
         "driving": {
-            array: _rows(quantities)
+            array: rows_of(quantities)
             for array, quantities in _optional(context).items()
             if array != "reconstructed"
         },
@@ -160,14 +166,14 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             "state": state,
             "reconstructed": reconstructed,
             "chunk": CHUNK,
-            "routes": _wrap([*context.routes, *_note_unproved(context.supported)]),
-            "equations": _wrap(context.equations),
+            "routes": wrap([*context.routes, *note_unproved(context.supported)]),
+            "equations": wrap(context.equations),
             "functions": [
                 _function(program, _summary(context, program), firsts.get(program.name, 0))
                 for program in context.programs
             ],
             "table": table,
-            "called": _list_called(context.programs),
+            "called": list_called(context.programs),
             "elementary": tuple_text(map(quote, elementary_functions(context.programs))),
             "shapes": _shapes(context.programs),
             "system": _system(context, identity),
@@ -214,7 +220,7 @@ def name_solver(system: str, kind: SolverKind) -> dict[str, str]:
     }
 
 
-def _note_unproved(number: int) -> list[str]:
+def note_unproved(number: int) -> list[str]:
     """The line of the head about claims that are not proved; none if all are."""
     claims = "1 claim is" if number == 1 else f"{number} claims are"
     text = f"{claims} numerically supported and NOT proved: see certificate.json."
@@ -244,12 +250,12 @@ def _optional(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
     return {name: getattr(context, name) for name in names if getattr(context, name)}
 
 
-def _licence(expression: str) -> str:
+def tell_licence(expression: str) -> str:
     """The line of a file's head that states its licence."""
     return f"SPDX-License-Identifier: {expression}" if expression else NO_LICENSE
 
 
-def _wrap(lines: Iterable[str]) -> list[str]:
+def wrap(lines: Iterable[str]) -> list[str]:
     """Lines for the head of a file, the long ones continued on indented lines."""
     return [
         piece
@@ -264,7 +270,7 @@ def _wrap(lines: Iterable[str]) -> list[str]:
     ]
 
 
-def _rows(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
+def rows_of(quantities: Iterable[Quantity], first: int = 0) -> list[Row]:
     """The components of an input array, row by row from ``first`` on."""
     named = [
         (name, quantity.unit_of(name)) for quantity in quantities for name in quantity.components
@@ -325,7 +331,8 @@ def _summary(context: KernelContext, program: Program) -> str:
     shape = ", ".join([*map(str, program.shape), "..."])
     function = KERNEL_FUNCTIONS[program.name]
     constrained = any(other.name == "constraint_residual" for other in context.programs)
-    text = (constrained and function.constrained) or function.summary
+    kind = function.turning if context.turning else constrained and function.constrained
+    text = kind or function.summary
     return f"{text}, shape ({shape})."
 
 
@@ -334,7 +341,7 @@ def _costs(program: Program) -> list[str]:
     costs = [f"Operations per member: {_counts(program, 'member')}."]
     if program.statements_at("parameters"):
         costs += [f"Of the parameters alone: {_counts(program, 'parameters')}."]
-    return _wrap(costs)
+    return wrap(costs)
 
 
 def _counts(program: Program, level: str) -> str:

@@ -68,6 +68,7 @@ def check_call(
         "parameters": pack_parameters(system, parameters),
         **_inputs(system, inputs),
         **_time(system, time),
+        **system.fixed,
     }
     for name, array in given.items():
         if array.shape[1:] not in ((), batch):

@@ -9,6 +9,7 @@ Read next: `coadjoint.derive.mechanics.projection`.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9
+#: Projections after which a state is on the constraints, or will not be.
+SETTLING = 20
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
@@ -57,6 +60,23 @@ def find_excess(
             moved[row] += step
             off -= np.abs(residuals(moved) - here) / step * (TYPED * sizes[row] + atol)
     return off
+
+
+def settle(
+    system: System,
+    state: Array,
+    residuals: Callable[[Array], Array],
+    project: Callable[[Array], Array],
+) -> Array | None:
+    """States on the constraints, by as many projections as it takes; None where they do not help.
+
+    One is enough but for attitudes that are far from rotations.
+    """
+    for _ in range(SETTLING):
+        if not (find_excess(system, state, residuals, 0.0) > 0).any():
+            return state
+        state = project(state)
+    return None
 
 
 class Constraints:
@@ -127,23 +147,32 @@ class Constraints:
         off = find_excess(self.system, state, self._residuals, atol)
         row = int(np.argmax(off))
         if off[row] > 0:
-            raise self._refusal(time, state, row, float(self._residuals(state)[row]))
+            raise self._refusal(time, state, row, atol)
         return self.project(time, state)
 
     def _residuals(self, states: Array) -> Array:
         now = self.driving.now
         return self.system.constraint_residual(states, self.parameters, target=self.target, **now)
 
-    def _refusal(self, time: float, state: Array, row: int, residual: float) -> KernelArgumentError:
+    def _refusal(self, time: float, state: Array, row: int, atol: float) -> KernelArgumentError:
         """What is wrong with a start, and where it would be right."""
-        moved = zip(self.system.STATE.components, state, self.project(time, state), strict=True)
-        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
+        residual = float(self._residuals(state)[row])
         listed = list(self.system.certificate.get("constraints", {}).items())
         constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
         return KernelArgumentError(
             f"{self.system.name}: the constraint{constraint} does not hold at the given state: "
-            f"left minus right is {residual:.6g}; expected 0. The nearest state on the constraints "
-            f"has {told}: begin there (System.projection gives it).",
+            f"left minus right is {residual:.6g}; expected 0.{self._advise(time, state)}",
             found=residual,
             expected=0,
         )
+
+    def _advise(self, time: float, state: Array) -> str:
+        """A state on the constraints that is near, if there is one."""
+        once = self.project(time, state)
+        near = settle(self.system, once, self._residuals, partial(self.project, time))
+        if near is None:
+            return " Give a state that is on them."
+        moved = zip(self.system.STATE.components, state, near, strict=True)
+        told = ", ".join(f"{name} = {to:.12g}" for name, given, to in moved if to != given)
+        how = " (System.projection gives it)" if near is once else ""
+        return f" The nearest state on the constraints has {told}: begin there{how}."

@@ -180,6 +180,8 @@ class Domain:
         if bound.kind == "condition":
             text = self.system.certificate.get("domain", {}).get(bound.name)
             return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
+        if bound.kind == "transform":
+            return f"no {bound.name} has these momenta: the Legendre transform has no solution"
         if bound.kind == "acceleration":
             return "the reduced mass matrix is singular, or not positive,"
         return f"{bound.name} is undetermined, since constraints vanish or depend on each other,"
@@ -189,6 +191,8 @@ class Domain:
         bound = self.bounds[row]
         if bound.kind == "condition":
             return f"the larger side of {bound.name} minus the other"
+        if bound.kind == "transform":
+            return f"the {bound.label}"
         return f"the pivot of {bound.name}"
 
     def _values(self, row: int, state: Array) -> str:

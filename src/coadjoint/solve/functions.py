@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import signature
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, Protocol, TypeVar
 
 from coadjoint.declared import KernelFunction
@@ -95,7 +96,18 @@ class Functions:
     """What kernels compute: a method for each of the kernel functions.
 
     A System has those of its ``functions``.
+
+    Attributes:
+        stepwise: Why generated methods make their steps in Python, as a clause; "" where they need
+            not.
     """
+
+    stepwise: str = ""
+
+    @property
+    def fixed(self) -> Mapping[str, Array]:
+        """Arrays that kernels take beyond those that a person passes, by name: N of a family."""
+        return MappingProxyType({})
 
     if TYPE_CHECKING:  # the methods are made below, from the table
 

@@ -55,7 +55,7 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     """
     kinds = list_kinds(system.functions)
     wanted = kinds if is_asked(reconstruct) else kinds[:1]
-    if not all(map(system._solvers.has_files, wanted)):
+    if not system.stepwise and not all(map(system._solvers.has_files, wanted)):
         return "its folder was generated without them: run `coadjoint regenerate`"
     if target == "python":
         return "they are written for the targets c, c-fast and numpy"
@@ -71,7 +71,7 @@ def find_stepwise(system: System, inputs: Any) -> str:
     """
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
-    return ""
+    return system.stepwise
 
 
 def simulate(system: System, request: Request) -> Solution:

@@ -239,11 +239,9 @@ def _has_no_series(path: Array) -> Mask:
 
 
 def _norm(rows: Array) -> Array:
-    """The largest row."""
-    largest: Array = np.abs(rows[0])
-    for row in rows[1:]:
-        largest = larger(np.abs(row), largest)
-    return largest
+    """The largest row; a row that is no number is left out, unless it is the first."""
+    sizes = np.abs(rows)
+    return np.asarray(np.where(np.isnan(sizes[0]), sizes[0], np.fmax.reduce(sizes, axis=0)))
 
 
 def _free(lanes: Lanes, step: Array, most: Array) -> Array:
@@ -394,11 +392,7 @@ class DormandPrince8:
         return total
 
     def _square_norm(self, rows: Array, scale: Array) -> Array:
-        total = np.zeros(rows.shape[1])
-        for row, size in zip(rows, scale, strict=True):
-            part = row / size
-            total = total + part * part
-        return total / float(len(rows))
+        return _square(rows / scale) / float(len(rows))
 
     def _first(self, lanes: Lanes, most: Array) -> Array:
         """A first step: Hairer, Norsett and Wanner, II.4."""
@@ -417,9 +411,8 @@ class DormandPrince8:
 
     def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
-        sizes, top = larger(np.abs(lanes.state), np.abs(end)), np.zeros(h.shape)
-        for row in sizes:
-            top = larger(row, top)
+        sizes = larger(np.abs(lanes.state), np.abs(end))
+        top = np.fmax.reduce(sizes, axis=0, initial=0.0)
         # below the roundings of the largest component no error can be seen
         least = larger(np.full(h.shape, self.atol), ROUNDING * top)
         unit = 1.0 / (least + self.rtol * sizes)
@@ -472,11 +465,8 @@ def _multiply_out(start: Array, parts: list[Array], h: Array) -> Array:
 
 
 def _square(rows: Array) -> Array:
-    """The sum of the squares of rows."""
-    total = np.zeros(rows.shape[1])
-    for row in rows:
-        total = total + row * row
-    return total
+    """The sum of the squares of rows, from the first to the last."""
+    return np.asarray(np.add.accumulate(rows * rows, axis=0)[-1])
 
 
 def _root(a: Array) -> Array:

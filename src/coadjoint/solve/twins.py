@@ -51,9 +51,11 @@ class NumpyStepper:
         self._kernel = NumpyKernel(system, "kernel.py")
         functions = (*choice.kind.rates, "domain", "projection", "noise")
         self._sizes = {name: system.rows(name).size for name in functions}
-        module = KernelModule(system, choice.kind.files[2])
-        self._expansion = module.function("expand")
-        self._branches = bool(module.value("BRANCHES"))
+        self._expansion, self._branches = None, bool(system.stepwise)
+        if not system.stepwise:
+            module = KernelModule(system, choice.kind.files[2])
+            self._expansion = module.function("expand")
+            self._branches = bool(module.value("BRANCHES"))
         self._limits = Limits(
             domain=partial(self._evaluate, ("domain",)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
@@ -100,6 +102,7 @@ class NumpyStepper:
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
+        assert self._expansion is not None, self._choice.name
         path: Array = self._expansion(
             lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order
         )
@@ -124,7 +127,7 @@ class NumpyStepper:
         """Rows of functions of the kernel, one below the other, some time after the lanes."""
         driving, inputs = np.ascontiguousarray(self._drive(lanes, after)), self._system.INPUTS.size
         parameters = np.ascontiguousarray(lanes.parameters)  # as kernels in C read them
-        named = {"inputs": driving[:inputs]} if inputs else {}
+        named = dict(self._system.fixed) | ({"inputs": driving[:inputs]} if inputs else {})
         if self._system.TIME:
             named["time"] = driving[inputs:]
         rows = []

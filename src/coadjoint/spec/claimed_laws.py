@@ -25,7 +25,7 @@ def demand_emitted(units: Units) -> None:
     """Observables, and momenta along sections."""
     for each in units.spec.observables:
         units.equate(each.formula, units.of(each), f"That is the declared unit of {each.name}.")
-    velocities = {each.name: each for each in units.spec.variables}
+    velocities = {part.name: part for each in units.spec.variables for part in each.parts}
     for section in units.spec.sections:
         (own,) = units.of(section)
         for name, formula in section.section.items():

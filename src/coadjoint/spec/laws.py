@@ -31,6 +31,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.units import ONE, Unit, product_of, unknown
 from coadjoint.spec.dimensions import Units
 from coadjoint.spec.model import Variable
+from coadjoint.spec.sections.contacts import Contact
 from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.rolling import Rolling
 
@@ -334,12 +335,27 @@ def _demand_followed(units: Units) -> None:
         _demand_rolling(units, spec.rolling)
 
 
+def _demand_contact(units: Units, contact: Contact, length: Unit) -> None:
+    """Points of contact and radii are lengths, and a surface turns as a body does."""
+    for name in filter(None, (contact.place, contact.point)):
+        why = "A point of contact is a place."
+        units.require(("variables", name), units.names[name].entries[0], length, why)
+    if contact.radius is not None:
+        units.equate(contact.radius, [length], "A radius is a length.")
+    if contact.turning is not None:
+        units.equate(contact.turning, [ONE / units.time] * 3, "It is an angular velocity.")
+    for surface in filter(None, (contact.surface, contact.body)):
+        units.value(surface)
+
+
 def _demand_rolling(units: Units, rolling: Rolling) -> None:
     """The arm is a length, by which turning makes a velocity."""
     turning, velocity = (units.names[name] for name in (rolling.turning, rolling.velocity))
     length = (velocity.entries[0] or ONE) / (turning.entries[0] or ONE)
     why = f"{rolling.velocity} is {rolling.turning} times the arm."
     units.equate(rolling.arm, [length] * 3, why)
+    if rolling.contact is not None:
+        _demand_contact(units, rolling.contact, length)
     for each in units.spec.reconstruction:
         if each.of_rolling and not each.attitude:
             units.require(("rolling",), units.of(each)[0], length, why)

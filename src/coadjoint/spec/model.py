@@ -16,6 +16,7 @@ from typing import Any
 from coadjoint.algebra.catalogue import ATTITUDES
 from coadjoint.algebra.lie_algebra import LieAlgebra
 from coadjoint.algebra.representation import Representation
+from coadjoint.families import Index
 from coadjoint.spec.core.components import (
     FORMS,
     Components,
@@ -119,6 +120,41 @@ class Reduction(Submanifold):
 
 
 @dataclass(frozen=True)
+class Windows:
+    """What is known of a system of equal members apart from a few of them.
+
+    Attributes:
+        index: The index, with its size if that is known.
+        variables: Names of the variables that each member has, in declared order.
+        shared: Names of the parameters that all members share.
+        indexed: Names of the parameters that each member has.
+        defaults: Defaults of indexed parameters that differ from member to member, for all N.
+        reach: How many members further the energy couples.
+        pairs: Whether it couples every two members.
+        least: The number of members from which on the claims are proved.
+        windows: The spec written out for two numbers of members, the smaller first.
+        of_members: The claims of what each member conserves, as statements.
+        lax: The spec and its Lax pair, written out for all numbers of members from the least one
+            to that at which both ends of the matrices keep apart.
+        loaded: The spec written out for all members, with the claims that are not proved for every
+            number of them; None without such claims.
+    """
+
+    index: Index
+    variables: tuple[str, ...]
+    shared: tuple[str, ...]
+    indexed: tuple[str, ...]
+    defaults: Mapping[str, tuple[Any, ...]]
+    reach: int
+    pairs: bool
+    least: int
+    windows: tuple[Spec, Spec]
+    of_members: frozenset[str] = frozenset()
+    loaded: Spec | None = None
+    lax: tuple[tuple[Spec, Lax], ...] = ()
+
+
+@dataclass(frozen=True)
 class Spec:
     """One declared system.
 
@@ -165,6 +201,8 @@ class Spec:
         inputs: What drives the system from outside, in declared order.
         time: The time, if formulas name it.
         records: What tables gave that have no attribute here, by their keys.
+        index: The index that counts equal members, in a spec with one.
+        family: What is known of the other members, where a few stand for all of them.
         units: The units of all names, as far as the spec tells them.
     """
 
@@ -209,6 +247,8 @@ class Spec:
     inputs: tuple[Input, ...] = ()
     time: Time | None = None
     records: Mapping[str, Any] = field(default_factory=dict)
+    index: tuple[Index, ...] = ()
+    family: Windows | None = field(default=None, repr=False)
     units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
 
     def having_role(self, role: str) -> tuple[Variable, ...]:
@@ -231,7 +271,7 @@ class Spec:
 
     @property
     def defined(self) -> tuple[Variable, ...]:
-        """Velocities, and coordinates, that follow from the state, emitted with the dynamics."""
+        """The variables that follow from the state, emitted with the dynamics."""
         return find_defined(self.variables)
 
     def partner(self, role: str, coordinate: str) -> Variable | None:
@@ -249,6 +289,11 @@ class Spec:
     def turning(self) -> tuple[Variable, ...]:
         """The attitudes, quaternions and poses of the state."""
         return tuple(each for each in self.variables if each.turning)
+
+    @property
+    def turns_back(self) -> bool:
+        """Whether solvers move attitudes back to rotations."""
+        return bool(self.turning) and not (self.constraints or self.noise)
 
     @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:

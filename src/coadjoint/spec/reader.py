@@ -12,11 +12,12 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint.errors import CoadjointError, LimitError, SpecError
@@ -37,13 +38,17 @@ from coadjoint.spec.core.source import Source
 from coadjoint.spec.dimensions import infer_units
 from coadjoint.spec.laws import demand_laws
 from coadjoint.spec.model import Spec
+from coadjoint.spec.sections.indices import read_indices
 from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.spatial import grams, spatial_momenta
 from coadjoint.spec.tables import TABLES
 from coadjoint.spec.validate import validate
+from coadjoint.spec.windows import name_fault, read_windows
 
 
-def read_spec(path: str | os.PathLike[str]) -> Spec:
+def read_spec(
+    path: str | os.PathLike[str], sizes: Mapping[str, int] = MappingProxyType({})
+) -> Spec:
     """Read a spec from a file.
 
     What the text may ask for is limited (docs/limits.md). The time that reading takes is not
@@ -52,6 +57,7 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
 
     Args:
         path: A regular file in TOML; its stem names the system.
+        sizes: How many members an index counts, by its name.
 
     Raises:
         SpecError: The file cannot be read, or is not a spec; the message points at the place.
@@ -65,7 +71,7 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
     """
     data = read_file(os.fspath(path))
     try:
-        return read_spec_text(data.decode("utf-8"), path)
+        return read_spec_text(data.decode("utf-8"), path, sizes)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         problem = f"the byte 0x{data[error.start]:02x} is not UTF-8"
@@ -74,12 +80,17 @@ def read_spec(path: str | os.PathLike[str]) -> Spec:
         ) from None
 
 
-def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
+def read_spec_text(
+    text: str,
+    path: str | os.PathLike[str],
+    sizes: Mapping[str, int] = MappingProxyType({}),
+) -> Spec:
     """Read a spec from its text.
 
     Args:
         text: What the file would hold.
         path: Where it comes from, for messages; the stem names the system.
+        sizes: How many members an index counts, by its name.
 
     Raises:
         SpecError: The text is not a spec; the message points at the place.
@@ -92,8 +103,32 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         raise file_fault(os.fspath(path), refused[0], *refused[1:], found=name)
     check_bytes(os.fspath(path), len(data))
     plain = text.replace("\r\n", "\n")
-    source = Source(os.fspath(path), plain, scan(plain))
-    file = validate(source)
+    source = Source(path=os.fspath(path), text=plain, positions=scan(plain))
+    file: Any = validate(source)
+    read = partial(_read, path=Path(path), sha256=sha256(data).hexdigest())
+    if file.index:
+        read_indices(Reading(source, file, name, TABLES), file.index)
+        return read_windows(source, file, read, sizes)
+    _refuse_indices(source, file, sizes)
+    return read(source, file)
+
+
+def _refuse_indices(source: Source, file: Any, sizes: Mapping[str, int]) -> None:
+    """Without an index, nothing has one and no size is chosen."""
+    for table in ("variables", "parameters"):
+        for name, part in getattr(file, table).items():
+            if part.index is not None:
+                raise name_fault(source, (table, name), part.index)
+    if sizes:
+        chosen = next(iter(sizes))
+        problem, expected = f"a size is chosen for {chosen!a}, which is no index", "no sizes"
+        hint = "Leave sizes out, or declare [index]."
+        raise file_fault(source.path, problem, expected, hint, found=chosen)
+
+
+def _read(source: Source, file: Any, *, path: Path, sha256: str) -> Spec:
+    """The Spec of checked tables without an index."""
+    name = path.stem
     reading = Reading(source, file, name, TABLES)
     check_tables(source, file)
     check_blocks(reading)
@@ -106,8 +141,8 @@ def read_spec_text(text: str, path: str | os.PathLike[str]) -> Spec:
         description=file.description,
         license=file.license,
         routes=tuple(file.routes),
-        path=Path(path),
-        sha256=sha256(data).hexdigest(),
+        path=path,
+        sha256=sha256,
         accepted=frozenset(_list_accepted(file)),
         **_read_tables(reading),
     )

@@ -60,10 +60,24 @@ def gram_name(each: Variable) -> str:
 
 def describe_gram(spec: Spec, each: Variable) -> str:
     """The product that stays, as a formula."""
-    R = f"rotation({each.name})" if each.turning == "pose" else each.name
+    R = describe_rotation(each)
     if each.turning == "quaternion":
         return f"dot({R}, {R})"
     return f"{R}*transpose({R})" if spec.invariance == "left" else f"transpose({R})*{R}"
+
+
+def describe_rotation(each: Variable) -> str:
+    """What turns, as a formula: all of an attitude, a part of a pose."""
+    return f"rotation({each.name})" if each.turning == "pose" else each.name
+
+
+def turning_rows(spec: Spec, each: Variable) -> dict[str, str]:
+    """What holds of a rotation, by the names of its rows: a product of unit length, no mirror."""
+    unit = f"{describe_gram(spec, each)} == 1"
+    rows = dict.fromkeys(_name_gram(each).components, unit)
+    if each.turning == "quaternion":
+        return rows
+    return rows | {f"{each.name}_det": f"det({describe_rotation(each)}) == 1"}
 
 
 def _places_acted_on(spec: Spec) -> set[int]:

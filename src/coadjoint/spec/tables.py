@@ -24,6 +24,7 @@ from coadjoint.spec.sections.definitions import DEFINITIONS
 from coadjoint.spec.sections.domain import DOMAIN
 from coadjoint.spec.sections.energies import HAMILTONIAN, LAGRANGIAN
 from coadjoint.spec.sections.forces import DISSIPATION, FORCES
+from coadjoint.spec.sections.indices import INDEX
 from coadjoint.spec.sections.inputs import INPUTS
 from coadjoint.spec.sections.lax import LAX
 from coadjoint.spec.sections.momenta import MOMENTA
@@ -43,6 +44,7 @@ from coadjoint.spec.sections.transformations import TRANSFORMATIONS
 from coadjoint.spec.sections.variables import VARIABLES
 
 TABLES: tuple[Table[Any], ...] = (
+    INDEX,
     ALGEBRA,
     POISSON,
     REPRESENTATIONS,

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from dataclasses import field as attribute
 
 from coadjoint.derive.mechanics.configuration import Matrix, coupled_blocks
+from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
@@ -141,6 +142,7 @@ class Constraints:
         tangent: The row and right side by which a function of x stays zero.
         bound: What constraints give, by name in terms of what is left of x.
         steps: Constraints in their order, in words, and what they give.
+        lines: The same as they are shown: what is 0, then the component that it gives.
         unsolved: A constraint in which no component has a number for its factor; None while all are
             solved.
     """
@@ -152,6 +154,7 @@ class Constraints:
     tangent: Callable[[Element], tuple[Row, Element]]
     bound: dict[str, Element] = attribute(default_factory=dict)
     steps: list[str] = attribute(default_factory=list)
+    lines: list[tuple[str, Element]] = attribute(default_factory=list)
     unsolved: Element | None = None
 
     def follow(self) -> None:
@@ -183,6 +186,7 @@ class Constraints:
         given = f"{name} = {element_text(self.field, solution)}"
         found = f"{element_text(self.field, value)} = 0"
         self.steps.append(found if found == given else f"{found}, so {given}")
+        self.lines += [("0", value), (name, solution)]
         row, side = self.tangent(self.field[name] - solution)
         put = {name: solution}
         self.bound = {x: self.field.substitute(e, put) for x, e in self.bound.items()} | put
@@ -209,8 +213,8 @@ class Constraints:
         return "; ".join(f"({n}) {step}" for n, step in enumerate(self.steps, 1)) or "none"
 
 
-def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, ...]]:
-    """What the constraints of a form give, by name in terms of what is left, and all steps.
+def bind(setting: Setting, form: Form) -> Constraints:
+    """The constraints of a form, all of them solved.
 
     Raises:
         DerivationError: There is no motion, or it is not determined, or a constraint cannot be
@@ -224,12 +228,17 @@ def bind(setting: Setting, form: Form) -> tuple[dict[str, Element], tuple[str, .
         names=tuple(dict.fromkeys((*given, *resting, *form.names))),
         matrix=omega,
         right=field.gradient(form.energy, form.names),
-        tangent=lambda value: (field.gradient(value, form.names), field.zero),
+        tangent=lambda value: (field.gradient(value, form.names), -_moved(setting, value)),
     )
     known.follow()
     _check_determined(setting, form, known)
     _check_declared(setting, form, known)
-    return known.bound, tuple(known.steps)
+    return known
+
+
+def _moved(setting: Setting, value: Element) -> Element:
+    """What time and inputs change of a constraint by themselves."""
+    return explicit_rate(setting, value, "a coordinate that constraints give")
 
 
 def _check_determined(setting: Setting, form: Form, known: Constraints) -> None:

@@ -175,7 +175,6 @@ class Touch:
 
     def _curvature(self, g: Vector, G: Vector) -> Matrix:
         """Q, from the normals seen as velocities are."""
-        field = self.setting.field
         rows = self._hessian(self.G, self.place)
         seen = tuple(zip(*map(self.from_body, rows), strict=True))
         whole = tuple(map(self.from_body, seen))
@@ -359,23 +358,25 @@ class Touch:
     def nearest(self, decide: Callable[[Element], Element]) -> dict[str, Element]:
         """A state nearer to contact, by one step of Newton; only what it changes.
 
-        The normals are made opposite by rolling the point of contact along both surfaces; then each
-        point moves along the normal. The centre of a ball follows.
+        Each point moves along the normal onto its surface, and the normals are made opposite by
+        rolling along both surfaces. The centre of a ball follows.
 
         Args:
             decide: Writes what names stand for that are not computed.
         """
         bend, field = self.named, self.setting.field
         above, *others = self.setting.elements([name for name, _ in self.missed])
-        rolled = (field.zero,) * 3
+        squared = dot(bend.whole, bend.whole)
+        rolled: Vector = (field.zero,) * 3
         changes = dict[str, Element]()
         if others:
             inside, *aslant = others
-            rolled = scale(field.number(-1), bend.solve(tuple(aslant)))
-            down = scale(-inside / dot(bend.g, bend.g), bend.g)
-            changes |= zip(self.point, add(rolled, down), strict=True)
+            onto = scale(-inside / dot(bend.g, bend.g), bend.g)
+            turned = self._turned_by(bend, onto, scale(-above / squared, bend.G))
+            rolled = scale(field.number(-1), bend.solve(add(tuple(aslant), turned)))
+            changes |= zip(self.point, add(rolled, onto), strict=True)
         above += dot(bend.G, rolled)
-        down = scale(-above / dot(bend.whole, bend.whole), bend.whole)
+        down = scale(-above / squared, bend.whole)
         changes |= zip(self.place, add(self.in_space(rolled), down), strict=True)
         after = {name: decide(field[name] + change) for name, change in changes.items()}
         if self.contact.centre:
@@ -383,6 +384,12 @@ class Touch:
             out = [field.substitute(x, after) for x in self.outwards]
             after |= zip(self._components(self.contact.centre), add(X, tuple(out)), strict=True)
         return after
+
+    def _turned_by(self, bend: Bend, on_body: Vector, in_space: Vector) -> Vector:
+        """How the normals change where each point moves on its own."""
+        own = self._hessian(self.g, self.point)
+        apart = tuple(dot(row, subtract(on_body, in_space)) for row in own)
+        return add(apart, scale(1 / bend.k, tuple(dot(row, in_space) for row in bend.Q)))
 
 
 def _number(name: str, values: Sequence[Element]) -> list[tuple[str, Element]]:

@@ -46,7 +46,7 @@ class FirstOrder:
         solved: Velocities in terms of the momenta that are declared.
         whole: theta and h over all coordinates and momenta.
         bound: What the constraints give, by name, in the state.
-        steps: How they were found, in words.
+        lines: How they were found, as `Constraints.lines`.
         form: theta and h over the state.
     """
 
@@ -54,7 +54,7 @@ class FirstOrder:
     solved: Mapping[str, Element]
     whole: Form
     bound: Mapping[str, Element]
-    steps: tuple[str, ...]
+    lines: tuple[tuple[str, Element], ...]
     form: Form
 
     @property
@@ -76,12 +76,16 @@ def first_order(setting: Setting) -> FirstOrder:
             in velocities, or its one-form moves by itself; or it does not determine the motion.
     """
     solved, whole = _whole_form(setting)
-    bound, steps = bind(setting, whole)
-    form = whole
-    for name, value in bound.items():
+    known, form = bind(setting, whole), whole
+    for name, value in known.bound.items():
         form = form.put(setting.field, name, value)
     return FirstOrder(
-        setting=setting, solved=solved, whole=whole, bound=bound, steps=steps, form=form
+        setting=setting,
+        solved=solved,
+        whole=whole,
+        bound=known.bound,
+        lines=tuple(known.lines),
+        form=form,
     )
 
 

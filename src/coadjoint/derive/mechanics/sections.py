@@ -25,7 +25,7 @@ def section_momenta(setting: Setting) -> Iterator[tuple[str, Element]]:
     if not setting.spec.sections:
         return
     momenta = mechanics(setting).momenta
-    if setting.momenta:
+    if setting.momenta and not setting.spec.is_first_order:
         pairs = zip(setting.elements(setting.momenta), setting.weights, strict=True)
         momenta = tuple(mu / weight for mu, weight in pairs)
     for each in setting.spec.sections:

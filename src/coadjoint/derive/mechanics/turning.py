@@ -20,22 +20,37 @@ from coadjoint.algebra.attitudes import are_rotations
 from coadjoint.algebra.matrices import without_zero_places
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.exact.dense import Matrix, apply, determinant, dot, hat, identity, product, transpose
+from coadjoint.exact.dense import (
+    Matrix,
+    apply,
+    determinant,
+    dot,
+    hat,
+    identity,
+    product,
+    scale,
+    transpose,
+)
 from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec.core.components import kept_places
 from coadjoint.spec.model import Variable
-from coadjoint.spec.spatial import describe_gram
+from coadjoint.spec.spatial import describe_gram, describe_rotation, turning_rows
 
 
 def gram(setting: Setting, variable: Variable) -> tuple[Element, ...]:
     """``R R^T``, from the right ``R^T R``, above its diagonal and with it; or ``|q|^2``."""
+    square = gram_matrix(setting, variable)
+    return tuple(square[i][j] for i, j in kept_places(len(square), "symmetric"))
+
+
+def gram_matrix(setting: Setting, variable: Variable) -> Matrix:
+    """The same as a matrix, which of a quaternion has one row."""
     if variable.turning == "quaternion":
         q = setting.elements(variable.components)
-        return (dot(q, q),)
+        return ((dot(q, q),),)
     R = _turning_part(setting, variable)
     R = R if setting.sign == 1 else transpose(R)
-    square = product(R, transpose(R))
-    return tuple(square[i][j] for i, j in kept_places(len(R), "symmetric"))
+    return product(R, transpose(R))
 
 
 def rotation_relations(
@@ -48,8 +63,40 @@ def rotation_relations(
     R = _turning_part(setting, variable)
     ones = [int(i == j) for i, j in kept_places(len(R), "symmetric")]
     unit = tuple(value - one for value, one in zip(values, ones, strict=True))
-    name = f"rotation({variable.name})" if variable.turning == "pose" else variable.name
+    name = describe_rotation(variable)
     return [(f"{product_text} = 1", unit), (f"det({name}) = 1", (determinant(R) - 1,))]
+
+
+def turned_back(setting: Setting) -> dict[str, Element]:
+    """Attitudes moved back to rotations: one of Newton's steps to the nearest one.
+
+    ``q (3 - |q|^2)/2``, and for matrices ``(3 - R R^T) R/2``, which is ``R (3 - R^T R)/2``. With D
+    for ``R R^T - 1`` before, it is ``D^2 (D - 3)/4`` after.
+    """
+    moved = dict[str, Element]()
+    for variable in setting.spec.turning:
+        elements = setting.elements(variable.components)
+        if variable.turning == "quaternion":
+            share = (3 - dot(elements, elements)) / 2
+            moved |= zip(variable.components, scale(share, elements), strict=True)
+            continue
+        R = _turning_part(setting, variable)
+        turned = product(product(R, transpose(R)), R)
+        columns = variable.shape[1]
+        for i, (row, cubed) in enumerate(zip(R, turned, strict=True)):
+            for j, (x, y) in enumerate(zip(row, cubed, strict=True)):
+                moved[variable.components[i * columns + j]] = (3 * x - y) / 2
+    return moved
+
+
+def turning_residuals(setting: Setting) -> list[tuple[str, Element]]:
+    """What is zero where attitudes are rotations, by the names of the rows."""
+    rows: list[tuple[str, Element]] = []
+    for variable in setting.spec.turning:
+        relations = rotation_relations(setting, variable)
+        values = [value for _, parts in relations for value in parts]
+        rows += zip(turning_rows(setting.spec, variable), values, strict=True)
+    return rows
 
 
 def rational_rotation(variable: Variable) -> dict[str, Fraction]:
@@ -90,7 +137,8 @@ def _law(
     w, name, left = _name_velocity(setting, turn), variable.name, setting.sign == 1
     if variable.turning == "quaternion":
         q, pure = Quaternion(*setting.elements(variable.components)), Quaternion.pure(omega)
-        text = f"qmul({name}, (0, {w}))/2" if left else f"qmul((0, {w}), {name})/2"
+        whole = f"(0, {w.strip('()')})"
+        text = f"qmul({name}, {whole})/2" if left else f"qmul({whole}, {name})/2"
         moved = (q * pure if left else pure * q).components
         rates = [x / 2 for x in moved]
     else:

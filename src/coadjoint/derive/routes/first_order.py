@@ -20,6 +20,7 @@ from itertools import combinations
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.bound import Form
 from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.first_order import FirstOrder, first_order
 from coadjoint.derive.records import Step, bracket, write_rates, write_slopes, write_step
@@ -39,8 +40,10 @@ def derive(setting: Setting) -> Equations:
     slopes = field.gradient(of.form.energy, names)
     rates = dict(zip(names, apply(poisson_structure(setting).tensor, slopes), strict=True))
     moved = [rates[name] for name in names]
-    bound = {x: dot(field.gradient(value, names), moved) for x, value in of.bound.items()}
-    rates |= {x: field.zero + rate for x, rate in bound.items()}
+    rates |= {
+        x: explicit(setting, value) + dot(field.gradient(value, names), moved)
+        for x, value in of.bound.items()
+    }
     pairs = dict(zip(setting.positions, setting.velocities, strict=True))
     definitions = [*of.bound.items(), *((v, field.zero + rates[q]) for q, v in pairs.items())]
     named = field.vector(field[pairs[x]] if x in pairs else rates[x] for x in setting.state)
@@ -81,10 +84,10 @@ def _steps(
             ],
         ),
         write_step(
-            f"Constraints where omega is singular: {'; '.join(of.steps)}",
+            "Constraints where omega is singular, in their order, and what they give",
             "n omega = 0, n dh/dx = 0",
             r"n\,\omega = 0, \quad n \cdot \partial h = 0",
-            of.bound,
+            of.lines,
         ),
         write_step(
             "Form of first order within them",

@@ -34,6 +34,11 @@ class Generated(Protocol):
     functions: Mapping[str, tuple[int, ...]]
     elementary: tuple[str, ...]
 
+    @property
+    def fixed(self) -> Mapping[str, NDArray[Any]]:
+        """Arrays that every function takes beyond these, by name."""
+        ...
+
     def sizes(self, function: str) -> Mapping[str, int]:
         """How many rows each array has that a function takes."""
         ...

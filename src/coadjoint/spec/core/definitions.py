@@ -16,6 +16,7 @@ from coadjoint import limits
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
+from coadjoint.spec.core.members import write_out
 from coadjoint.spec.core.names import refusal
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
@@ -189,8 +190,12 @@ def define(
         name, arguments = signature(text)
         _check_arguments(source, key, arguments, [*shapes, *map(_name, texts)])
         try:
-            tree = expand(read_expression(expression, functions(known)), known, source.spent)
-            shape = _shape(tree, shapes, arguments, [_name(later) for later in texts])
+            typed = read_expression(
+                expression, functions(known), indexed=source.members is not None
+            )
+            tree = expand(typed, known, source.spent)
+            plain = tree if source.members is None else write_out(tree, source.members, key)
+            shape = _shape(plain, shapes, arguments, [_name(later) for later in texts])
         except ExpressionError as error:
             raise source.expression_fault(key, error) from None
         known[name] = Definition(

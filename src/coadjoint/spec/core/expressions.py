@@ -12,61 +12,50 @@ the text is ever executed, evaluated or passed on: numbers become fractions, nam
     atom     = NUMBER | "pi" | NAME ["[" INTEGER ["," INTEGER] "]"]
              | FUNCTION "(" sum {"," sum} ")" | "(" sum ")"
 
+and where members are counted by an index, as another ``atom``,
+
+    NAME "[" INDEX [("+" | "-") INTEGER] {"," INTEGER} "]"
+    "sum" "(" INDEX "," [INDEX "," INDEX "<" INDEX ","] sum ")"
+
 Read next: `coadjoint.spec.core.shapes`, which says what the names and functions mean.
 """
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from fractions import Fraction
 
 from coadjoint import limits
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
 from coadjoint.spec.core.shapes import FUNCTIONS
-from coadjoint.spec.core.tree import Binary, Call, Index, Name, Negate, Node, Number, Power
-
-_TOKEN = re.compile(
-    r"(?P<space>[ \t\n]+)"
-    r"|(?P<number>\d+(?:\.\d+)?)"
-    r"|(?P<name>[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*)"
-    r"|(?P<operator>\*\*|[-+*/^(),\[\]])",
-    re.ASCII,
+from coadjoint.spec.core.tokens import Token, read_tokens, refuse_by_limit, unknown_character
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Index,
+    Member,
+    Name,
+    Negate,
+    Node,
+    Number,
+    Power,
+    Sum,
 )
-_SCIENTIFIC = re.compile(r"\d+(?:\.\d+)?[eE][-+]?\d{1,3}(?![\w.])", re.ASCII)
+
+#: Functions of what has an index: sums over members, and matrices with a row for each.
+OVER_MEMBERS = ("sum", "tridiagonal")
 _BINDING = {"+": 1, "-": 1, "*": 2, "/": 2}
 _POWERS = ("^", "**")
 
-#: What people mean by characters that the language does not have.
-_MEANT = {
-    "=": "Write only the right-hand side.",
-    ".": "A name has no attributes; a number has digits on both sides of its point, as 0.5.",
-    "'": "There is no text in an expression; a transposed matrix is transpose(A).",
-    '"': "There is no text in an expression.",
-    "|": "The length of a vector is norm(a).",
-    ";": "An expression is one formula.",
-    "@": "Write * for products of matrices.",
-    "_": "Names begin and end with a letter or digit and have single underscores inside.",
-    "{": "Group with round parentheses.",
-    "}": "Group with round parentheses.",
-    "%": "Write a fraction as a/b.",
-    "!": "Write products out.",
-    "#": "Comments stand outside the quotes.",
-    "\u00d7": "The cross product is cross(a, b).",
-    "\u00b7": "The dot product is dot(a, b), a product *.",
-    "\u2212": "Write the minus sign of the keyboard, -.",
-}
 
-
-def read_expression(text: str, defined: Collection[str] = ()) -> Node:
+def read_expression(text: str, defined: Collection[str] = (), *, indexed: bool = False) -> Node:
     """The tree of an expression.
 
     Args:
         text: What stands in the spec.
         defined: Functions that it may call in addition to those of the language.
+        indexed: Whether it may hold sums over members, and quantities of a member.
 
     Raises:
         ExpressionError: A syntax error, with what was probably meant, or a limit passed.
@@ -76,27 +65,19 @@ def read_expression(text: str, defined: Collection[str] = ()) -> Node:
 right=Name(start=2, end=3, name='x'))
     """
     if len(text) > limits.EXPRESSION_CHARACTERS:
-        raise _limit(
+        raise refuse_by_limit(
             "EXPRESSION_CHARACTERS", f"the expression has {len(text)} characters", 0, len(text)
         )
-    return _Reader(text, defined).expression()
-
-
-@dataclass(frozen=True)
-class _Token:
-    kind: str  # "number", "name", an operator, or "" at the end
-    text: str
-    start: int
-    end: int
+    return _Reader(text, defined, indexed=indexed).expression()
 
 
 class _Reader:
     """One reading of one text, by precedence climbing."""
 
-    def __init__(self, text: str, defined: Collection[str]) -> None:
-        self.text = text
-        self.functions = {*FUNCTIONS, *defined}
-        self.tokens = list(_tokens(text))
+    def __init__(self, text: str, defined: Collection[str], *, indexed: bool) -> None:
+        self.text, self.indexed = text, indexed
+        self.functions = {*FUNCTIONS, *defined, *(OVER_MEMBERS if indexed else [])}
+        self.tokens = list(read_tokens(text))
         self.at = self.nodes = self.depth = 0
 
     def expression(self) -> Node:
@@ -111,10 +92,10 @@ class _Reader:
         return node
 
     @property
-    def next(self) -> _Token:
+    def next(self) -> Token:
         return self.tokens[self.at]
 
-    def _take(self) -> _Token:
+    def _take(self) -> Token:
         token = self.next
         self.at += 1
         return token
@@ -185,7 +166,7 @@ class _Reader:
         if closing is not None:
             self._take()
         if len(number.text) > 9 or int(number.text) > limits.EXPONENT:
-            raise _limit(
+            raise refuse_by_limit(
                 "EXPONENT", f"the exponent is {number.text[:40]}", number.start, number.end
             )
         return sign * int(number.text)
@@ -207,14 +188,16 @@ class _Reader:
                 return inner
         raise self._unexpected()
 
-    def _number(self, token: _Token) -> Node:
+    def _number(self, token: Token) -> Node:
         whole, _, decimals = token.text.partition(".")
         for digits, limit in ((whole, "INTEGER_DIGITS"), (decimals, "DECIMAL_DIGITS")):
             if len(digits) > getattr(limits, limit):
-                raise _limit(limit, f"the number has {len(digits)} digits", token.start, token.end)
+                raise refuse_by_limit(
+                    limit, f"the number has {len(digits)} digits", token.start, token.end
+                )
         return self._count(Number(Fraction(token.text), start=token.start, end=token.end))
 
-    def _read_name(self, name: _Token) -> Node:
+    def _read_name(self, name: Token) -> Node:
         """A name, a component of it, or a function of something."""
         if name.text == "pi":
             return self._circle_constant(name)
@@ -227,21 +210,24 @@ class _Reader:
             return self._index(name)
         return self._count(Name(name.text, start=name.start, end=name.end))
 
-    def _circle_constant(self, name: _Token) -> Node:
+    def _circle_constant(self, name: Token) -> Node:
         """The number pi, as what it is exactly: ``4*atan(1)``."""
         start, end = name.start, name.end
         one, four = (Number(Fraction(number), start=start, end=end) for number in (1, 4))
         part = Call(function="atan", arguments=(one,), start=start, end=end)
         return self._count(Binary(operator="*", left=four, right=part, start=start, end=end))
 
-    def _call(self, name: _Token) -> Node:
+    def _call(self, name: Token) -> Node:
         if name.text not in self.functions:
             expected = f"one of {', '.join(sorted(self.functions))}"
             plain = f"Write {name.text}[1] for a component, {name.text}*(...) for a product."
+            plain = "Sums over members need a table [index]." if name.text == "sum" else plain
             hint = did_you_mean(name.text, self.functions, plain)
             problem = f"{name.text!r} is not a function"
             raise self._fault(problem, name.start, name.end, expected, hint)
         opening = self._take()
+        if name.text == "sum":
+            return self._sum(name, opening)
         with self._nest(opening):
             arguments = [self._climb(0)]
             while self.next.kind == ",":
@@ -252,8 +238,59 @@ class _Reader:
             Call(function=name.text, arguments=tuple(arguments), start=name.start, end=closing.end)
         )
 
-    def _index(self, name: _Token) -> Node:
+    def _sum(self, name: Token, opening: Token) -> Node:
+        """A sum over the members that an index counts, or over their pairs."""
+        kinds = [token.kind for token in self.tokens[self.at : self.at + 6]]
+        if kinds[:2] != ["name", ","]:
+            problem, expected = "the sum has no index", "sum(i, ...) or sum(i, j, i < j, ...)"
+            raise self._fault(problem, name.start, opening.end, expected)
+        indices = [self._take().text]
+        self._take()
+        if kinds[2:4] == ["name", ","]:
+            indices.append(self._take().text)
+            self._take()
+            self._pair(name, indices)
+        with self._nest(opening):
+            term = self._climb(0)
+        end = self._close(opening, ")").end
+        return self._count(Sum(indices=tuple(indices), term=term, start=name.start, end=end))
+
+    def _pair(self, name: Token, indices: list[str]) -> None:
+        """The condition of a sum over pairs, which counts each of them once."""
+        first, second = indices
+        condition = self.tokens[self.at : self.at + 4]
+        if [token.text for token in condition] != [first, "<", second, ","]:
+            problem = "the sum over pairs does not count each pair once"
+            expected = f"sum({first}, {second}, {first} < {second}, ...)"
+            raise self._fault(problem, name.start, condition[0].end, expected)
+        self.at += len(condition)
+
+    def _member(self, name: Token, opening: Token) -> Node:
+        """A quantity of the member that an index counts, or of a neighbour."""
+        index, shift = self._take().text, 0
+        if self.next.kind in ("+", "-"):
+            sign = 1 if self._take().kind == "+" else -1
+            shift = sign * self._subscript(opening)
+        indices = []
+        while self.next.kind == ",":
+            self._take()
+            indices.append(self._subscript(opening))
+        end = self._close(opening, "]").end
+        return self._count(
+            Member(
+                name=name.text,
+                index=index,
+                shift=shift,
+                indices=tuple(indices),
+                start=name.start,
+                end=end,
+            )
+        )
+
+    def _index(self, name: Token) -> Node:
         opening = self._take()
+        if self.indexed and self.next.kind == "name":
+            return self._member(name, opening)
         indices = [self._subscript(opening)]
         if self.next.kind == ",":
             self._take()
@@ -266,7 +303,7 @@ class _Reader:
             Index(name=name.text, indices=tuple(indices), start=name.start, end=closing.end)
         )
 
-    def _subscript(self, opening: _Token) -> int:
+    def _subscript(self, opening: Token) -> int:
         token = self.next
         if token.kind != "number" or "." in token.text or len(token.text) > 9:
             raise ExpressionError(
@@ -286,20 +323,20 @@ class _Reader:
         self.nodes += 1
         if self.nodes > limits.EXPRESSION_NODES:
             problem = f"the expression has more than {limits.EXPRESSION_NODES} parts"
-            raise _limit("EXPRESSION_NODES", problem, node.start, node.end)
+            raise refuse_by_limit("EXPRESSION_NODES", problem, node.start, node.end)
         return node
 
     @contextmanager
-    def _nest(self, token: _Token) -> Iterator[None]:
+    def _nest(self, token: Token) -> Iterator[None]:
         """One level of nesting; so the reader cannot run out of stack."""
         self.depth += 1
         if self.depth > limits.EXPRESSION_NESTING:
             problem = f"the expression nests deeper than {limits.EXPRESSION_NESTING} levels"
-            raise _limit("EXPRESSION_NESTING", problem, token.start, token.end)
+            raise refuse_by_limit("EXPRESSION_NESTING", problem, token.start, token.end)
         yield
         self.depth -= 1
 
-    def _close(self, opening: _Token, mark: str) -> _Token:
+    def _close(self, opening: Token, mark: str) -> Token:
         if self.next.kind == mark:
             return self._take()
         if self.next.kind == "":
@@ -310,7 +347,9 @@ class _Reader:
     def _unexpected(self) -> ExpressionError:
         """What stands where it cannot."""
         token = self.next
-        before = self.tokens[self.at - 1] if self.at else _Token("", "", 0, 0)
+        if token.kind == "<" and not self.indexed:
+            return unknown_character(self.text, token.start)
+        before = self.tokens[self.at - 1] if self.at else Token("", "", 0, 0)
         ends = before.kind in ("number", "name", ")", "]")
         where = token.start, token.end
         if ends and token.kind in ("number", "name", "("):
@@ -333,85 +372,3 @@ class _Reader:
     ) -> ExpressionError:
         """A fault of what stands between two places."""
         return ExpressionError(problem, start, end, self.text[start:end], expected, hint)
-
-
-def _tokens(text: str) -> Iterator[_Token]:
-    """The tokens of a text, and an empty one at its end."""
-    at = 0
-    while at < len(text):
-        match = _TOKEN.match(text, at)
-        if match is None:
-            raise _unknown_character(text, at)
-        kind, token = str(match.lastgroup), match[0]
-        if kind == "number":
-            _check_number(text, at)
-        if kind == "name" and text.startswith("_", match.end()):
-            raise _unknown_character(text, match.end())
-        if kind == "name" and len(token) > limits.NAME_CHARACTERS:
-            problem = f"the name {token[:40]!r} has {len(token)} characters"
-            raise _limit("NAME_CHARACTERS", problem, at, match.end())
-        if kind != "space":
-            yield _Token(token if kind == "operator" else kind, token, at, match.end())
-        at = match.end()
-    yield _Token("", "", len(text), len(text))
-
-
-def _check_number(text: str, at: int) -> None:
-    """Refuse 1e5, which is not exact arithmetic's way to write a number."""
-    match = _SCIENTIFIC.match(text, at)
-    if match is not None:
-        value = Fraction(match[0]) if abs(int(re.split("[eE]", match[0])[1])) <= 20 else None
-        shown = f"Write {_decimal(value)}." if value is not None else "Write the digits out."
-        problem = f"{match[0]!r} has an exponent"
-        raise ExpressionError(problem, at, match.end(), match[0], "a decimal number", shown)
-
-
-def _decimal(value: Fraction) -> str:
-    """A decimal fraction without an exponent."""
-    if value.denominator == 1:
-        return str(value.numerator)
-    places = next(n for n in range(1, 100) if (value * 10**n).denominator == 1)
-    digits = str(int(value * 10**places)).rjust(places + 1, "0")
-    return f"{digits[:-places]}.{digits[-places:]}"
-
-
-def _unknown_character(text: str, at: int) -> ExpressionError:
-    """A character outside the language, with what was probably meant."""
-    letter = text[at]
-    if letter == "_":
-        start = at - len(text[:at]) + len(text[:at].rstrip(_WORD))
-        end = at + len(text[at:]) - len(text[at:].lstrip(_WORD))
-        word = text[start:end]
-        return ExpressionError(
-            f"{word[:40]!r} is not a name", start, end, word, "a name", _MEANT["_"]
-        )
-    hint, problem = _MEANT.get(letter, ""), f"{letter!r} is not part of the language"
-    if not letter.isascii():
-        problem = f"{letter!r} ({_character_name(letter)}) is not ASCII"
-        hint = hint or _plain_letter(letter)
-    return ExpressionError(
-        problem, at, at + 1, letter, "letters, digits and + - * / ^ ( ) [ ] , .", hint
-    )
-
-
-_WORD = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"
-
-
-def _character_name(letter: str) -> str:
-    return unicodedata.name(letter, f"U+{ord(letter):04X}").lower()
-
-
-def _plain_letter(letter: str) -> str:
-    """How to write a Greek letter or a raised digit."""
-    words = unicodedata.name(letter, "").split()
-    if words[:1] == ["GREEK"] and "LETTER" in words:
-        plain = words[words.index("LETTER") + 1].lower()
-        return f"Write {plain.capitalize() if 'CAPITAL' in words else plain}."
-    if words[:1] == ["SUPERSCRIPT"] and unicodedata.digit(letter, None) is not None:
-        return f"Write ^{unicodedata.digit(letter)}."
-    return ""
-
-
-def _limit(limit: str, problem: str, start: int, end: int) -> ExpressionError:
-    """A refusal that names its limit."""
-    return ExpressionError(problem, start, end, problem, limit=limit)

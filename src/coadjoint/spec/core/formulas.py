@@ -15,6 +15,7 @@ from coadjoint.spec.core.components import Named, Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
+from coadjoint.spec.core.members import write_out
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
@@ -44,6 +45,7 @@ class Formula:
         shape: Shape of its value.
         path: Its key in the spec, e.g. ``("lagrangian", "l")``.
         line: Line of the text in the file, counted from 1.
+        sums: In a spec with an index, the tree with its sums over members; else None.
     """
 
     text: str
@@ -51,6 +53,7 @@ class Formula:
     shape: Shape
     path: KeyPath
     line: int
+    sums: Node | None = None
 
     @property
     def key(self) -> str:
@@ -165,8 +168,11 @@ def read_formula(
         LimitError: The expression is too large.
     """
     try:
-        typed = read_expression(text, functions(scope.definitions))
-        tree = expand(typed, scope.definitions, source.spent)
+        members = source.members
+        called = functions(scope.definitions)
+        typed = read_expression(text, called, indexed=members is not None)
+        whole = expand(typed, scope.definitions, source.spent)
+        tree = whole if members is None else write_out(whole, members, key)
         _check_roles(tree, scope)
         shape = shape_of(tree, scope.shapes)
         check_size(tree, scope.shapes)
@@ -177,7 +183,8 @@ def read_formula(
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
-    return Formula(text=text, tree=tree, shape=shape, path=key, line=line)
+    sums = None if members is None else whole
+    return Formula(text=text, tree=tree, shape=shape, path=key, line=line, sums=sums)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

@@ -19,6 +19,7 @@ from typing import Any
 from coadjoint import limits
 from coadjoint.errors import CoadjointError, LimitError, SpecError
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
+from coadjoint.spec.core.members import Members
 from coadjoint.spec.core.positions import KeyPath, Positions, Span
 
 #: Characters of a source line that a message shows at the most.
@@ -71,12 +72,14 @@ class Source:
         text: Its text with plain newlines.
         positions: Where its keys and values stand.
         spent: What its formulas took so far of limits that hold for all of them together.
+        members: The members that an index counts, in a spec with one.
     """
 
     path: str
     text: str
     positions: Positions
     spent: Counter[str] = field(default_factory=Counter, compare=False)
+    members: Members | None = None
 
     def line(self, span: Span) -> int:
         """Line of a place, counted from 1."""

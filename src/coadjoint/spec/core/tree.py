@@ -64,6 +64,24 @@ class Component(Node):
 
 
 @dataclass(frozen=True)
+class Member(Node):
+    """A quantity of a member: ``S[i+1]``, and with indices its component: ``S[i+1, 2]``."""
+
+    name: str
+    index: str
+    shift: int
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Sum(Node):
+    """A sum over members, ``sum(i, term)``, or over their pairs, ``sum(i, j, i < j, term)``."""
+
+    indices: tuple[str, ...]
+    term: Node
+
+
+@dataclass(frozen=True)
 class Negate(Node):
     """``-operand``."""
 
@@ -106,6 +124,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (base,)
         case Call(arguments=arguments):
             return arguments
+        case Sum(term=term):
+            return (term,)
     return ()
 
 
@@ -120,6 +140,8 @@ def rebuild(node: Node, below: Sequence[Node]) -> Node:
             return replace(node, base=below[0])
         case Call():
             return replace(node, arguments=tuple(below))
+        case Sum():
+            return replace(node, term=below[0])
     return node
 
 

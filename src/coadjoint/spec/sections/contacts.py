@@ -31,6 +31,8 @@ NEEDS = {
     "turning": ("surface",),
     "axes": ("surface",),
 }
+#: Tables that know nothing of points of contact.
+ALONE = ("symmetries", "transformations", "charts", "momenta", "reduction")
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,10 @@ def read_contact(reading: Reading, part: Any) -> Contact:
             an axis, or a surface is not a function of its point.
     """
     _check_keys(reading, part)
+    for table in ALONE:
+        if getattr(reading.file, table):
+            problem = f"there are [{table}] and points of contact that are state"
+            raise reading.fault((table,), problem, table, "one of them", f"Remove [{table}].")
     place, point = (_check_point(reading, key, getattr(part, key)) for key in ("contact", "point"))
     constant = dict[str, Shape]()
     radius = turning = None
@@ -104,6 +110,10 @@ def read_contact(reading: Reading, part: Any) -> Contact:
 
 def _check_keys(reading: Reading, part: Any) -> None:
     """Keys come with those that they need, and a body has one surface."""
+    if part.turning is not None and (part.axes is not None or part.radius is None):
+        problem = "the surface turns, and what rolls on it is no ball that is seen from space"
+        expected = 'a radius and invariance = "right" with turning'
+        raise reading.fault(("rolling", "turning"), problem, part.turning, expected)
     for key, needed in NEEDS.items():
         for other in needed if getattr(part, key) is not None else ():
             if getattr(part, other) is None:

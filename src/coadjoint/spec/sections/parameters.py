@@ -22,6 +22,11 @@ class ParameterPart(ArgumentPart):
     """A constant of the system."""
 
     positive: bool = Field(False, description="whether every component is positive")
+    index: str | None = Field(
+        None,
+        description="the index of [index] that counts the members that have it; its default is "
+        "then one for all members, or a list with an entry for each",
+    )
 
 
 @dataclass(frozen=True)

@@ -57,11 +57,11 @@ _OWN_KEYS = {
     "of": "velocities and momenta of coordinates",
     "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
-    "follows": "coordinates",
+    "follows": "coordinates and momenta",
 }
 _KEYS_OF = {
     "velocity": ("block", "of", "form", "default"),
-    "momentum": ("block", "of", "form", "default"),
+    "momentum": ("block", "of", "form", "default", "follows"),
     "advected": ("representation", "block", "form", "default"),
     "coordinate": ("shape", "form", "default", "follows"),
     "attitude": ("block", "default"),
@@ -117,13 +117,16 @@ class VariablePart(Part):
     )
     follows: bool | None = Field(
         None,
-        description="true for a coordinate that the constraints of a singular Lagrangian give in "
-        "terms of the others, on the route first-order",
+        description="true for a coordinate or momentum that the constraints of a singular "
+        "Lagrangian give in terms of the others, on the route first-order",
     )
     default: Numbers | None = Field(
         None,
         description="where `coadjoint simulate` begins unless told otherwise: a number for all "
         "components, or a list of them",
+    )
+    index: str | None = Field(
+        None, description="the index of [index] that counts the members that have it"
     )
     unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
@@ -150,7 +153,7 @@ class Variable(Components):
         turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
         given: The components that constraints give one by one; the others are state by themselves.
         follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
-            coordinate that is declared to follow.
+            coordinate or momentum that is declared to follow.
     """
 
     name: str
@@ -210,9 +213,9 @@ def state_of(variables: Sequence[Variable]) -> tuple[Variable, ...]:
 
 
 def find_defined(variables: Sequence[Variable]) -> tuple[Variable, ...]:
-    """Velocities, or components of them, and coordinates that follow from the state."""
-    state, roles = state_of(variables), ("velocity", "coordinate")
-    parts = (part for each in variables if each.role in roles for part in each.parts)
+    """The variables, or components of them, that follow from the state."""
+    state = state_of(variables)
+    parts = (part for each in variables for part in each.parts)
     return tuple(part for part in parts if part not in state)
 
 

@@ -154,6 +154,7 @@ def _probes(system: Generated, functions: Sequence[str]) -> Iterator[tuple[str, 
             for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
                 block, (parameters, *_) = _unaligned((*shape, members)), given.values()
                 driving = {name: array for name, array in given.items() if name != "parameters"}
+                driving |= system.fixed
                 yield function, Call(state, parameters, block, driving)
 
 

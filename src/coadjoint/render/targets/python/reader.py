@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 from fractions import Fraction
 
-from coadjoint.lower.program import FUNCTIONS, Number, Program
+from coadjoint.lower.program import FUNCTIONS, Node, Number, Program
 from coadjoint.render.targets.body import Body
 from coadjoint.render.targets.loops import unroll
 from coadjoint.render.targets.python_text import Functions, LoopReader, Reader, is_table
@@ -57,6 +57,16 @@ def read(text: str, program: Program, system: str) -> list[Body]:
     zeros = (row for row in range(len(program.outputs)) if row not in assigned)
     body.outputs += [(row, Number(Fraction(0))) for row in zeros]
     return [body]
+
+
+def read_expression(text: str, name: str) -> Node:
+    """A node from a Python expression; ``name`` is the function it stands in, for messages.
+
+    >>> read_expression("-sqrt(a)", "rhs")
+    Negate(operand=Call(function='sqrt', argument=Symbol(name='a'), other=None))
+    """
+    reader = Reader("kernel_python.py", name, _called_name)
+    return reader.node(ast.parse(text.strip(), mode="eval").body)
 
 
 def _called_name(function: ast.expr) -> str | None:

@@ -1,0 +1,313 @@
+"""Cross-check, families: the ladder of a system of equal members.
+
+Comes in: the Equations of windows, the Family read off from them, its `Loops`, texts and the loaded
+system. Goes out: a `Report`, or a `CrossCheckError`.
+
+    rung 3   each part of each text reads back as it was lowered, places of names among it, and the
+             rest is what the templates print
+    rung 4   every target, for the numbers of members of both windows, against their Equations to 50
+             digits: these were written out member by member, and know nothing of loops
+    rung 5   NumPy equals every exact target bit for bit, for several numbers of members
+
+Read next: `coadjoint.crosscheck.ladder`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.crosscheck.bits import find_differing_bits
+from coadjoint.crosscheck.compare import Figures
+from coadjoint.crosscheck.family_text import check_family_text
+from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
+from coadjoint.crosscheck.oracle import (
+    OutsideDomain,
+    error_in_envelopes,
+    error_in_ulp,
+    oracle,
+)
+from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
+from coadjoint.derive.reference import Reference
+from coadjoint.errors import CrossCheckError
+from coadjoint.families import Family
+from coadjoint.lower.families import Loops
+from coadjoint.render.families import FamilyContext
+from coadjoint.render.kernels import elementary_functions
+from coadjoint.render.targets import BUILDS
+from coadjoint.render.targets.c.loader import ROUNDINGS
+from coadjoint.spec.core.members import member_name
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.derive import Equations
+    from coadjoint.spec.model import Windows
+
+    Array = NDArray[np.float64]
+
+#: Points of each window, for each function and target; half of them have parameters of their own.
+POINTS: Final = 24
+#: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors
+#: have, and no multiple of them.
+SIZES: Final = (7, 17, 64)
+#: Trajectories of a batch whose bits are compared.
+BATCHES: Final = ((), (9,))
+
+
+@dataclass(frozen=True)
+class _Window:
+    """A system that is written out, in the names of its rows as kernels have them.
+
+    Attributes:
+        reference: Its Equations.
+        size: Its number of members.
+        state: Names of its components in the order of a family: component after component.
+        parameters: Likewise.
+        totals: Names of the rows of the function ``observables``.
+    """
+
+    reference: Reference
+    size: int
+    state: tuple[str, ...]
+    parameters: tuple[str, ...]
+    totals: tuple[str, ...]
+
+    @classmethod
+    def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
+        """The window of Equations of a few members."""
+        spec = equations.spec
+        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        size = len(spec.state) // len(declared.variables)
+
+        def rows(names: Sequence[str]) -> tuple[str, ...]:
+            return tuple(
+                name
+                for each in names
+                for same in zip(
+                    *(known[member_name(each, k)].components for k in range(size)), strict=True
+                )
+                for name in same
+            )
+
+        shared = tuple(c for each in declared.shared for c in known[each].components)
+        return cls(
+            reference=Reference(equations),
+            size=size,
+            state=rows(declared.variables),
+            parameters=(*shared, *rows(declared.indexed)),
+            totals=tuple(each.name for each in family.totals),
+        )
+
+    def evaluate(self, function: str, state: Array, parameters: Array) -> list[Any]:
+        """A function at a point to 50 digits, its rows in the order of a family."""
+        own = self.reference.state
+        inputs = dict(zip(self.parameters, parameters.tolist(), strict=True))
+        inputs |= zip(self.state, state.tolist(), strict=False)
+        if function == "jacobian_vector":
+            place = {name: n for n, name in enumerate(own, 1)}
+            vector = state[len(self.state) :].tolist()
+            inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
+        values = oracle(self.reference, function, inputs)
+        if function in ("rhs", "jacobian_vector"):
+            by_name = dict(zip(own, values, strict=True))
+            values = [by_name[name] for name in self.state]
+        if function == "observables":
+            labels = [label for label, _ in self.reference.equations.exact.observables]
+            by_name = dict(zip(labels, values, strict=True))
+            values = [by_name[name] for name in self.totals]
+        return values
+
+
+def crosscheck_family(
+    windows: Sequence[Equations],
+    declared: Windows,
+    family: Family,
+    context: FamilyContext,
+    texts: Mapping[str, str],
+    printed: Mapping[str, str],
+    system: Any,
+    targets: Sequence[str] | None = None,
+) -> Report:
+    """Run rungs 3, 4 and 5.
+
+    Args:
+        windows: The Equations of two small numbers of members.
+        declared: What the spec says of the others.
+        family: Those of the generic member.
+        context: What the texts say.
+        texts: The files by name.
+        printed: What the templates print.
+        system: The loaded system.
+        targets: What to compare; by default all, or those that need no compiler without one.
+
+    Raises:
+        CompilerError: The compiler does not work, or fails on this kernel.
+        CrossCheckError: A rung failed.
+    """
+    chosen = available_targets() if targets is None else tuple(targets)
+    loops = context.loops
+    lines = check_family_text(context, texts, printed)
+    for target, source in system.load_kernels(chosen).items():
+        if source != hashlib.sha256(texts[BUILDS[target].kernel].encode()).hexdigest():
+            raise _fail(system.name, f"the target {target} was not loaded from this text", 3)
+    figures: dict[str, dict[str, Figures]] = {name: {} for name in loops}
+    for equations in windows:
+        window = _Window.of(equations, declared, family)
+        for name, each in loops.items():
+            _check_window(window, name, each, system, chosen, figures[name])
+    equal, together = dict[str, dict[str, int]](), dict[str, dict[str, int]]()
+    for name, each in loops.items():
+        counts = _compare_targets(system, name, family.small, chosen, calls=_calls(each))
+        exact = set() if _calls(each) else {t for t in counts if t in BUILDS[t].exact}
+        equal[name] = {target: count for target, count in counts.items() if target in exact}
+        together[name] = {target: count for target, count in counts.items() if target not in exact}
+    rungs = {3: "passed", 4: "passed", 5: "passed"}
+    if not set(BUILDS) <= set(chosen):
+        rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"
+    return Report(
+        system=system.name,
+        rungs=rungs,
+        threshold=max(_threshold(each, family.small) for each in loops.values()),
+        lines=lines,
+        figures=figures,
+        equal=equal,
+        together=together,
+        solvers={},
+    )
+
+
+def _calls(loops: Loops) -> bool:
+    """Whether a function calls functions beyond sqrt."""
+    return bool(elementary_functions(part.program for part in loops.parts))
+
+
+def _threshold(loops: Loops, size: int) -> float:
+    """The largest k allowed: operations in a row, one addition for each member among them."""
+    allowed = K_ELEMENTARY if _calls(loops) else K_ARITHMETIC
+    return max(allowed, float(sum(depth(part.program) for part in loops.parts) + size))
+
+
+def _points(source: Any, rows: int, count: int) -> Iterator[Array]:
+    """Points of ordinary sizes, some of them with numbers of very different sizes."""
+    for n in range(count):
+        point = source.normal(size=rows)
+        yield point * 2.0 ** source.integers(-8, 9, rows) if n % 3 == 2 else point
+
+
+def _check_window(
+    window: _Window,
+    name: str,
+    loops: Loops,
+    system: Any,
+    targets: Sequence[str],
+    figures: dict[str, Figures],
+) -> None:
+    """A function of all targets for the members of a window, against 50 digits."""
+    sized = system.resize({system.index.name: window.size})
+    source = np.random.default_rng(window.size)
+    rows = loops.blocks * window.size
+    largest = _threshold(loops, window.size)
+    states = list(_points(source, rows, POINTS))
+    parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
+    exact = {
+        n: value
+        for n in range(POINTS)
+        for value in _evaluate(window, name, states[n], parameters[n])
+    }
+    if not exact:
+        raise _fail(system.name, f"no point of {name} has a value", 4)
+    for target in targets:
+        k = ulp = 0.0
+        for n, expected in exact.items():
+            computed = sized.evaluate(name, states[n], parameters[n], target=target)
+            for row, (value, bounded) in enumerate(zip(np.ravel(computed), expected, strict=True)):
+                error = error_in_envelopes(float(value), bounded)
+                k, ulp = max(k, error), max(ulp, error_in_ulp(float(value), bounded))
+                if error > largest:
+                    raise _fail(
+                        system.name,
+                        f"{name} of {target} for {window.size} members is {float(value)!r} in row "
+                        f"{row}, and {bounded.value:.17g} to 50 digits: k = {error:.3g}, at most "
+                        f"{largest:g} is allowed",
+                        4,
+                    )
+        old = figures.get(target, Figures(0.0, 0.0, 0))
+        figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(exact))
+
+
+def _evaluate(window: _Window, name: str, state: Array, parameters: Array) -> list[list[Any]]:
+    """The exact rows at a point; none where the equations have no value."""
+    try:
+        return [window.evaluate(name, state, parameters)]
+    except OutsideDomain:
+        return []
+
+
+def _compare_targets(
+    system: Any, name: str, small: int, targets: Sequence[str], *, calls: bool
+) -> dict[str, int]:
+    """Points at which targets agree with NumPy, for several numbers of members.
+
+    Those that promise bits have the same bits; others, and functions that call more than sqrt,
+    agree but for roundings.
+    """
+    equal = {target: 0 for target in targets if target != "numpy" and "numpy" in targets}
+    for size in (small, small + 1, *SIZES):
+        sized = system.resize({system.index.name: size})
+        source = np.random.default_rng(size)
+        for batch in BATCHES:
+            state = source.normal(size=(sized.rows(name).size, *batch))
+            for shape in dict.fromkeys(((), batch)):
+                parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
+                one = sized.evaluate(name, state, parameters, target="numpy")
+                one = np.reshape(one, (-1, *batch))  # the energy has no rows
+                for target in equal:
+                    other = sized.evaluate(name, state, parameters, target=target)
+                    exact = target in BUILDS[target].exact and not calls
+                    different = _find_differences(one, np.reshape(other, one.shape), exact=exact)
+                    if different.any():
+                        row = np.argwhere(different)[0].tolist()
+                        raise _fail(
+                            system.name,
+                            f"{name} of {target} for {size} members differs from NumPy in {row}",
+                            5,
+                        )
+                    equal[target] += int(_has_values(one).sum())
+    nothing = [target for target, count in equal.items() if not count]
+    if nothing:
+        raise _fail(system.name, f"nothing of {name} was compared with {nothing[0]}", 5)
+    return equal
+
+
+def _find_differences(one: Array, other: Array, *, exact: bool) -> NDArray[np.bool_]:
+    """Where two results differ: in a bit, or by more than roundings of numbers of the size of 1.
+
+    A ring of one member has results that cancel to 0, but for the roundings of what cancels, which
+    is of the order of 1, as states and parameters are. Where one row has no value, some targets
+    give none of the others.
+    """
+    if exact:
+        return find_differing_bits(one, other)
+    most = np.abs(one[np.isfinite(one)]).max(initial=1.0)
+    close = np.isclose(one, other, rtol=0.0, atol=ROUNDINGS * most)
+    lacks_values = ~np.isfinite(other).all(axis=0)
+    return np.asarray(~np.where(_has_values(one), close, lacks_values))
+
+
+def _has_values(result: Array) -> NDArray[np.bool_]:
+    """Of each member of a batch, whether all rows have a value."""
+    return np.asarray(np.isfinite(result).all(axis=0))
+
+
+def _fail(system: str, message: str, rung: int) -> CrossCheckError:
+    """The failure of a rung."""
+    return CrossCheckError(
+        f"rung {rung}: {system}: {message}. This is a fault of coadjoint, please report it.",
+        rung=rung,
+        system=system,
+    )

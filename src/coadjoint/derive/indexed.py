@@ -1,0 +1,379 @@
+r"""The equations of the generic member, read off from a few members.
+
+The rate of a member follows from the terms of the energy that contain it,
+
+.. math:: \dot x_i = P(x_i) \frac{\partial}{\partial x_i} \sum_k h(x_k, \ldots, x_{k+r}),
+
+and these are the same for every number of members that keeps neighbours apart. So the route of the
+spec is followed for a few members, and the rate of one of them, with names for its neighbours in
+the place of theirs, is that of all. In a ring with fewer members some neighbours are one and the
+same: by the chain rule the formula holds there too. A sum over pairs is linear in its terms: the
+partner's share is the bracket with the term of one pair.
+
+Comes in: the Equations of the window. Goes out: a `Family`.
+Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy
+
+from coadjoint.derive.differences import tidy
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.interpret import entries, interpret
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+from coadjoint.families import Family, Sum, Total
+from coadjoint.spec import Formula
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import component_names
+from coadjoint.spec.core.members import (
+    Members,
+    member_name,
+    place_at,
+    put_term,
+    reach,
+    split_sums,
+)
+from coadjoint.spec.model import Windows
+
+
+def derive_family(equations: Equations) -> Family:
+    """The equations of the generic member.
+
+    Args:
+        equations: Of the first route, for the few members of a spec with an index.
+
+    Raises:
+        DerivationError: A member's rate depends on more than its neighbours, or the term of a pair
+            changes when its members change places.
+    """
+    reader = _Reader(equations)
+    declared = reader.declared
+    small = 2 * declared.reach
+    pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
+    rates = reader.rates_with_pairs if declared.pairs else reader.rates_of(reader.middle)
+    rates = tuple(rates)
+    totals = tuple(reader.totals)
+    named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
+    named |= {
+        s
+        for rate in (*rates, *(r for e in reader.ends.values() for r in e))
+        for s in rate.free_symbols
+    }
+    neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
+    return Family(
+        index=declared.index,
+        states=reader.states,
+        shifts=tuple(sorted({shift for _, shift in neighbours})),
+        neighbours=neighbours,
+        shared=tuple(map(sympy.Symbol, reader.shared)),
+        indexed=reader.indexed,
+        partners=reader.partners,
+        rates=rates,
+        pair_sums=pairs,
+        ends=reader.ends,
+        totals=totals,
+        small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
+    )
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """The reading of one window."""
+
+    equations: Equations
+
+    # -- what there is ------------------------------------------------------------------
+
+    @cached_property
+    def declared(self) -> Windows:
+        """What is known of the other members."""
+        family = self.equations.spec.family
+        assert family is not None, self.equations.spec.name
+        return family
+
+    @cached_property
+    def members(self) -> Members:
+        """The members that are written out."""
+        declared = self.declared
+        count = len(self.equations.spec.state) // len(declared.variables)
+        return Members(
+            index=declared.index.name,
+            count=count,
+            periodic=declared.index.periodic,
+            names=frozenset((*declared.variables, *declared.indexed)),
+        )
+
+    @cached_property
+    def shared(self) -> tuple[str, ...]:
+        """Components of the parameters that all members share."""
+        known = {each.name: each for each in self.equations.spec.parameters}
+        return tuple(c for name in self.declared.shared for c in known[name].components)
+
+    @cached_property
+    def components(self) -> dict[str, tuple[str, ...]]:
+        """The components of what a member has, of its generic name, by component."""
+        spec = self.equations.spec
+        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        generic = dict[str, tuple[str, ...]]()
+        for name in (*self.declared.variables, *self.declared.indexed):
+            each = known[member_name(name, 0)]
+            generic[name] = component_names(name, each.shape, each.form)
+        return generic
+
+    def names_of(self, names: Sequence[str], member: int) -> list[str]:
+        """Components of quantities of one member of the window."""
+        spec = self.equations.spec
+        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        return [c for name in names for c in known[member_name(name, member)].components]
+
+    def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the components of generic quantities."""
+        return tuple(sympy.Symbol(c) for name in names for c in self.components[name])
+
+    @cached_property
+    def states(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the state of member i."""
+        return self.generic(self.declared.variables)
+
+    @cached_property
+    def indexed(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the parameters of member i."""
+        return self.generic(self.declared.indexed)
+
+    @cached_property
+    def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
+        """Symbols of member j of a pair."""
+        if not self.declared.pairs:
+            return {}
+        own = (*self.states, *self.indexed)
+        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
+
+    @cached_property
+    def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
+        """Symbols of the neighbours of member i, as far as the window has them."""
+        most = self.members.count
+        return {
+            (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
+            for shift in range(-most, most + 1)
+            if shift
+            for each in (*self.states, *self.indexed)
+        }
+
+    # -- expressions of a member --------------------------------------------------------
+
+    def rename(self, member: int, before: int, after: int) -> dict[sympy.Symbol, sympy.Symbol]:
+        """The generic symbols by those of the window, seen from one of its members."""
+        names = (*self.declared.variables, *self.declared.indexed)
+        own = (*self.states, *self.indexed)
+        new = dict[sympy.Symbol, sympy.Symbol]()
+        for shift in range(-before, after + 1):
+            at = self.members.place(member + shift)
+            if at is not None:
+                seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
+                old = map(sympy.Symbol, self.names_of(names, at))
+                new |= zip(old, seen, strict=True)
+        return new
+
+    def see(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
+        """An expression of the window in generic symbols.
+
+        Raises:
+            DerivationError: It depends on members that are not seen.
+        """
+        left = value.free_symbols - set(new) - set(map(sympy.Symbol, self.shared))
+        if left:
+            spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
+            raise DerivationError(
+                f"{spec.path}: the rate of one member depends on {names}, which is none of its "
+                "neighbours; expected an energy that couples neighbours or pairs. Write the energy "
+                "as sums over members.",
+                found=names,
+            )
+        return tidy(value.xreplace(new), self.groups)
+
+    @cached_property
+    def groups(self) -> list[list[sympy.Symbol]]:
+        """Symbols of each component of the state: of member i, its neighbours and its partner."""
+        groups = {each: [each] for each in self.states}
+        for (each, _), seen in self.neighbours.items():
+            if each in groups:
+                groups[each].append(seen)
+        for each, seen in self.partners.items():
+            if each in groups:
+                groups[each].append(seen)
+        return list(groups.values())
+
+    @property
+    def middle(self) -> int:
+        """A member that has all its neighbours."""
+        return 0 if self.declared.index.periodic else self.declared.reach
+
+    def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
+        """The rates of a member in generic symbols."""
+        reach = self.declared.reach
+        new = self.rename(member, reach, reach)
+        by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
+        return tuple(
+            self.see(by_name[name], new) for name in self.names_of(self.declared.variables, member)
+        )
+
+    @cached_property
+    def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
+        """The rates of the members of an open chain that lack neighbours."""
+        if self.declared.index.periodic or self.declared.pairs:
+            return {}
+        reach, count = self.declared.reach, self.members.count
+        starts = {k: self.rates_of(k) for k in range(reach)}
+        return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+
+    # -- sums ---------------------------------------------------------------------------
+
+    def value(self, node: tree.Node) -> tuple[Element, ...]:
+        """The components of a tree of the window."""
+        setting = self.equations.setting
+        return entries(interpret(node, setting.values, setting.field))
+
+    def write(self, element: Element) -> sympy.Expr:
+        """An element as SymPy has it."""
+        return self.equations.setting.field.to_sympy(self.equations.close(element))
+
+    def sums_of(self, formula: Formula) -> Iterator[tuple[tree.Sum, tree.Node]]:
+        """The sums of a formula, each with its term and the constant factor before it."""
+        assert formula.sums is not None, formula.key
+        for each, alone in split_sums(formula.sums):
+            yield each, put_term(alone, each)
+
+    @property
+    def totals(self) -> Iterator[Total]:
+        """The energy and the observables."""
+        spec = self.equations.spec
+        if spec.hamiltonian is not None:
+            yield from self._total("energy", (), spec.hamiltonian)
+        for each in spec.observables:
+            yield from self._total(each.name, each.shape, each.formula)
+
+    def _total(self, name: str, shape: tuple[int, ...], formula: Formula) -> Iterator[Total]:
+        """The components of a total."""
+        sums = list[list[Sum]]()
+        for number, (each, term) in enumerate(self.sums_of(formula), 1):
+            sums.append([])
+            for place, value in enumerate(self._terms(each, term)):
+                symbol = sympy.Symbol(f"{name}_sum{number}_{place + 1}")
+                before, after = reach(each.term)
+                sums[-1].append(
+                    Sum(
+                        symbol=symbol,
+                        term=value,
+                        over="members" if len(each.indices) == 1 else "pairs",
+                        before=before,
+                        after=after,
+                    )
+                )
+        for component, parts in zip(
+            component_names(name, shape), zip(*sums, strict=True), strict=True
+        ):
+            yield Total(component, sympy.Add(*(each.symbol for each in parts)), tuple(parts))
+
+    def _terms(self, each: tree.Sum, term: tree.Node) -> list[sympy.Expr]:
+        """The components of the term of a sum, in generic symbols."""
+        if len(each.indices) > 1:
+            return [self._see_pair(value) for value in self.value(self._place_pair(each, term))]
+        before, after = reach(each.term)
+        at = 0 if self.members.periodic else before
+        placed = place_at(term, {each.indices[0]: at}, self.members)
+        new = self.rename(at, before, after)
+        return [self.see(self.write(value), new) for value in self.value(placed)]
+
+    # -- pairs --------------------------------------------------------------------------
+
+    def _place_pair(self, each: tree.Sum, term: tree.Node, *, turned: bool = False) -> tree.Node:
+        """The term of the first two members, or of the same in the other order."""
+        at = (1, 0) if turned else (0, 1)
+        return place_at(term, dict(zip(each.indices, at, strict=True)), self.members)
+
+    def _see_pair(self, value: Element) -> sympy.Expr:
+        """An element of the first two members in the symbols of a member and its partner."""
+        names = (*self.declared.variables, *self.declared.indexed)
+        own = (*self.states, *self.indexed)
+        new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
+        others = [self.partners[each] for each in own]
+        new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
+        return self.see(self.write(value), new)
+
+    @cached_property
+    def pair_energies(self) -> list[Element]:
+        """The term of the first two members, of each sum over pairs in the energy.
+
+        Raises:
+            DerivationError: One changes when its members change places.
+        """
+        spec, field = self.equations.spec, self.equations.setting.field
+        assert spec.hamiltonian is not None, spec.name
+        terms = list[Element]()
+        for each, term in self.sums_of(spec.hamiltonian):
+            if len(each.indices) == 1:
+                continue
+            (value,), (turned,) = (
+                self.value(self._place_pair(each, term, turned=t)) for t in (False, True)
+            )
+            if not field.is_zero(value - turned):
+                i, j = each.indices
+                raise DerivationError(
+                    f"{spec.path}: hamiltonian.h: the term of a pair changes when {i} and {j} "
+                    "change places; expected a term that is the same for both orders. Write it as "
+                    "half the sum of both.",
+                    found=spec.hamiltonian.in_one_line,
+                )
+            terms.append(value)
+        return terms
+
+    def _flow(self, energy: Element) -> list[Element]:
+        """The brackets of the first member's state with a function."""
+        tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
+        assert tensor is not None, self.equations.route
+        state = self.equations.variables
+        slopes = field.gradient(energy, state)
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, 0)]
+        return [
+            field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
+            for row in rows
+        ]
+
+    @cached_property
+    def pair_sums(self) -> dict[sympy.Symbol, Sum]:
+        """What the partners add to the rates of a member, by the components to which they add."""
+        field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
+        flows = zip(*map(self._flow, self.pair_energies), strict=True)
+        for state, parts in zip(self.states, flows, strict=True):
+            term = field.sum(parts)
+            if not field.is_zero(term):
+                symbol = sympy.Symbol(f"{state.name}_pairs")
+                sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
+        return sums
+
+    @property
+    def rates_with_pairs(self) -> Iterator[sympy.Expr]:
+        """The rates of a member with sums over its partners.
+
+        What the energy of one member gives is the member's own share.
+        """
+        spec, field = self.equations.spec, self.equations.setting.field
+        assert spec.hamiltonian is not None, spec.name
+        own = [field.zero for _ in self.states]
+        for each, term in self.sums_of(spec.hamiltonian):
+            if len(each.indices) == 1:
+                placed = place_at(term, {each.indices[0]: 0}, self.members)
+                flow = self._flow(*self.value(placed))
+                own = [a + b for a, b in zip(own, flow, strict=True)]
+        new = self.rename(0, 0, 0)
+        for state, value in zip(self.states, own, strict=True):
+            total = self.see(self.write(value), new)
+            pairs = self.pair_sums.get(state)
+            yield total if pairs is None else total + pairs.symbol

@@ -1,0 +1,110 @@
+"""Families: the equations of the generic member of an indexed system, as records.
+
+A system with an index has N equal members: spins of a lattice, masses of a chain, vortices. Its
+equations are written once, for member i, with the members next to it as further symbols; kernels
+loop over i. Comes in: nothing. Goes out: the records that `coadjoint.derive` makes and
+`coadjoint.lower` reads.
+
+State in memory: component after component, and within each the member fastest. With the members'
+components ``S1, S2, S3`` a state has shape ``(3*N, *batch)`` and its rows are ``S1`` of members 0
+to N-1, then ``S2`` of them, then ``S3``: ``state.reshape(3, N, *batch)[c, i]`` is component c of
+member i. Indexed parameters lie likewise, after all shared ones; a row is called ``S1[0]``. In
+formulas members are counted from 0, as in the names of rows.
+Read next: `coadjoint.derive.indexed`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+#: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
+Symbol = Any
+Tree = Any
+
+
+@dataclass(frozen=True)
+class Index:
+    """An index and the number of members that it counts.
+
+    Attributes:
+        name: As in the spec, e.g. ``i``.
+        size: N, or None if it is chosen when the system is loaded.
+        periodic: Whether member N-1 is followed by member 0; an open chain has two ends.
+    """
+
+    name: str
+    size: int | None = None
+    periodic: bool = False
+
+
+@dataclass(frozen=True)
+class Sum:
+    """A sum over the members, or over the pairs of them.
+
+    Attributes:
+        symbol: What stands for the sum in formulas.
+        term: Of member i and its neighbours; in a sum over pairs, of member i and a partner j.
+        over: ``members``: over i. ``pairs``: over i < j, and the term is the same if i and j change
+            places. ``partners``: over all j but i, for a given i.
+        before: How many members the term reads before member i; an open chain sums from this i on.
+        after: How many it reads after it; an open chain sums up to N-1-after.
+    """
+
+    symbol: Symbol
+    term: Tree
+    over: str = "members"
+    before: int = 0
+    after: int = 0
+
+
+@dataclass(frozen=True)
+class Total:
+    """One number of the whole system: the energy, a component of an observable.
+
+    Attributes:
+        name: ``energy``; ``M1`` for the first component of ``M``.
+        formula: In the symbols of its sums and in shared parameters.
+        sums: The sums, each over members or over pairs.
+    """
+
+    name: str
+    formula: Tree
+    sums: tuple[Sum, ...]
+
+
+@dataclass(frozen=True)
+class Family:
+    """The equations of the generic member of an indexed system.
+
+    Attributes:
+        index: The index, its size and whether neighbours close to a ring.
+        states: Symbols of the components of member i, in the order of the state.
+        shifts: Which neighbours the rates read, in order and without 0, e.g. ``(-1, 1)``.
+        neighbours: By component symbol and shift, the symbol of that component of member i+shift,
+            of states and of indexed parameters; for every shift that any rate or total reads.
+        shared: Symbols of the parameters that all members share.
+        indexed: Symbols of the parameters of member i.
+        partners: By component symbol, that of member j of a pair; of states and indexed parameters.
+        rates: Rate of each component of member i, in these symbols and those of pair sums.
+        pair_sums: Sums over the partners j of member i, which the rates name; empty without pairs.
+        ends: Of an open chain, the rates of the members that lack a neighbour, by member: 0, 1, ...
+            from the start and -1, -2, ... from the end; empty for a ring.
+        totals: The energy and the observables.
+        small: The least N for which ``rates`` and ``ends`` hold: twice the range of an open chain,
+            1 for a ring, in which members may be each other's neighbours more than once.
+    """
+
+    index: Index
+    states: tuple[Symbol, ...]
+    shifts: tuple[int, ...]
+    neighbours: Mapping[tuple[Symbol, int], Symbol]
+    shared: tuple[Symbol, ...]
+    indexed: tuple[Symbol, ...]
+    partners: Mapping[Symbol, Symbol]
+    rates: tuple[Tree, ...]
+    pair_sums: tuple[Sum, ...]
+    ends: Mapping[int, tuple[Tree, ...]]
+    totals: tuple[Total, ...]
+    small: int

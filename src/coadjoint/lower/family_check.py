@@ -1,0 +1,170 @@
+"""Lowering, families checked: what was lowered is what was derived.
+
+Comes in: a Family and its `Loops`. Goes out: nothing, or a `CrossCheckError`. Every part is turned
+into a tree again and compared with the family's, or with SymPy's derivative of it: as polynomials
+and quotients where it calls no function, else at points to 60 digits.
+Read next: `coadjoint.lower.families`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final
+
+import sympy
+
+from coadjoint.errors import CrossCheckError
+from coadjoint.families import Family, Symbol, Tree
+from coadjoint.lower.families import SUM, Loops, Part, Read
+from coadjoint.lower.program import run
+
+#: Digits of the comparison where functions are called, and how much of them has to agree.
+_DIGITS: Final = 60
+_CLOSE: Final = sympy.Float(10) ** -45
+#: Points of it.
+_POINTS: Final = 5
+
+
+def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
+    """Every part computes what the family says.
+
+    Raises:
+        CrossCheckError: One does not; the message names it.
+    """
+    symbols = _Symbols(family)
+    for loops in functions.values():
+        compared = 0
+        for part, trees, sums in _list_parts(family, loops, symbols):
+            compared += len(trees)
+            _check_part(loops.name, part, trees, symbols, sums)
+        assert compared, loops.name
+
+
+class _Symbols:
+    """What names of parts stand for."""
+
+    def __init__(self, family: Family) -> None:
+        self._family = family
+        self.vector = {
+            each: sympy.Symbol(f"h {each}")
+            for each in (
+                *family.states,
+                *(s for (c, _), s in family.neighbours.items() if c in family.states),
+                *(s for c, s in family.partners.items() if c in family.states),
+            )
+        }
+
+    def find(self, read: Read) -> Symbol:
+        """The symbol that stands in the row of a name."""
+        family = self._family
+        count = len(family.states)
+        if read.array == "parameters":
+            if read.shift is None:
+                return family.shared[read.rows]
+            assert read.rows == len(family.shared), read
+            return self._place(family.indexed[read.blocks], read)
+        assert read.rows == 0, read
+        below, row = divmod(read.blocks, count)
+        symbol = self._place(family.states[row], read)
+        return self.vector[symbol] if below else symbol
+
+    def _place(self, component: Symbol, read: Read) -> Symbol:
+        """The symbol of a component of the member that a name belongs to."""
+        if read.of_partner:
+            return self._family.partners[component]
+        return self._family.neighbours[component, read.shift] if read.shift else component
+
+    def slope(self, tree: Tree, sums: Mapping[Symbol, Symbol]) -> Tree:
+        """The derivative of a tree along the vector."""
+        moving = self.vector | dict(sums)
+        return sympy.Add(*(sympy.diff(tree, s) * h for s, h in moving.items() if tree.has(s)))
+
+
+def _list_parts(
+    family: Family, loops: Loops, symbols: _Symbols
+) -> Iterator[tuple[Part, Sequence[Tree], Sequence[Symbol]]]:
+    """Parts with what they are to compute, and what their sums stand for by number."""
+    if loops.member is None:
+        every = loops.name == "observables"
+        totals = [each for each in family.totals if every or each.name == "energy"]
+        known = [each for total in totals for each in total.sums]
+        ordered = list[Any]()
+        for group in loops.totals:
+            edges = [(group.over, group.before, group.after)]
+            if loops.is_periodic:
+                chosen = [each for each in known if each.over == group.over]
+            else:
+                chosen = [each for each in known if (each.over, each.before, each.after) in edges]
+            yield group.part, [each.term for each in chosen], ()
+            ordered += [each.symbol for each in chosen]
+        assert loops.finish is not None, loops.name
+        assert len(ordered) == len(known), loops.name
+        yield loops.finish, [total.formula for total in totals], ordered
+        return
+    sums = [each.symbol for each in family.pair_sums]
+    terms = [each.term for each in family.pair_sums]
+    places = [(loops.member, family.rates)]
+    places += [(part, family.ends[member]) for member, part in loops.ends]
+    assert len(places) == 1 + len(family.ends), loops.name
+    if loops.name == "rhs":
+        if loops.partners is not None:
+            yield loops.partners, terms, ()
+        for part, rates in places:
+            yield part, rates, sums
+        return
+    slopes = {each: sympy.Symbol(f"h {each}") for each in sums}
+    along = [symbols.slope(term, {}) for term in terms]
+    keeps = loops.partners is not None and len(loops.partners.program.outputs) > len(terms)
+    if loops.partners is not None:
+        yield loops.partners, [*terms, *along] if keeps else along, ()
+    read = [*sums, *slopes.values()] if keeps else list(slopes.values())
+    for part, rates in places:
+        yield part, [symbols.slope(rate, slopes) for rate in rates], read
+
+
+def _check_part(
+    name: str, part: Part, trees: Sequence[Tree], symbols: _Symbols, sums: Sequence[Symbol]
+) -> None:
+    """A part computes trees."""
+    values = {read.name: symbols.find(read) for read in part.reads}
+    for each in part.program.state[len(part.reads) :]:
+        values[each] = sums[int(each.removeprefix(SUM))]
+    computed = run(part.program, values, _number, _call)
+    if len(computed) != len(trees):
+        raise _fail(name, f"{len(computed)} results in the place of {len(trees)}")
+    for found, wanted in zip(computed, trees, strict=True):
+        if not _are_equal(sympy.sympify(found), wanted):
+            raise _fail(name, f"{found} in the place of {wanted}")
+
+
+def _number(value: Fraction) -> Any:
+    return sympy.Rational(value.numerator, value.denominator)
+
+
+def _call(function: str, *arguments: Any) -> Any:
+    own = {"abs": sympy.Abs}.get(function) or getattr(sympy, function)
+    return own(*arguments)
+
+
+def _are_equal(found: Tree, wanted: Tree) -> bool:
+    """Whether two trees have one value."""
+    difference = found - wanted
+    if not difference.has(sympy.Function) and not difference.atoms(sympy.NumberSymbol):
+        return bool(sympy.cancel(sympy.together(difference)) == 0)
+    names = sorted(difference.free_symbols, key=str)
+    for n in range(1, _POINTS + 1):
+        at = {s: sympy.Rational(7 * n + 3 * k + 1, 5 * n + k + 2) for k, s in enumerate(names)}
+        one, other = (each.xreplace(at).evalf(_DIGITS) for each in (found, wanted))
+        if not abs(one - other) <= _CLOSE * (1 + abs(other)):
+            return False
+    return True
+
+
+def _fail(name: str, problem: str) -> CrossCheckError:
+    """The failure of rung 2."""
+    return CrossCheckError(
+        f"rung 2: {name}: {problem[:400]}. This is a fault of coadjoint, please report it.",
+        rung=2,
+        function=name,
+    )

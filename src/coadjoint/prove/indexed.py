@@ -1,0 +1,137 @@
+"""Claims about every number of members, from proofs for two small numbers.
+
+A statement of one member, or of some next to each other, reads a bounded number of members: it
+holds for all as soon as it holds where that many are written out and keep apart. A total is a sum
+over the members, and so is its rate:
+
+* in a ring, F(N+1) - F(N) is a function of the 2 w + 1 members around the new one, the same for
+  all N >= 2 w, if each term reads w + 1 members. It vanishes if F(2 w) and F(2 w + 1) do, and then
+  every F(N) does. A shorter ring is a longer one that repeats itself;
+* in an open chain, F(N+1) - F(N) is a function of the last w + 1 members: likewise from w on;
+* with pairs, the rate of a sum over members is a sum of terms of one member and of two. If it
+  vanishes for 2 members and for 3, both sums vanish for every N.
+
+The energy is kept since the bracket is antisymmetric for each member. Comes in: the certificates of
+two windows. Goes out: one certificate, in which each claim says for which N it holds.
+Read next: `coadjoint.spec.windows`, which chooses the windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from time import perf_counter
+
+from coadjoint.derive import derive
+from coadjoint.exact.dense import commutator
+from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.zero import Decision, decide_zero, make_entry
+from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.model import Lax, Spec, Windows
+
+_ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
+_ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
+
+
+def list_windows(spec: Spec) -> list[Spec]:
+    """What is proved as it stands: the two windows, and the loaded size for what they cannot."""
+    family = spec.family
+    assert family is not None, spec.name
+    return [*family.windows, *([] if family.loaded is None else [family.loaded])]
+
+
+def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
+    """The certificate of all numbers of members.
+
+    Args:
+        spec: With an index.
+        certificates: Of what `list_windows` gives, in its order, without searches.
+    """
+    family = spec.family
+    assert family is not None, spec.name
+    first, second, *rest = (list(_keep_general(spec, each)) for each in certificates)
+    assert [c.statement for c in first] == [c.statement for c in second], spec.name
+    claims = [_join(family, both) for both in zip(first, second, strict=True)]
+    claims += [_examine_lax(family)] if family.lax else []
+    if family.loaded is not None:
+        own = {f"{each.formula.in_one_line} is conserved" for each in family.loaded.conserved}
+        scope = f", for N = {family.index.size} alone"
+        loaded = [claim for each in rest for claim in each if claim.statement in own]
+        claims += [replace(claim, statement=claim.statement + scope) for claim in loaded]
+    return Certificate(spec.name, tuple(claims))
+
+
+def _examine_lax(family: Windows) -> Claim:
+    """The Lax equation of matrices with a row for each member.
+
+    Each of its entries reads the members of at most three rows and those next to them. It vanishes
+    for every number of members if it does as long as a row may be next to both ends.
+    """
+    start, counts, (_, pair) = perf_counter(), list[int](), family.lax[0]
+    statement = (
+        f"dL/dt = [L, M], with L = {pair.L.in_one_line} and M = {pair.M.in_one_line}, for every "
+        f"N >= {family.least}"
+    )
+    for spec, matrices in family.lax:
+        decision = _decide_lax(spec, matrices)
+        counts.append(len(spec.state) // len(family.variables))
+        if decision.verdict is not Verdict.PROVED:
+            break
+    reason = f", with {list_names(map(str, counts))} members; an entry reads three rows"
+    if decision.verdict is not Verdict.PROVED:
+        reason = f", with {counts[-1]} members"
+    found = replace(decision, method=decision.method + reason)
+    claim = make_entry(statement, "lax", found, perf_counter() - start)
+    assert isinstance(claim, Claim), claim
+    return claim
+
+
+def _decide_lax(spec: Spec, pair: Lax) -> Decision:
+    """Whether ``dL/dt - [L, M]`` vanishes for the members that are written out."""
+    equations = derive(spec)
+    setting, field = equations.setting, equations.setting.field
+    L, M = setting.value(pair.L), setting.value(pair.M)
+    rates = [equations.close(rate) for rate in equations.exact.rates]
+    state = equations.variables
+    defects = [
+        field.sum(a * b for a, b in zip(field.gradient(entry, state), rates, strict=True)) - turned
+        for row, others in zip(L, commutator(L, M), strict=True)
+        for entry, turned in zip(row, others, strict=True)
+    ]
+    return decide_zero(defects, field)
+
+
+def _keep_general(spec: Spec, certificate: Certificate) -> Iterator[Claim]:
+    """The claims of a window that do not depend on its number of members, in general words."""
+    casimirs = {f"{each.in_one_line} is a Casimir" for each in spec.casimirs}
+    for claim in certificate.claims:
+        if claim.kind == "algebra":
+            yield replace(claim, statement=_ALGEBRA)
+        elif claim.kind in ("jacobi", "equivalence", "conserved") or claim.statement in casimirs:
+            yield claim
+
+
+def _join(family: Windows, both: tuple[Claim, Claim]) -> Claim:
+    """One claim from the claims of two windows: the weaker verdict decides."""
+    counts = [len(window.state) // len(family.variables) for window in family.windows]
+    worst = min(both, key=lambda claim: _ORDER.index(claim.verdict))
+    statement = f"{worst.statement}, for every N >= {family.least}"
+    if worst.verdict is not Verdict.PROVED:
+        method = f"{worst.method}, with {counts[both.index(worst)]} members"
+        return replace(worst, statement=statement, method=method)
+    reason = _reason(family, worst)
+    method = f"{worst.method}, with {counts[0]} and with {counts[1]} members; {reason}"
+    return replace(
+        worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in both)
+    )
+
+
+def _reason(family: Windows, claim: Claim) -> str:
+    """Why two numbers of members are enough."""
+    if claim.statement.startswith("the energy"):
+        return "the bracket of each member is antisymmetric"
+    if claim.kind != "conserved" or claim.statement in family.of_members:
+        return "it reads one member and those next to it"
+    if family.pairs:
+        return "the rate is a sum over members and pairs"
+    return "one more member adds the same terms for every N"

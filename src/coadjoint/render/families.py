@@ -1,0 +1,369 @@
+"""Render, families: loops over the members of a family as the templates of each target read them.
+
+Comes in: the `Loops` of a family's functions. Goes out: plain records. Where a name is read is a
+text of the target: `PLACES` has one function for each.
+Read next: `coadjoint.render.kernels`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from coadjoint.declared import Quantity
+from coadjoint.families import Index
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
+from coadjoint.lower.program import Node, Statement
+from coadjoint.render.environment import names_read, render_templates
+from coadjoint.render.kernels import (
+    declaration,
+    elementary_functions,
+    identify,
+    list_called,
+    note_unproved,
+    quote,
+    rows_of,
+    tell_licence,
+    tuple_text,
+    wrap,
+)
+
+
+@dataclass(frozen=True)
+class ReadText:
+    """A name and where it is read, in a target.
+
+    Attributes:
+        name: The name.
+        place: Its place.
+        step: In C, what says whether lanes have values of their own; "" if they always have.
+    """
+
+    name: str
+    place: str
+    step: str = ""
+
+
+@dataclass(frozen=True)
+class SumText:
+    """A sum that is read: its name and number."""
+
+    name: str
+    place: int
+
+
+@dataclass(frozen=True)
+class OutputText:
+    """A result, and in C its place."""
+
+    value: Node
+    place: str
+
+
+@dataclass(frozen=True)
+class PartText:
+    """A part as the templates read it."""
+
+    reads: tuple[ReadText, ...]
+    sums: tuple[SumText, ...]
+    statements: tuple[Statement, ...]
+    outputs: tuple[OutputText, ...]
+
+
+@dataclass(frozen=True)
+class TotalsText:
+    """Terms that are added up in one loop, and the number of the first sum."""
+
+    part: PartText
+    over: str
+    before: int
+    after: int
+    first: int
+
+
+@dataclass(frozen=True)
+class FamilyFunction:
+    """A function of a family as the templates read it.
+
+    Attributes:
+        name: Its name.
+        summary: What it is.
+        costs: Its operations, as lines.
+        shape: Of its result where that does not depend on N.
+        blocks: Rows of its first argument for each member.
+        reach: Members at both ends of which each is computed alone.
+        ends_before: Members at the beginning that have rates of their own.
+        ends_after: Such members at the end.
+        partners: As `Loops` has it; likewise ``member``, ``ends``, ``totals`` and ``finish``.
+        sums: How many sums there are in a function of sums.
+    """
+
+    name: str
+    summary: str
+    costs: list[str]
+    shape: str
+    blocks: int
+    reach: int
+    ends_before: int
+    ends_after: int
+    partners: PartText | None
+    member: PartText | None
+    ends: tuple[tuple[int, PartText], ...]
+    totals: tuple[TotalsText, ...]
+    finish: PartText | None
+    sums: int
+
+
+def _row(read: Read, member: str) -> str:
+    """The row of a name in an array, without zeros: ``2 * size + i``."""
+    blocks = "size" if read.blocks == 1 else f"{read.blocks} * size"
+    addends = [str(read.rows)] * bool(read.rows) + [blocks] * bool(read.blocks)
+    return " + ".join([*addends, member] if member else addends) or "0"
+
+
+def _python_place(read: Read, is_periodic: bool) -> str:
+    """Where Python and NumPy read."""
+    if read.shift is None:
+        return f"{read.array}[{read.rows}]"
+    member = "j" if read.of_partner else "i"
+    if read.shift:
+        sign = "+" if read.shift > 0 else "-"
+        member = f"i {sign} {abs(read.shift)}"
+        member = f"({member}) % size" if is_periodic else member
+    return f"{read.array}[{_row(read, member)}]"
+
+
+def _c_place(read: Read, is_periodic: bool) -> str:
+    """Where C reads, the address of the first lane."""
+    row = str(read.rows)
+    if read.shift is not None:
+        member = "_j" if read.of_partner else "_run.i"
+        if read.shift:
+            sign, word = ("+", "after") if read.shift > 0 else ("-", "before")
+            member = f"_run.i {sign} {abs(read.shift)}"
+            if is_periodic:
+                member = f"{word}(_run.i, {abs(read.shift)}, _run.size)"
+        row = _row(read, member).replace("size", "_run.size").replace("_run._run.", "_run.")
+    if read.array == "state":
+        return f"_run.state + ({row}) * _run.stride + _run.n"
+    return f"_run.parameters + ({row}) * _run.row + _run.n * _run.own"
+
+
+def _c_step(read: Read) -> str:
+    """What says in C whether lanes have values of their own."""
+    if read.array == "state":
+        return "_batch" if read.of_partner else ""
+    return "_shared" if read.shift is None or read.of_partner else "_indexed"
+
+
+#: Where each target reads a name of a part, in a ring or not.
+PLACES: Final[dict[str, Callable[[Read, bool], str]]] = {
+    "c": _c_place,
+    "numpy": _python_place,
+    "python": _python_place,
+}
+
+
+def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> FamilyFunction:
+    """A function as the templates of a target read it."""
+    firsts, count = list[int](), 0
+    for each in loops.totals:
+        firsts.append(count)
+        count += len(each.part.program.outputs)
+    reach = max([part.reach for part in loops.parts])
+    edges = [reach, *(max(each.before, each.after) for each in loops.totals)]
+    edges += [max(place + 1, -place) for place, _ in loops.ends]
+
+    def text(part: Part | None, *, to: str = "") -> PartText | None:
+        return None if part is None else _arrange(part, loops.is_periodic, target, to)
+
+    member, finish = text(loops.member, to="member"), text(loops.finish, to="total")
+    return FamilyFunction(
+        name=loops.name,
+        summary=summary,
+        costs=costs,
+        shape="" if loops.shape is None else str(loops.shape),
+        blocks=loops.blocks,
+        reach=max(edges),
+        ends_before=len(loops.first_ends),
+        ends_after=len(loops.last_ends),
+        partners=text(loops.partners),
+        member=member,
+        ends=tuple(
+            (place, _arrange(part, loops.is_periodic, target, "member"))
+            for place, part in loops.ends
+        ),
+        totals=tuple(
+            TotalsText(
+                _arrange(each.part, loops.is_periodic, target, ""),
+                each.over,
+                each.before,
+                each.after,
+                first,
+            )
+            for each, first in zip(loops.totals, firsts, strict=True)
+        ),
+        finish=finish,
+        sums=count,
+    )
+
+
+def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
+    """A part as the templates of a target read it."""
+    place, program = PLACES[target], part.program
+    names = program.state[len(part.reads) :]
+    rows = {"": "", "member": "({n} * _run.size + _run.i)", "total": "{n}"}[to]
+    return PartText(
+        reads=tuple(
+            ReadText(read.name, place(read, is_periodic), _c_step(read) if target == "c" else "")
+            for read in part.reads
+        ),
+        sums=tuple(SumText(name, int(name.removeprefix(SUM))) for name in names),
+        statements=program.statements,
+        outputs=tuple(
+            OutputText(
+                output.value,
+                f"_run.out + {rows.format(n=n)} * _run.out_stride + _run.n" if to else "",
+            )
+            for n, output in enumerate(program.outputs)
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class FamilyContext:
+    """All that the generated files of a family say.
+
+    Attributes:
+        name: Name of the system, the prefix of its C functions.
+        spec: Path of the spec for readers, relative.
+        license: SPDX expression of the spec's licence, or "".
+        routes: How the equations were derived, one line each.
+        equations: The equations of the generic member, one line each.
+        index: The index, and how many members there are if nothing else is said.
+        small: The fewest members for which the equations hold.
+        state: Quantities of a member, in order.
+        shared: Quantities of the parameters that members share, in order.
+        indexed: Quantities of the parameters of a member, in order.
+        observables: Quantities that the function ``observables`` returns, in order.
+        loops: The functions by name.
+        defaults: Of indexed parameters that differ from member to member: a number for each of the
+            members of the declared size.
+        supported: How many claims are numerically supported and not proved.
+        unit_of_time: The unit of the time.
+    """
+
+    name: str
+    spec: str
+    license: str
+    routes: tuple[str, ...]
+    equations: tuple[str, ...]
+    index: Index
+    small: int
+    state: tuple[Quantity, ...]
+    shared: tuple[Quantity, ...]
+    indexed: tuple[Quantity, ...]
+    observables: tuple[Quantity, ...]
+    loops: dict[str, Loops]
+    defaults: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    supported: int = 0
+    unit_of_time: str = "s"
+
+
+#: Template of each file of a family, and the target in whose words it says where names are read.
+FAMILY_FILES: Final = {
+    "__init__.py": ("package/family.py.j2", "numpy"),
+    "kernel.py": ("numpy/family.py.j2", "numpy"),
+    "kernel.c": ("c/family.c.j2", "c"),
+    "kernel.h": ("c/family.h.j2", "c"),
+    "kernel_python.py": ("python/family_python.py.j2", "python"),
+}
+
+
+def render_family(context: FamilyContext) -> dict[str, str]:
+    """The kernels of the generated folder of a family and the package that declares them."""
+
+    def render(identity: str) -> dict[str, str]:
+        return {
+            file: _render_file(context, template, target, identity)
+            for file, (template, target) in FAMILY_FILES.items()
+        }
+
+    return identify(render)
+
+
+def _render_file(context: FamilyContext, template: str, target: str, identity: str) -> str:
+    """One file, given the id."""
+    programs = [part.program for loops in context.loops.values() for part in loops.parts]
+    shared = rows_of(context.shared)
+    values: dict[str, Any] = {
+        "name": context.name,
+        "spec": context.spec,
+        "licence": tell_licence(context.license),
+        "id": identity,
+        "lanes": LANES,
+        "routes": wrap([*context.routes, *note_unproved(context.supported)]),
+        "equations": wrap(context.equations),
+        "state": rows_of(context.state),
+        "parameters": shared,
+        "indexed": rows_of(context.indexed, len(shared)),
+        "called": list_called(programs),
+        "elementary": tuple_text(map(quote, elementary_functions(programs))),
+        "functions": [
+            arrange_loops(loops, target, tell_summary(loops), count_costs(loops))
+            for loops in context.loops.values()
+        ],
+        "declared": {
+            "STATE": list(map(declaration, context.state)),
+            "SHARED": list(map(declaration, context.shared)),
+            "INDEXED": list(map(declaration, context.indexed)),
+            "OBSERVABLES": list(map(declaration, context.observables)),
+        },
+        "shapes": [f"{quote(name)}: {loops.shape}" for name, loops in context.loops.items()],
+        "system": [
+            quote(context.name),
+            "__file__",
+            "INDEX",
+            *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
+            quote(identity),
+            *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
+        ],
+        "index": (
+            f"Index({quote(context.index.name)}, {context.index.size}, "
+            f"periodic={context.index.periodic}), {context.small}"
+        ),
+    }
+    return render_templates((template,), {name: values[name] for name in names_read(template)})[
+        template
+    ]
+
+
+def tell_summary(loops: Loops) -> str:
+    """One sentence on a function."""
+    rows = "rows * N" if loops.shape is None else ", ".join(map(str, loops.shape))
+    if loops.member:
+        rows = f"{len(loops.member.program.outputs)} * N"
+    shape = ", ".join([rows, "..."] if rows else ["..."])
+    return f"{KERNEL_FUNCTIONS[loops.name].summary}, shape ({shape})."
+
+
+def count_costs(loops: Loops) -> list[str]:
+    """What a call costs, for each member or pair."""
+    told = [("pair of members", loops.partners), ("member", loops.member)]
+    told += [
+        ("member" if each.over == "members" else "pair of members", each.part)
+        for each in loops.totals
+    ]
+    lines = [
+        f"Operations per {what}: "
+        + (
+            ", ".join(f"{n} {kind}" for kind, n in part.program.operation_counts().items())
+            or "none"
+        )
+        + "."
+        for what, part in told
+        if part is not None
+    ]
+    return wrap(lines)

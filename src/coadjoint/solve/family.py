@@ -1,0 +1,214 @@
+"""The System of a family of equal members, for any number of them.
+
+Comes in: the declarations of a member in a generated ``__init__.py``. Goes out: a System of N
+members, which calls the same kernels for every N: they take N as an argument.
+Read next: `coadjoint.solve.system`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
+
+from coadjoint.declared import Quantity
+from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.families import Index
+from coadjoint.solve.quantities import Quantities
+from coadjoint.solve.system import System
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+#: Bytes of memory for each row of the state and of the parameters: its name and its place among
+#: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
+ROW_BYTES: Final = 1000
+#: The largest part of the memory of a machine that a System may take.
+_SHARE: Final = 0.5
+
+
+class FamilySystem(System):
+    """A system of equal members, of which there are N.
+
+    Rows of the state are the first component of members 0 to N-1, then the second one of them, and
+    so on: ``state.reshape(components, N, *batch)``. A row is called ``S1[0]``. Parameters are those
+    that all members share, then those of each member in the same order.
+
+    Attributes:
+        index: The index, with N as its size.
+        small: The fewest members for which the equations hold.
+    """
+
+    stepwise = "the kernels of a family are loops over its members"
+
+    def __init__(
+        self,
+        name: str,
+        file: str,
+        index: tuple[Index, int],
+        state: Quantities,
+        shared: Quantities,
+        indexed: Quantities,
+        observables: Quantities,
+        functions: Mapping[str, tuple[int, ...] | None],
+        elementary: Sequence[str],
+        identity: str,
+        unit_of_time: str = "s",
+    ) -> None:
+        self.index, self.small = index
+        self._declared = (state, shared, indexed, observables, functions, elementary)
+        size = self.index.size or self.small
+        check_memory(name, self.index, size * (state.size + indexed.size))
+        super().__init__(
+            name,
+            file,
+            Quantities(*(_repeat(each, size) for each in state.values())),
+            Quantities(*shared.values(), *(_repeat(each, size) for each in indexed.values())),
+            observables,
+            {
+                function: (state.size * size,) if shape is None else shape
+                for function, shape in functions.items()
+            },
+            elementary,
+            identity,
+            unit_of_time=unit_of_time,
+        )
+
+    @property
+    def size(self) -> int:
+        """N, the number of members."""
+        return self.index.size or self.small
+
+    @cached_property
+    def fixed(self) -> Mapping[str, NDArray[np.float64]]:
+        """N, as kernels take it."""
+        import numpy as np
+
+        return MappingProxyType({"sizes": np.array([float(self.size)])})
+
+    def resize(self, sizes: Mapping[str, int]) -> FamilySystem:
+        """The system with another number of members.
+
+        Args:
+            sizes: The number by the name of the index: ``{"i": 1000}``.
+
+        Raises:
+            KernelArgumentError: No such index, or too few members.
+            ResourceError: So many members do not fit into memory.
+        """
+        size = check_sizes(self.name, self.index, self.small, sizes)
+        state, shared, indexed, observables, functions, elementary = self._declared
+        return FamilySystem(
+            self.name,
+            str(self.folder / "__init__.py"),
+            (replace(self.index, size=size), self.small),
+            state,
+            shared,
+            indexed,
+            observables,
+            functions,
+            elementary,
+            self.id,
+            unit_of_time=self.unit_of_time,
+        )
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
+        """Pickled by reference, and its size."""
+        find, given = super().__reduce__()
+        return _find_resized, (find, given, {self.index.name: self.size})
+
+    def __repr__(self) -> str:
+        state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
+        members = f"{self.size} members {self.index.name}"
+        return f"<System {self.name}: {members}; state {state}; parameters {parameters or 'none'}>"
+
+
+def resize(system: System, sizes: Mapping[str, int]) -> FamilySystem:
+    """A system with other numbers of members, by the name of their index.
+
+    Raises:
+        KernelArgumentError: It has no such index, or too few members are asked for.
+        ResourceError: So many members do not fit into memory.
+    """
+    if isinstance(system, FamilySystem):
+        return system.resize(sizes)
+    raise KernelArgumentError(
+        f"sizes of {system.name} are {dict(sizes)!r}, and it has no index; expected none. Leave "
+        "sizes out, or declare [index] in the spec.",
+        found=list(sizes),
+    )
+
+
+def _find_resized(
+    find: Callable[..., Any], given: tuple[Any, ...], sizes: Mapping[str, int]
+) -> System:
+    """What `FamilySystem.__reduce__` says."""
+    system: System = find(*given).resize(sizes)
+    return system
+
+
+def _repeat(quantity: Quantity, size: int) -> Quantity:
+    """A quantity of a member as one of all members, component after component."""
+    default = quantity.default
+    return replace(
+        quantity,
+        shape=(*quantity.shape, size),
+        components=tuple(f"{name}[{i}]" for name in quantity.components for i in range(size)),
+        default=None if default is None else tuple(v for v in default for _ in range(size)),
+    )
+
+
+def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -> int:
+    """The number of members that is asked for.
+
+    Raises:
+        KernelArgumentError: No such index, or too few members.
+    """
+    if list(sizes) != [index.name]:
+        raise KernelArgumentError(
+            f"sizes of {name} are {dict(sizes)!r}; expected a number of members for the index "
+            f"{index.name}: {{{index.name!r}: 1000}}.",
+            found=list(sizes),
+            expected=[index.name],
+        )
+    size = sizes[index.name]
+    if not isinstance(size, int) or isinstance(size, bool) or size < small:
+        raise KernelArgumentError(
+            f"the size of {index.name} of {name} is {size!r}; expected a whole number of at least "
+            f"{small}, from which on its equations hold.",
+            found=size,
+            expected=small,
+        )
+    return size
+
+
+def check_memory(name: str, index: Index, rows: int) -> None:
+    """So many rows fit into memory.
+
+    Raises:
+        ResourceError: They do not.
+    """
+    needed, there = rows * ROW_BYTES, _find_memory()
+    if needed > there * _SHARE:
+        raise ResourceError(
+            f"{name} with {index.size} members {index.name} has {rows} rows, which take about "
+            f"{needed / 1e9:.1f} GB; expected at most half of the {there / 1e9:.1f} GB of this "
+            "machine. Take fewer members.",
+            found=needed,
+            expected=int(there * _SHARE),
+        )
+
+
+def _find_memory() -> float:
+    """The memory of this machine in bytes; no bound where it does not tell."""
+    import os
+
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")

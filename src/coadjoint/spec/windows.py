@@ -1,0 +1,332 @@
+"""Windows: a spec with an index, written out for two small numbers of members.
+
+Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
+spec has, with all that is known of the others in its attribute ``family``. The numbers are those
+from which the claims follow for every other number (docs/decisions/windows.md):
+
+* a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
+* an open chain: w and w + 1, and enough for a member with all its neighbours;
+* pairs: 2 and 3.
+
+Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from coadjoint import limits
+from coadjoint.errors import CoadjointError
+from coadjoint.families import Index
+from coadjoint.spec.copies import write_out_file
+from coadjoint.spec.core.faults import ExpressionError, list_names
+from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.members import has_sum, split_sums
+from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.tree import Name, Sum, walk
+from coadjoint.spec.model import Spec, Windows
+from coadjoint.spec.sections.claims import Integral
+from coadjoint.spec.sections.lax import Lax
+
+#: Tables that a spec with an index may have.
+TABLES = (
+    "index",
+    "algebra",
+    "poisson",
+    "variables",
+    "parameters",
+    "definitions",
+    "hamiltonian",
+    "lax",
+    "observables",
+    "claims",
+)
+_PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
+
+
+def read_windows(
+    source: Source,
+    file: Any,
+    read: Callable[[Source, Any], Spec],
+    sizes: Mapping[str, int],
+) -> Spec:
+    """A spec with an index.
+
+    Args:
+        source: The text of the spec.
+        file: Its checked tables.
+        read: How a file without an index becomes a Spec.
+        sizes: Chosen sizes by the name of their index.
+
+    Raises:
+        SpecError: A size is unknown, a table or a variable does not go with an index.
+        LimitError: There are too many members.
+    """
+    index = _choose(source, file, sizes)
+    _check(source, file, index)
+    reach, width, pairs = _measure(source, file, index)
+    first = _first_window(index, reach, width, pairs=pairs)
+    least = 1 if index.periodic and not pairs else first
+    size = index.size
+    if size is not None and size < least:
+        if pairs:
+            problem = f"the index {index.name!r} counts one member"
+            raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
+        return read(*write_out_file(source, file, index, size))
+    bare = file.model_copy(update={"lax": None})
+    small, large = (read(*write_out_file(source, bare, index, first + more)) for more in (0, 1))
+    last = first if file.lax is None else max(first, 2 * reach + width + 3)
+    lax = tuple(
+        _split_lax(source, read(*write_out_file(source, file, index, count)))
+        for count in range(first, last + 1)
+        if file.lax is not None
+    )
+    parameters = {name: part.index is not None for name, part in file.parameters.items()}
+    family = Windows(
+        index=index,
+        variables=tuple(file.variables),
+        shared=tuple(name for name, own in parameters.items() if not own),
+        indexed=tuple(name for name, own in parameters.items() if own),
+        defaults={
+            name: tuple(part.default)
+            for name, part in file.parameters.items()
+            if part.index is not None and isinstance(part.default, list)
+        },
+        reach=reach,
+        pairs=pairs,
+        least=least,
+        windows=(small, large),
+        lax=lax,
+    )
+    return _with_family(source, bare, read, family)
+
+
+def _split_lax(source: Source, spec: Spec) -> tuple[Spec, Lax]:
+    """A Spec and its Lax pair, which has no spectral parameter.
+
+    Raises:
+        SpecError: It has.
+    """
+    lax = spec.lax
+    assert lax is not None, spec.name
+    for formula in (lax.L, lax.M):
+        named = {node.name for node in walk(formula.tree) if isinstance(node, Name)}
+        if lax.spectral in named:
+            problem = f"the pair depends on the spectral parameter {lax.spectral!r}"
+            expected = "a Lax pair of equal members without one"
+            raise source.fault(formula.path, problem, lax.spectral, expected)
+    return replace(spec, lax=None), lax
+
+
+def _with_family(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows
+) -> Spec:
+    """The larger window, with the claims that hold for every number of members.
+
+    Raises:
+        SpecError: The energy or an observable is no sum over members.
+    """
+    large, index = family.windows[1], family.index
+    assert large.hamiltonian is not None, large.name
+    for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
+        _check_total(source, formula)
+    kinds = [_kind_of(large, claim) for claim in large.conserved]
+    members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
+    loaded = None
+    if "other" in kinds:
+        place = kinds.index("other")
+        loaded = _read_loaded(source, file, read, family, place)
+        loaded = _select(loaded, [n for n, kind in enumerate(kinds) if kind == "other"])
+    kept = [n for n, kind in enumerate(kinds) if kind != "other"]
+    small, large = (_select(each, kept) for each in family.windows)
+    family = replace(
+        family,
+        windows=(small, large),
+        of_members=frozenset(f"{each.formula.in_one_line} is conserved" for each in members),
+        loaded=loaded,
+    )
+    return replace(large, family=family, index=(index,))
+
+
+def _select(spec: Spec, places: Sequence[int]) -> Spec:
+    """A Spec with some of its claims of what is conserved."""
+    key = ("claims", "conserved")
+    accepted = {each for each in spec.accepted if each[:2] != key}
+    accepted |= {(*key, n) for n, place in enumerate(places) if (*key, place) in spec.accepted}
+    claims = tuple(spec.conserved[place] for place in places)
+    return replace(spec, conserved=claims, accepted=frozenset(accepted))
+
+
+def _kind_of(spec: Spec, claim: Integral) -> str:
+    """What a claim is about: a ``total``, each ``member``, or something ``other``."""
+    tree = claim.formula.sums
+    assert tree is not None, claim.formula.key
+    if claim.where:
+        return "other"
+    if isinstance(tree, Name):
+        return "total" if not _counts_pairs(spec, tree.name) else "other"
+    if not has_sum(tree):
+        named = {node.name for node in walk(tree) if isinstance(node, Name)}
+        emitted = {"energy", *(each.name for each in spec.observables)}
+        return "other" if named & emitted else "member"
+    try:
+        sums = split_sums(tree)
+    except ExpressionError:
+        return "other"
+    return "other" if any(len(each.indices) > 1 for each, _ in sums) else "total"
+
+
+def _counts_pairs(spec: Spec, name: str) -> bool:
+    """Whether an observable is a sum over pairs; the energy is kept all the same."""
+    trees = [each.formula.sums for each in spec.observables if each.name == name]
+    return any(
+        isinstance(node, Sum) and len(node.indices) > 1
+        for tree in trees
+        if tree is not None
+        for node in walk(tree)
+    )
+
+
+def _read_loaded(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], family: Windows, place: int
+) -> Spec:
+    """The spec with all its members, for claims that are proved for their number alone.
+
+    Raises:
+        SpecError: The number is not known.
+        LimitError: It is too large for that.
+    """
+    size, key = family.index.size, ("claims", "conserved", place)
+    problem = "this claim is not proved for every number of members"
+    if size is None:
+        expected = "an observable or a sum over members, or a size for which it is proved"
+        raise source.fault(key, problem, "", expected, "Give the index a size.")
+    if size > limits.PROVED_MEMBERS:
+        raise source.too_many(key, f"{problem}, and there are {size}", size, "PROVED_MEMBERS")
+    return read(*write_out_file(source, file, family.index, size))
+
+
+def _check_total(source: Source, formula: Formula) -> None:
+    """An energy or an observable is a sum of sums over members."""
+    assert formula.sums is not None, formula.key
+    try:
+        sums = split_sums(formula.sums)
+        if not sums:
+            length = len(formula.text)
+            expected = "a sum over members, as sum(i, ...)"
+            problem = "the value is that of no sum over members"
+            raise ExpressionError(problem, 0, length, formula.in_one_line, expected)
+    except ExpressionError as error:
+        raise source.expression_fault(formula.path, error) from None
+
+
+def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
+    """The smaller of two numbers of members from which claims follow for all."""
+    if pairs:
+        return 2
+    whole = reach + max(width, reach)
+    return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
+
+
+def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
+    """The index with the size that is chosen."""
+    name, part = next(iter(file.index.items()))
+    for other, size in sizes.items():
+        if other != name:
+            problem = f"a size is chosen for {other!a}, which is no index"
+            raise source.at_key(("index", name), problem, other, f"the index {name!r}")
+        if isinstance(size, bool) or not isinstance(size, int) or size < 1:
+            problem = f"the size {size!r} is chosen for {name!r}"
+            raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
+    return Index(name, sizes.get(name, part.size), part.periodic)
+
+
+def _check(source: Source, file: Any, index: Index) -> None:
+    """Every table goes with an index, every variable has it, and there is room for all members."""
+    for table in type(file).model_fields:
+        named = getattr(file, table)
+        if hasattr(file, table) and table not in (*TABLES, *_HEAD) and named not in (None, {}):
+            problem = f"there is a table [{table}] in a spec with [index]"
+            expected = f"the tables {list_names(TABLES)}"
+            raise source.at_key((table,), problem, table, expected, f"Remove [{table}].")
+    quantities = [("variables", n, part) for n, part in file.variables.items()]
+    quantities += [("parameters", n, part) for n, part in file.parameters.items()]
+    for table, name, part in quantities:
+        if name == index.name:
+            problem, expected = f"{name!r} is the index, too", "names that differ"
+            raise source.at_key((table, name), problem, name, expected, "Rename one of them.")
+        if part.index not in (None, index.name):
+            key = (table, name, "index")
+            problem = f"there is no index {part.index!a}"
+            raise source.unknown(key, problem, part.index, [index.name])
+        if table == "variables" and part.index is None:
+            problem = f"the variable {name!r} has no index"
+            hint = f'Add index = "{index.name}".'
+            expected = f"the index {index.name!r} of every variable"
+            raise source.at_key((table, name), problem, name, expected, hint)
+        default = part.default
+        per_member = table == "parameters" and part.index is not None and isinstance(default, list)
+        if per_member and len(default) != index.size:
+            problem = f"the default of {name!r} has {len(default)} entries"
+            expected = f"a number for all members, or {index.size or 'N'} entries"
+            raise source.fault((table, name, "default"), problem, len(default), expected)
+    if index.size is not None and index.size > limits.FAMILY_MEMBERS:
+        problem = f"the index {index.name!r} counts {index.size} members"
+        raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
+
+
+_HEAD = ("title", "source", "description", "license", "routes")
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts in the tables that hold formulas."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for each in value.values():
+            yield from _texts(each)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from _texts(each)
+    elif hasattr(type(value), "model_fields"):
+        for name in type(value).model_fields:
+            yield from _texts(getattr(value, name))
+
+
+def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
+    """How far the energy couples, the width of what is claimed, and whether pairs are coupled.
+
+    The widths are bounds: the span of all shifts in the texts concerned.
+    """
+    shift = re.compile(rf"\[\s*{index.name}\s*([-+]\s*\d{{1,6}})?\s*[\],]")
+
+    def span(texts: Iterable[str]) -> int:
+        found = [int((m[1] or "0").replace(" ", "")) for t in texts for m in shift.finditer(t)]
+        return max([0, *found]) - min([0, *found])
+
+    shared = list(_texts(file.definitions))
+    energy = [*shared, *_texts(file.hamiltonian), *_texts(file.poisson)]
+    reach = span(energy)
+    width = span([*shared, *_texts(file.observables), *_texts(file.claims), *_texts(file.lax)])
+    pairs = any(_PAIRS.search(text) for text in [*energy, *_texts(file.observables)])
+    if pairs and (reach or width):
+        problem = "there are sums over pairs, and sums that name neighbours"
+        expected = "one of them in a spec"
+        raise source.fault(("hamiltonian",), problem, "pairs and neighbours", expected)
+    most = limits.NEIGHBOURS
+    if max(reach, width) > 2 * most:
+        problem = f"members that are {max(reach, width)} apart stand in one formula"
+        raise source.too_many(("hamiltonian",), problem, max(reach, width), "NEIGHBOURS")
+    return reach, width, pairs
+
+
+def name_fault(source: Source, key: KeyPath, index: str) -> CoadjointError:
+    """A quantity with an index where none is declared."""
+    problem, name = f"{key[1]!r} has the index {index!a}", str(key[1])
+    expected = "a table [index] that declares it"
+    hint = f"Write [index] and below it {index} = {{ size = 100 }}."
+    return source.fault((*key, "index"), problem, name, expected, hint)

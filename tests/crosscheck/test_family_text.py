@@ -1,0 +1,113 @@
+"""Texts of families: what is printed of a part reads back, and a wrong text is seen."""
+
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.crosscheck.families import crosscheck_family
+from coadjoint.crosscheck.family_text import check_family_text
+from coadjoint.errors import CrossCheckError
+from coadjoint.solve.system import load_texts
+from coadjoint.spec.reader import read_spec_text
+from tests.families import CHAIN, RING, VORTICES
+
+TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES}
+#: A text, what stands in it, and what spoils it.
+SPOILED = [
+    ("ring", "kernel.c", "before(_run.i, 1, _run.size)", "before(_run.i, 2, _run.size)"),
+    ("ring", "kernel.c", "after(_run.i, 1, _run.size)", "before(_run.i, 1, _run.size)"),
+    ("ring", "kernel.py", "(i - 1) % size", "(i + 1) % size"),
+    ("ring", "kernel_python.py", "size + i]", "size + i + 1]"),
+    ("ring", "kernel.c", "const double D = _indexed ?", "const double D = _shared ?"),
+    ("ring", "kernel.c", "= _at_S1[_l];", "= _at_S2[_l];"),
+    ("chain", "kernel.py", "state[i + 1]", "state[i + 2]"),
+    ("chain", "kernel.c", "_run.state + (_run.i + 1)", "_run.parameters + (_run.i + 1)"),
+    ("vortices", "kernel.c", "_sums[0][_l]", "_sums[1][_l]"),
+    ("vortices", "kernel.c", "const double y_j = _batch ?", "const double y_j = _shared ?"),
+    ("vortices", "kernel.py", "size + j]", "size + i]"),
+    ("vortices", "kernel_python.py", "_t1 * ", "_t1 + "),
+]
+
+
+@pytest.fixture(scope="module")
+def rendered():
+    """Each system up to its texts."""
+    return {
+        name: pipeline.render(read_spec_text(text, f"{name}.toml")) for name, text in TEXTS.items()
+    }
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_every_part_reads_back(rendered, name):
+    """All parts of all functions, in all texts."""
+    own, texts = rendered[name].family, rendered[name].texts
+    lines = check_family_text(own.context, texts, own.printed)
+    assert min(lines.values()) > 0
+    assert list(lines) == ["rhs", "jacobian_vector", "energy", "observables"]
+
+
+@pytest.mark.parametrize(("name", "file", "old", "new"), SPOILED)
+def test_a_wrong_text_is_seen(rendered, name, file, old, new):
+    """Also where the template itself prints it: parts are read, not compared with templates."""
+    texts = dict(rendered[name].texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    with pytest.raises(CrossCheckError):
+        check_family_text(rendered[name].family.context, texts, texts)
+
+
+def test_a_text_beyond_the_parts_is_that_of_the_template(rendered):
+    """The loops around the parts are compared letter by letter."""
+    own, texts = rendered["ring"].family, dict(rendered["ring"].texts)
+    texts["kernel.c"] = texts["kernel.c"].replace("_run.i < _run.size", "_run.i <= _run.size")
+    with pytest.raises(CrossCheckError, match="another text"):
+        check_family_text(own.context, texts, own.printed)
+
+
+def test_the_ladder_sees_wrong_loops(rendered):
+    """Loops that leave a partner out are wrong where members are written out."""
+    own = rendered["vortices"].family
+    texts = dict(rendered["vortices"].texts)
+    texts["kernel.py"] = texts["kernel.py"].replace(
+        "for j in range(size)", "for j in range(size - 1)"
+    )
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 4"):
+        crosscheck_family(
+            own.windows, own.declared, own.family, own.context, texts, texts, system, ("numpy",)
+        )
+
+
+def test_the_ladder_sees_other_bits(rendered):
+    """Sums in another order are right to 50 digits, and have other bits."""
+    own = rendered["ring"].family
+    texts = dict(rendered["ring"].texts)
+    texts["kernel_python.py"] = texts["kernel_python.py"].replace("LANES = 8", "LANES = 2")
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 5"):
+        crosscheck_family(
+            own.windows,
+            own.declared,
+            own.family,
+            own.context,
+            texts,
+            texts,
+            system,
+            ("numpy", "python"),
+        )
+
+
+def test_the_ladder_passes_without_a_compiler(rendered):
+    """Two targets that need none: 50 digits for both windows, bits for other numbers of members."""
+    own, texts = rendered["ring"].family, rendered["ring"].texts
+    with load_texts(texts) as system:
+        report = crosscheck_family(
+            own.windows,
+            own.declared,
+            own.family,
+            own.context,
+            texts,
+            own.printed,
+            system,
+            ("numpy", "python"),
+        )
+    assert report.k < 4
+    assert report.points > 300
+    assert all(counts["python"] > 0 for counts in report.equal.values())

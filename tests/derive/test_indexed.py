@@ -1,0 +1,190 @@
+"""The equations of the generic member are those of all members, written out by hand."""
+
+from dataclasses import replace
+from math import cos, exp, isclose, log, pi, sin, sqrt
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.derive.differences import tidy
+from coadjoint.errors import DerivationError
+from coadjoint.spec.reader import read_spec_text
+from tests.families import (
+    CHAIN,
+    RING,
+    VORTICES,
+    are_equal,
+    check_rates,
+    family_of,
+    member,
+    rates_of_members,
+    read,
+    value_of,
+    write_chain,
+    write_ring,
+    write_vortices,
+)
+from tests.specs import shipped
+
+SYSTEMS = {
+    "ring": (RING, write_ring, (2, 3, 4, 5)),
+    "chain": (CHAIN, write_chain, (4, 5, 6)),
+    "vortices": (VORTICES, write_vortices, (2, 3, 4)),
+}
+CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
+
+
+@pytest.fixture(scope="module")
+def families():
+    """The equations of the generic member of each system."""
+    return {name: family_of(read(text)) for name, (text, _, _) in SYSTEMS.items()}
+
+
+@pytest.mark.parametrize(("name", "n"), CASES)
+def test_the_generic_member_moves_as_each_of_all_members(families, name, n):
+    """Also in a ring of two, whose members are each other's neighbour twice."""
+    check_rates(families[name], SYSTEMS[name][1](n), n)
+
+
+def spoil_sign(family):
+    """A rate with the other sign."""
+    first, *rest = family.rates
+    return replace(family, rates=(-first, *rest))
+
+
+def spoil_neighbour(family):
+    """The neighbours change places."""
+    turned = {(c, -shift): s for (c, shift), s in family.neighbours.items()}
+    return replace(family, neighbours=turned)
+
+
+def spoil_end(family):
+    """The two ends change places."""
+    return replace(family, ends={k: family.ends[-k - 1] for k in family.ends})
+
+
+def spoil_pairs(family):
+    """A partner pushes instead of pulling."""
+    sums = tuple(replace(each, term=-each.term) for each in family.pair_sums)
+    return replace(family, pair_sums=sums)
+
+
+@pytest.mark.parametrize(
+    ("name", "n", "spoil"),
+    [
+        ("ring", 4, spoil_sign),
+        ("chain", 5, spoil_neighbour),
+        ("chain", 5, spoil_end),
+        ("vortices", 3, spoil_pairs),
+    ],
+)
+def test_a_wrong_rate_is_seen(families, name, n, spoil):
+    """The check above can fail: by a sign, a neighbour, an end and a partner."""
+    with pytest.raises(AssertionError):
+        check_rates(spoil(families[name]), SYSTEMS[name][1](n), n)
+
+
+@pytest.mark.parametrize(("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4)])
+def test_the_energy_is_that_of_all_members(families, name, n):
+    """Sums begin and end where the energy that is written out has its terms."""
+    energy = derive(read_spec_text(SYSTEMS[name][1](n), "whole.toml")).energy
+    family = families[name]
+    (total,) = (each for each in family.totals if each.name == "energy")
+    assert are_equal(value_of(family, total, n), energy)
+
+
+def numbers(family, n, values):
+    """The rates of n members at values by component and member, as numbers."""
+    point = {member(c, k): v for (c, k), v in values.items()}
+    return [[float(r.subs(point)) for r in rates] for rates in rates_of_members(family, n)]
+
+
+def test_a_spin_wave_turns_as_the_book_says():
+    """The frequency is 2 J cos(theta) (1 - cos(k)) (Heisenberg's ring, eight spins)."""
+    family, n, theta, J = family_of(shipped("heisenberg_lattice")), 8, 0.7, 1.3
+    k = 2 * pi / n
+    omega = 2 * J * cos(theta) * (1 - cos(k))
+    spins = [(sin(theta) * cos(k * i), sin(theta) * sin(k * i), cos(theta)) for i in range(n)]
+    values = {(c, i): s[a] for i, s in enumerate(spins) for a, c in enumerate(family.states)}
+    rates = rates_of_members(family, n)
+    point = {member(c, i): v for (c, i), v in values.items()} | {sympy.Symbol("J"): J}
+    for i, (s, rate) in enumerate(zip(spins, rates, strict=True)):
+        found = [float(each.subs(point)) for each in rate]
+        assert found == pytest.approx([omega * s[1], -omega * s[0], 0], abs=1e-12), i
+
+
+def test_two_vortices_turn_about_each_other():
+    """At (Gamma1 + Gamma2)/(2 pi d^2), anticlockwise for positive circulations (Kirchhoff)."""
+    family = family_of(shipped("point_vortices"))
+    x, y = family.states
+    (gamma,) = family.indexed
+    values = {(x, 0): 3.0, (y, 0): 0.0, (x, 1): 0.0, (y, 1): 0.0, (gamma, 0): 2.0, (gamma, 1): 5.0}
+    (_, up), (_, down) = numbers(family, 2, values)
+    assert isclose(up, 5 / (2 * pi * 3))
+    assert isclose((up - down) / 3, (2 + 5) / (2 * pi * 9))
+
+
+def test_two_vortices_on_a_sphere_turn_about_their_moment():
+    """At |M|/(2 pi R d^2) with the chord d between them (Newton)."""
+    family = family_of(shipped("sphere_vortices"))
+    (gamma,), R = family.indexed, 1.5
+    places = [(R, 0.0, 0.0), (0.0, R * 0.6, R * 0.8)]
+    strengths = [2.0, -5.0]
+    M = [sum(g * x[c] for g, x in zip(strengths, places, strict=True)) for c in range(3)]
+    d2 = sum((a - b) ** 2 for a, b in zip(*places, strict=True))
+    values = {(c, k): x[n] for k, x in enumerate(places) for n, c in enumerate(family.states)}
+    values |= {(gamma, k): g for k, g in enumerate(strengths)}
+    point = {member(c, k): v for (c, k), v in values.items()} | {sympy.Symbol("R"): R}
+    for place, rates in zip(places, rates_of_members(family, 2), strict=True):
+        found = [float(each.subs(point)) for each in rates]
+        turned = sympy.Matrix(M).cross(sympy.Matrix(place)) / (2 * pi * R * d2)
+        assert found == pytest.approx([float(each) for each in turned], abs=1e-12)
+
+
+def test_two_particles_of_toda_follow_the_closed_form():
+    """exp(q1 - q2) = kappa^2/cosh(kappa t)^2, so that q1 - q2 has the second derivative -2 exp."""
+    family = family_of(shipped("toda_lattice"))
+    q, p = family.states
+    kappa = 1.5
+    values = {(q, 0): log(kappa**2), (q, 1): 0.0, (p, 0): 0.0, (p, 1): 0.0}
+    (_, first), (_, second) = numbers(family, 2, values)
+    assert isclose(first - second, -2 * kappa**2)
+    assert isclose(first, -exp(log(kappa**2)))
+
+
+def test_three_bodies_on_an_equilateral_triangle_turn_together():
+    """The square of the rate is G (m1 + m2 + m3)/a^3, whatever the masses are (Lagrange)."""
+    family = family_of(shipped("n_body"))
+    r, m, a = family.states[:3], family.indexed[0], 2.0
+    places = [(0, 0, 0), (a, 0, 0), (a / 2, a * sqrt(3) / 2, 0)]
+    masses = [3.0, 4.0, 5.0]
+    centre = [sum(w * x[c] for w, x in zip(masses, places, strict=True)) / 12 for c in range(3)]
+    values = {(c, k): x[n] for k, x in enumerate(places) for n, c in enumerate(r)}
+    values |= {(c, k): 0.0 for c in family.states[3:] for k in range(3)}
+    values |= {(m, k): w for k, w in enumerate(masses)}
+    point = {member(c, k): v for (c, k), v in values.items()} | {sympy.Symbol("G"): 0.7}
+    omega2 = 0.7 * 12 / a**3
+    for k, rates in enumerate(rates_of_members(family, 3)):
+        force = [float(each.subs(point)) for each in rates[3:]]
+        expected = [-omega2 * masses[k] * (places[k][c] - centre[c]) for c in range(3)]
+        assert force == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_pair_counts_the_same_in_both_orders():
+    """A term that changes when its members change places is refused, and the advice works."""
+    term = ("c[i]*c[j]*log", "c[i]*log")
+    with pytest.raises(DerivationError, match="change places"):
+        family_of(read(VORTICES, term))
+    assert family_of(read(VORTICES, ("c[i]*c[j]*log", "(c[i] + c[j])/2*log")))
+
+
+def test_differences_are_written_as_differences():
+    """The polynomial is the same, and does not cancel far from the origin."""
+    r, s, t, m = sympy.symbols("r s t m")
+    whole = r**2 - 2 * r * s + s**2 + m * (r - t)
+    written = tidy(sympy.expand(whole), [(r, s, t)])
+    assert sympy.expand(written - whole) == 0
+    far = {r: 1e9 + 1, s: 1e9, t: 1e9 + 1, m: 1}
+    assert float(written.subs(far)) == 1.0
+    assert tidy(r**2 + s**2, [(r, s)]) == r**2 + s**2

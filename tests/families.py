@@ -1,0 +1,218 @@
+"""Systems of equal members, written out by hand for a given number of them, and their equations.
+
+The texts here have every member and every term of every sum; nothing of the language of indices is
+used, so that the two ways share no step that writes sums out.
+"""
+
+from itertools import combinations
+from random import Random
+
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.derive.indexed import derive_family
+from coadjoint.spec.reader import read_spec_text
+
+RING = """
+title = "Spins on a ring"
+routes = ["lie-poisson"]
+[index]
+i = { size = 6, periodic = true }
+[algebra]
+name = "so(3)"
+invariance = "right"
+[variables]
+S = { role = "momentum", index = "i" }
+[parameters]
+J = { default = 1 }
+D = { index = "i", default = 1 }
+[hamiltonian]
+h = "-J*sum(i, dot(S[i], S[i+1])) + sum(i, D[i]*S[i, 3]^2)"
+[observables]
+M = "sum(i, S[i, 3])"
+[claims]
+casimirs = ["dot(S[i], S[i])"]
+conserved = ["energy", "M"]
+"""
+CHAIN = """
+title = "Masses on a line"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, exp(q[i] - q[i+1])) + sum(i, k[i]*(q[i-1] - q[i+1])^2/2)"
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+VORTICES = """
+title = "Vortices"
+routes = ["poisson"]
+[index]
+i = { size = 6 }
+[variables]
+x = { role = "coordinate", index = "i" }
+y = { role = "coordinate", index = "i" }
+[parameters]
+c = { index = "i", default = 1 }
+[poisson.brackets]
+"{x, y}" = "1/c[i]"
+[hamiltonian]
+h = "-sum(i, j, i < j, c[i]*c[j]*log((x[i] - x[j])^2 + (y[i] - y[j])^2)) + sum(i, x[i]^2)"
+[observables]
+Y = "sum(i, c[i]*y[i])"
+[claims]
+conserved = ["energy"]
+"""
+
+
+def write_ring(n):
+    """The ring with n spins."""
+    spins = [f"S_{k}" for k in range(n)]
+    bonds = " + ".join(f"dot({a}, {b})" for a, b in zip(spins, spins[1:] + spins[:1], strict=True))
+    alone = " + ".join(f"D_{k}*S_{k}[3]^2" for k in range(n))
+    parts = ", ".join(['"so(3)"'] * n)
+    blocks = [f', block = "rotation_{k + 1}"' if n > 1 else "" for k in range(n)]
+    momenta = [f'S_{k} = {{ role = "momentum"{blocks[k]} }}' for k in range(n)]
+    algebra = f"direct_sum = [{parts}]" if n > 1 else 'name = "so(3)"'
+    return "\n".join(
+        [
+            'title = "R"\nroutes = ["lie-poisson"]\n[algebra]\ninvariance = "right"',
+            algebra,
+            "[variables]",
+            *momenta,
+            "[parameters]\nJ = { default = 1 }",
+            *(f"D_{k} = {{ default = 1 }}" for k in range(n)),
+            f'[hamiltonian]\nh = "-J*({bonds}) + {alone}"',
+        ]
+    )
+
+
+def write_chain(n):
+    """The open chain with n masses."""
+    terms = [f"p_{k}^2/2" for k in range(n)]
+    terms += [f"exp(q_{k} - q_{k + 1})" for k in range(n - 1)]
+    terms += [f"k_{k}*(q_{k - 1} - q_{k + 1})^2/2" for k in range(1, n - 1)]
+    return "\n".join(
+        [
+            'title = "C"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"k_{k} = {{ default = 1 }}" for k in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def write_vortices(n):
+    """So many vortices."""
+    pairs = [
+        f"-c_{a}*c_{b}*log((x_{a} - x_{b})^2 + (y_{a} - y_{b})^2)"
+        for a, b in combinations(range(n), 2)
+    ]
+    terms = [*pairs, *(f"x_{k}^2" for k in range(n))]
+    return "\n".join(
+        [
+            'title = "V"\nroutes = ["poisson"]\n[variables]',
+            *(f'{c}_{k} = {{ role = "coordinate" }}' for c in "xy" for k in range(n)),
+            "[parameters]",
+            *(f"c_{k} = {{ default = 1 }}" for k in range(n)),
+            "[poisson.brackets]",
+            *(f'"{{x_{k}, y_{k}}}" = "1/c_{k}"' for k in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def read(text, *changes, sizes=None):
+    """The spec of a text with changes."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return read_spec_text(text, "sample.toml", sizes or {})
+
+
+def family_of(spec):
+    """The equations of the generic member."""
+    return derive_family(derive(spec))
+
+
+def member(symbol, k):
+    """What a component of a member is called in the texts above."""
+    name = symbol.name
+    base = name.rstrip("0123456789")
+    return sympy.Symbol(f"{base}_{k}{'_' if base != name else ''}{name[len(base) :]}")
+
+
+def rates_of_members(family, n):
+    """The rates of n members by the equations of the generic one, in their own symbols."""
+    return [[_place(family, tree, k, n) for tree in _trees(family, k, n)] for k in range(n)]
+
+
+def _trees(family, k, n):
+    return family.ends.get(k, family.ends.get(k - n, family.rates))
+
+
+def _place(family, tree, k, n):
+    """A rate of the generic member as that of member k."""
+    own = {each: member(each, k) for each in (*family.states, *family.indexed)}
+    own |= {s: member(c, (k + d) % n) for (c, d), s in family.neighbours.items()}
+    for pairs in family.pair_sums:
+        others = [j for j in range(n) if j != k]
+        total = sum(
+            pairs.term.xreplace(own | {s: member(c, j) for c, s in family.partners.items()})
+            for j in others
+        )
+        own[pairs.symbol] = total
+    return tree.xreplace(own)
+
+
+def value_of(family, total, n):
+    """A total of n members in their own symbols."""
+    values = {}
+    for each in total.sums:
+        ring = family.index.periodic
+        run = range(n) if ring else range(each.before, n - each.after)
+        places = [(k, None) for k in run]
+        if each.over == "pairs":
+            places = list(combinations(range(n), 2))
+        parts = []
+        for k, j in places:
+            own = {one: member(one, k) for one in (*family.states, *family.indexed)}
+            own |= {s: member(c, (k + d) % n) for (c, d), s in family.neighbours.items()}
+            if j is not None:
+                own |= {s: member(c, j) for c, s in family.partners.items()}
+            parts.append(each.term.xreplace(own))
+        values[each.symbol] = sum(parts)
+    return total.formula.xreplace(values)
+
+
+def check_rates(family, text, n):
+    """The rates of n members are those of the text that has them all."""
+    equations = derive(read_spec_text(text, "whole.toml"))
+    known = dict(zip(equations.variables, equations.rates, strict=True))
+    assert len(known) == n * len(family.states)
+    for k, rates in enumerate(rates_of_members(family, n)):
+        for symbol, rate in zip(family.states, rates, strict=True):
+            name = member(symbol, k).name
+            assert are_equal(rate, known[name]), (n, name)
+
+
+def are_equal(left, right):
+    """Whether two expressions have one value at three points, to 25 digits."""
+    left, right = map(sympy.sympify, (left, right))
+    names = sorted(left.free_symbols | right.free_symbols, key=str)
+    draw = Random(7)
+    for _ in range(3):
+        point = {each: sympy.Rational(draw.randint(1, 99), 50) for each in names}
+        a, b = (each.evalf(40, subs=point) for each in (left, right))
+        if abs(a - b) > sympy.Rational(1, 10**25) * (1 + abs(a)):
+            return False
+    return True

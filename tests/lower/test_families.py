@@ -1,0 +1,76 @@
+"""Families as loops: what a part computes is what the family says, and few operations do it."""
+
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower.families import lower_family
+from coadjoint.lower.family_check import check_loops
+from tests.families import CHAIN, RING, VORTICES, family_of, read
+
+TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES}
+#: Operations of a member and of a pair, counted by hand before the kernels were looked at. A spin:
+#: three sums of neighbours, three by J, the anisotropy 2 D S3, a cross product. Vortices: two
+#: differences, the square of the distance, one quotient, two products for each sum.
+BY_HAND = {"ring": (21, 0), "vortices": (8, 14)}
+
+
+@pytest.fixture(scope="module")
+def families():
+    """The equations of the generic member of each system."""
+    return {name: family_of(read(text)) for name, text in TEXTS.items()}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_loops_compute_what_the_family_says(families, name):
+    """Rates, their derivative along a vector, energy and observables, of every kind of family."""
+    loops = lower_family(families[name])
+    assert set(loops) == {"rhs", "jacobian_vector", "energy", "observables"}
+    check_loops(families[name], loops)
+
+
+@pytest.mark.parametrize("function", ["rhs", "jacobian_vector", "energy", "observables"])
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_wrong_part_is_seen(families, name, function):
+    """The check above can fail: the outputs of one part change places or signs."""
+    loops = lower_family(families[name])
+    own = loops[function]
+    field = "member" if own.member is not None else "finish"
+    part = getattr(own, field)
+    program = part.program
+    first, *others = program.outputs
+    swapped = replace(program, outputs=(*others, first) if others else (program.outputs * 2)[:2])
+    loops[function] = replace(own, **{field: replace(part, program=swapped)})
+    with pytest.raises(CrossCheckError, match="rung 2"):
+        check_loops(families[name], loops)
+
+
+def test_a_wrong_partner_is_seen(families):
+    """A pair's term that reads the partner where it should read the member."""
+    loops = lower_family(families["vortices"])
+    own = loops["rhs"].partners
+    reads = tuple(
+        replace(read, of_partner=not read.of_partner) if read.blocks == 0 else read
+        for read in own.reads
+    )
+    loops["rhs"] = replace(loops["rhs"], partners=replace(own, reads=reads))
+    with pytest.raises(CrossCheckError, match="rung 2"):
+        check_loops(families["vortices"], loops)
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_operations_are_few(families, name):
+    """No more of them than an expert would write."""
+    loops = lower_family(families[name])["rhs"]
+    member, pair = BY_HAND[name]
+    assert sum(loops.member.program.operation_counts().values()) <= member
+    if loops.partners is not None:
+        assert sum(loops.partners.program.operation_counts().values()) <= pair
+
+
+def test_ends_have_rates_of_their_own(families):
+    """The chain couples members two apart: two at each end lack neighbours."""
+    loops = lower_family(families["chain"])["rhs"]
+    assert [place for place, _ in loops.ends] == [0, 1, -2, -1]
+    assert len(loops.first_ends) == len(loops.last_ends) == 2

@@ -1,0 +1,153 @@
+"""Claims of equal members say for which numbers of them they are proved, and false ones fail."""
+
+import pytest
+import sympy
+
+from coadjoint.errors import ClaimError, LimitError, SpecError
+from coadjoint.prove import prove
+from coadjoint.prove.certificate import Verdict
+from coadjoint.spec.reader import read_spec_text
+from tests.conftest import FAMILIES
+from tests.families import (
+    CHAIN,
+    RING,
+    VORTICES,
+    are_equal,
+    family_of,
+    read,
+    value_of,
+    write_chain,
+    write_ring,
+    write_vortices,
+)
+from tests.specs import shipped
+
+TEXTS = {"ring": (RING, write_ring), "chain": (CHAIN, write_chain)}
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_every_claim_is_proved_for_every_number_of_members(name):
+    """No claim names a number alone, and the certificate is not empty."""
+    spec = shipped(name)
+    claims = prove(spec).require().claims
+    assert {claim.verdict for claim in claims} == {Verdict.PROVED}
+    assert all(f"for every N >= {spec.family.least}" in claim.statement for claim in claims)
+    said = " ".join(claim.statement for claim in claims)
+    wanted = [*spec.casimirs, *(each.formula for each in spec.conserved)]
+    for formula in wanted:
+        text = formula.in_one_line
+        assert f"{'the ' if text == 'energy' else ''}{text} is" in said
+
+
+CLAIM = 'conserved = ["energy"'
+#: False claims, of a sum with a wrong sign, a wrong neighbour and a wrong end.
+FALSE = [
+    (RING, (CLAIM, 'conserved = ["sum(i, S[i, 1])", "energy"')),
+    (RING, (CLAIM, 'conserved = ["sum(i, dot(S[i], S[i+2]))", "energy"')),
+    (RING, (CLAIM, 'conserved = ["S[i, 3]", "energy"')),
+    (CHAIN, (CLAIM, 'conserved = ["sum(i, p[i]) - sum(i, p[i+1])", "energy"')),
+    (CHAIN, ("sum(i, p[i]^2/2) +", "sum(i, p[i]^2/2) + sum(i, q[i]^2) +")),
+    (VORTICES, (CLAIM, 'conserved = ["sum(i, c[i]*x[i])", "Y"')),
+    (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
+]
+
+
+@pytest.mark.parametrize("number", range(len(FALSE)))
+def test_a_false_claim_is_refuted(number):
+    """With a counterexample and the number of members that it has."""
+    text, *changes = FALSE[number]
+    with pytest.raises(ClaimError, match=r"for every N >= \d") as caught:
+        prove(read(text, *changes)).require()
+    assert "refuted" in str(caught.value)
+
+
+def test_a_false_casimir_is_refuted():
+    """A component of a spin commutes with itself alone."""
+    with pytest.raises(ClaimError, match="is a Casimir"):
+        prove(read(RING, ("dot(S[i], S[i])", "S[i, 3]^2"))).require()
+
+
+@pytest.mark.parametrize(
+    ("text", "write", "n", "claim"),
+    [
+        (RING, write_ring, 2, "S_0[3] + S_1[3]"),
+        (RING, write_ring, 3, "S_0[3] + S_1[3] + S_2[3]"),
+        (RING, write_ring, 6, " + ".join(f"S_{k}[3]" for k in range(6))),
+        (CHAIN, write_chain, 6, " + ".join(f"p_{k}" for k in range(6))),
+    ],
+)
+def test_what_is_proved_for_all_holds_where_all_are_written_out(text, write, n, claim):
+    """By the ordinary way, from texts without an index, also for small numbers."""
+    whole = f'{write(n)}\n[claims]\nconserved = ["{claim}"]'
+    claims = prove(read_spec_text(whole, "whole.toml")).require().claims
+    assert any(each.statement == f"{claim} is conserved" for each in claims)
+
+
+def test_vortices_in_a_plane_without_walls_keep_their_impulse():
+    """With the potential x^2 the other component is lost: the same spec proves Y alone."""
+    free = (" + sum(i, x[i]^2)", "")
+    both = (CLAIM, 'conserved = ["sum(i, c[i]*x[i])", "Y", "energy"')
+    assert prove(read(VORTICES, free, both)).holds
+    claim = " + ".join(f"c_{k}*x_{k}" for k in range(4))
+    text = write_vortices(4).replace(" + x_0^2 + x_1^2 + x_2^2 + x_3^2", "")
+    assert prove(read_spec_text(f'{text}\n[claims]\nconserved = ["{claim}"]', "w.toml")).holds
+
+
+LOADED = (CLAIM, 'conserved = ["sum(i, S[i, 3])^2", "energy"')
+
+
+def test_a_claim_that_is_no_sum_is_proved_for_the_loaded_size_alone():
+    """Its sentence says the size; a false one is refuted; a size that is too large is refused."""
+    claims = prove(read(RING, LOADED, ("size = 6", "size = 3"))).require().claims
+    (claim,) = (each for each in claims if "^2 is conserved" in each.statement)
+    assert claim.statement == "sum(i, S[i, 3])^2 is conserved, for N = 3 alone"
+    false = (CLAIM, 'conserved = ["sum(i, S[i, 1])^2", "energy"')
+    with pytest.raises(ClaimError, match="for N = 3 alone"):
+        prove(read(RING, false, ("size = 6", "size = 3"))).require()
+    with pytest.raises(LimitError, match="PROVED_MEMBERS"):
+        read(RING, LOADED, ("size = 6", "size = 60"))
+    with pytest.raises(SpecError, match="Give the index a size"):
+        read(RING, LOADED, ("size = 6, ", ""))
+
+
+def test_an_open_chain_that_is_too_short_is_written_out():
+    """It is an ordinary system then, with the same claims and no sentence about other numbers."""
+    short = read(CHAIN, sizes={"i": 3})
+    assert short.family is None
+    assert len(short.state) == 6
+    assert not any("N >=" in claim.statement for claim in prove(short).require().claims)
+
+
+TODA = shipped("toda_lattice").path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("0, -exp((q[i] - q[i+1])/2)/2)", "0, exp((q[i] - q[i+1])/2)/2)"),
+        ("/2, -p[i]/2, exp", "/2, p[i]/2, exp"),
+        ("/2, -p[i]/2, exp", "/2, -p[i], exp"),
+        ("sum(i, exp(q[i] - q[i+1]))", "sum(i, exp(q[i] - q[i+1])) + sum(i, exp(q[i]))"),
+    ],
+)
+def test_a_wrong_lax_pair_is_refuted(change):
+    """By a sign of M, of time, a factor, and a chain that is tied to a wall."""
+    claims = prove(read(TODA, change)).claims
+    (claim,) = (each for each in claims if each.kind == "lax")
+    assert claim.verdict is Verdict.REFUTED
+    assert claim.counterexample
+
+
+def test_the_lax_pair_of_toda_gives_the_claimed_integrals():
+    """P = -2 tr L, energy = 2 tr L^2 and T = -8/3 tr L^3, by matrices written out here."""
+    n = 4
+    q, p = (sympy.symbols(f"{name}_:{n}") for name in "qp")
+    a = [sympy.exp((q[k] - q[k + 1]) / 2) / 2 for k in range(n - 1)]
+    entries = {(k, k): -p[k] / 2 for k in range(n)}
+    entries |= {(k, k + 1): a[k] for k in range(n - 1)} | {(k + 1, k): a[k] for k in range(n - 1)}
+    L = sympy.SparseMatrix(n, n, entries)
+    family = family_of(shipped("toda_lattice"))
+    values = {each.name: value_of(family, each, n) for each in family.totals}
+    assert are_equal(values["P"], -2 * L.trace())
+    assert are_equal(values["energy"], 2 * (L * L).trace())
+    assert are_equal(values["T"], -sympy.Rational(8, 3) * (L * L * L).trace())

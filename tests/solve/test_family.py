@@ -1,0 +1,143 @@
+"""Systems of equal members: one kernel for any number of them, and refusals of wrong numbers."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from coadjoint import load, pipeline
+from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.solve import family as families
+from coadjoint.solve.system import load_texts
+from coadjoint.spec.reader import read_spec_text
+from tests.families import RING, VORTICES
+
+
+@pytest.fixture(scope="module")
+def ring():
+    """Spins on a ring."""
+    with load_texts(pipeline.render(read_spec_text(RING, "ring.toml")).texts) as system:
+        yield system
+
+
+@pytest.fixture(scope="module")
+def vortices():
+    """Vortices with an outer flow."""
+    with load_texts(pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts) as system:
+        yield system
+
+
+def turn(S, J, D):
+    """The equations of the ring, typed by hand: {S1, S2} = S3, dS/dt = S x (-dh/dS)."""
+    field = J * (np.roll(S, 1, axis=1) + np.roll(S, -1, axis=1))
+    field[2] -= 2 * D * S[2]
+    return np.cross(S, field, axis=0)
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "python"])
+@pytest.mark.parametrize("size", [3, 10, 67])
+def test_rates_are_those_of_the_equations(ring, size, target):
+    """For several numbers of members, by one text."""
+    system, source = ring.resize({"i": size}), np.random.default_rng(size)
+    S, D = source.normal(size=(3, size)), source.uniform(1, 2, size)
+    rates = system.rhs({"S": S}, {"J": 0.7, "D": D}, target=target)
+    np.testing.assert_allclose(rates.reshape(3, size), turn(S, 0.7, D), rtol=1e-13, atol=1e-14)
+
+
+def test_a_batch_has_the_bits_of_its_members(ring):
+    """Many trajectories of many members, with parameters of their own or shared."""
+    system, source = ring.resize({"i": 20}), np.random.default_rng(0)
+    states, own = source.normal(size=(60, 13)), source.uniform(1, 2, (21, 13))
+    for function in ("rhs", "energy", "observables"):
+        for parameters in (own, own[:, 0].copy()):
+            many = system.evaluate(function, states, parameters)
+            each = [
+                system.evaluate(function, state, p)
+                for state, p in zip(
+                    states.T.copy(),
+                    np.broadcast_to(parameters.T, (13, 21)).copy(),
+                    strict=True,
+                )
+            ]
+            assert np.array_equal(many, np.stack(each, axis=-1))
+
+
+def test_the_derivative_along_a_vector_is_that_of_the_rates(vortices):
+    """Of sums over partners, too: against differences of rates."""
+    system, source = vortices.resize({"i": 9}), np.random.default_rng(1)
+    state, vector = source.normal(size=(2, 18))
+    step = 1e-6
+    ahead, behind = (system.rhs(state + sign * step * vector, target="numpy") for sign in (1, -1))
+    slope = system.jacobian_vector(state, vector, target="numpy")
+    np.testing.assert_allclose(slope, (ahead - behind) / (2 * step), rtol=1e-6, atol=1e-6)
+
+
+def test_rows_have_the_names_of_members(ring):
+    """Component after component, the member fastest."""
+    system = ring.resize({"i": 2})
+    names = ("S1[0]", "S1[1]", "S2[0]", "S2[1]", "S3[0]", "S3[1]")
+    assert system.STATE.components == names
+    assert system.STATE["S"].shape == (3, 2)
+    assert system.PARAMETERS.components == ("J", "D[0]", "D[1]")
+    assert "2 members i" in repr(system)
+    assert len(repr(ring.resize({"i": 5000}))) < 200
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853"])
+def test_a_run_keeps_the_energy(ring, method):
+    """The steps are those of every system, and the same bits in NumPy and C."""
+    system, source = ring.resize({"i": 12}), np.random.default_rng(2)
+    state = source.normal(size=36)
+    runs = [
+        system.simulate(state, (0, 1), step=0.02, method=method, target=target, progress=False)
+        for target in ("c", "numpy")
+    ]
+    assert np.array_equal(*(np.asarray(run.state) for run in runs))
+    energy = system.energy(np.asarray(runs[0].state))
+    assert np.ptp(energy) < {"rk4": 1e-4, "dop853": 1e-10}[method] * abs(energy[0])
+    assert runs[0].settings["stepwise"]
+
+
+@pytest.mark.parametrize("sizes", [{}, {"j": 3}, {"i": 0}, {"i": -1}, {"i": 2.0}, {"i": True}])
+def test_a_wrong_size_is_refused(ring, sizes):
+    """With the index that there is, or the fewest members."""
+    with pytest.raises(KernelArgumentError, match="i"):
+        ring.resize(sizes)
+
+
+def test_too_few_members_are_refused(vortices):
+    """A pair needs two."""
+    with pytest.raises(KernelArgumentError, match="at least 2"):
+        vortices.resize({"i": 1})
+
+
+def test_memory_is_looked_at_before_work(ring, monkeypatch):
+    """Millions of members on a small machine are refused with both numbers of bytes."""
+    monkeypatch.setattr(families, "_find_memory", lambda: 2e9)
+    with pytest.raises(ResourceError, match=r"4\.0 GB.*2\.0 GB"):
+        ring.resize({"i": 1_000_000})
+
+
+def test_a_system_without_an_index_has_no_size(ring):
+    """`load` says so."""
+    from coadjoint.systems.rigid_body import system
+
+    with pytest.raises(KernelArgumentError, match="no index"):
+        families.resize(system, {"i": 3})
+
+
+def test_loading_takes_sizes(tmp_path):
+    """The number of members is chosen when a spec is loaded; the kernels are the same."""
+    (tmp_path / "spins.toml").write_text(RING)
+    system = load(tmp_path / "spins.toml", sizes={"i": 40})
+    assert system.STATE.size == 120
+    assert load(tmp_path / "spins.toml").STATE.size == 18
+
+
+def test_pickled_systems_keep_their_size():
+    """By reference to the package, and the number of members."""
+    pytest.importorskip("coadjoint.systems.heisenberg_lattice")
+    from coadjoint.systems.heisenberg_lattice import system
+
+    copy = pickle.loads(pickle.dumps(system.resize({"i": 7})))
+    assert copy.STATE.size == 21

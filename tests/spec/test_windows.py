@@ -1,0 +1,180 @@
+"""Specs with an index: what is read, what is refused, and what the messages say."""
+
+import pytest
+
+from coadjoint.errors import LimitError, SpecError
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.members import Members, reach, write_out
+from tests.conftest import FAMILIES
+from tests.families import CHAIN, RING, VORTICES, read
+from tests.specs import RIGID_BODY, shipped
+
+MOMENTA = 'S = { role = "momentum", index = "i" }'
+M = 'M = "sum(i, S[i, 3])"'
+SQUARE = ('"energy", "M"', '"energy", "sum(i, S[i, 3])^2"')
+OWN = ("-J*sum(i, dot", "-sum(i, J[i]*dot")
+#: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
+INDEXED = [
+    (
+        CHAIN,
+        [("i = { size = 6 }", "i = { size = 6 }\nk = { size = 3 }")],
+        "Remove k; a sum over pairs has a second index without a declaration.",
+        [("\nk = { size = 3 }", "")],
+    ),
+    (RING, [OWN], 'Write J, or add index = "i" where it is declared.', [OWN[::-1]]),
+    (
+        RING,
+        [OWN],
+        'add index = "i" where it is declared.',
+        [("J = { default", 'J = { index = "i", default')],
+    ),
+    (
+        RING,
+        [(M, 'M = "sum(i, S[3])"')],
+        "The second subscript is a component: S[i, 1].",
+        [("S[3]", "S[i, 3]")],
+    ),
+    (VORTICES, [("log((x[i] - x[j])", "log((x[i] - x[j+1])")], "Write x[j].", [("[j+1]", "[j]")]),
+    (
+        RING,
+        [(M, 'M = "sum(i, S[i, 3])^2"')],
+        "Put what stands around the sum into its term, or leave it out.",
+        [('"sum(i, S[i, 3])^2"', '"sum(i, S[i, 3]^2)"')],
+    ),
+    (RING, [("[claims]", "[time]\n[claims]")], "Remove [time].", [("[time]\n", "")]),
+    (RING, [("J = { default", "i = { default")], "Rename one of them.", [("i = { de", "J = { de")]),
+    (
+        RING,
+        [(MOMENTA, 'S = { role = "momentum" }')],
+        'Add index = "i".',
+        [('role = "momentum"', 'role = "momentum", index = "i"')],
+    ),
+    (
+        RING,
+        [("size = 6, ", ""), SQUARE],
+        "Give the index a size.",
+        [("{ periodic", "{ size = 6, periodic")],
+    ),
+    (CHAIN, [("size = 6", "size = 2")], "Choose a larger size.", [("size = 2", "size = 3")]),
+    (
+        CHAIN,
+        [("[index]\ni = { size = 6 }\n", "")],
+        "Write [index] and below it i = { size = 100 }.",
+        [("[variables]", "[index]\ni = { size = 100 }\n[variables]")],
+    ),
+]
+LAX = '[lax]\nL = "tridiagonal(p[i], q[i], p[i])"\nM = "tridiagonal(p[i], 0, p[i])"\n[obs'
+ENERGY = "-J*sum(i, dot(S[i], S[i+1]))"
+#: What is wrong with a spec, and what the message says of it.
+BAD = [
+    (RING, (ENERGY, "-J*sum(k, dot(S[k], S[k+1]))"), "there is no index 'k'"),
+    (RING, (ENERGY, "-J*sum(i, dot(S[i], S[k]))"), "the index 'k' is not that of a sum around it"),
+    (RING, (ENERGY, "-J*dot(S[i], S[i])"), "the index 'i' is not that of a sum around it"),
+    (RING, (ENERGY, "-J*sum(i, dot(S, S[i]))"), "'S' is one quantity of each member"),
+    (RING, (ENERGY, "-J*sum(i, 1)"), "does not name a member 'i'"),
+    (RING, (ENERGY, "-J*sum(i, i, i < i, dot(S[i], S[i]))"), "indices of a pair have one name"),
+    (RING, (ENERGY, "-J*sum(i, j, j < i, dot(S[i], S[j]))"), "sum(i, j, i < j, ...)"),
+    (RING, (ENERGY, "-J*sum(dot(S[i], S[i+1]))"), "the sum has no index"),
+    (RING, (ENERGY, "J + sum(i, S[i, 3])"), "not linear in it"),
+    (RING, (ENERGY, "-J*sum(i, S[i, 4])"), "out of range; expected 1 to 3"),
+    (RING, (M, 'M = "J"'), "that of no sum over members"),
+    (RING, (M, 'M = "sum(i, j, i < j, dot(S[i], S[j]))"'), "one of them in a spec"),
+    (RING, ("size = 6", "size = 0"), "greater than or equal to 1"),
+    (RING, ('D = { index = "i"', 'D = { index = "k"'), "there is no index 'k'"),
+    (RING, ('D = { index = "i", default = 1', 'D = { index = "i", default = [1, 2]'), "6 entries"),
+    (VORTICES, ("size = 6", "size = 1"), "at least 2 for pairs"),
+    (
+        VORTICES,
+        ('[poisson.brackets]\n"{x, y}" = "1/c[i]"', '[poisson]\nnambu = ["x[i]"]'),
+        "brackets or canonical",
+    ),
+    (VORTICES, ('"{x, y}"', '"{x, z}"'), "z"),
+    (RING, ("[obs", '[lax]\nL = "tridiagonal(J, J, J)"\nM = "hat(S_0)"\n[obs'), "a ring has no"),
+    (CHAIN, ("[obs", '[lax]\nL = "tridiagonal(p[i], p[i])"\nM = "J"\n[obs'), "three are needed"),
+    (CHAIN, ("[obs", LAX.replace("q[i]", "lambda")), "spectral parameter 'lambda'"),
+    (CHAIN, ("[obs", LAX.replace("q[i]", "q[i+1]")), "lies beyond the end of the chain"),
+]
+
+
+@pytest.mark.parametrize(("text", "change", "said"), BAD)
+def test_bad_input_is_refused_at_its_place(text, change, said):
+    """With the line, and before anything is derived."""
+    with pytest.raises(SpecError) as caught:
+        read(text, change)
+    assert said in str(caught.value)
+    assert caught.value.line > 1
+
+
+def test_limits_of_neighbours_and_members():
+    """A neighbour that is too far, and more members than fit into memory."""
+    with pytest.raises(LimitError, match="NEIGHBOURS"):
+        read(RING, (ENERGY, "-J*sum(i, dot(S[i], S[i+5]))"))
+    with pytest.raises(LimitError, match="FAMILY_MEMBERS"):
+        read(RING, sizes={"i": 10**9})
+
+
+@pytest.mark.parametrize("size", [0, -3, 2.5, True, "6"])
+def test_a_chosen_size_is_a_positive_integer(size):
+    """And nothing else."""
+    with pytest.raises(SpecError, match="an integer of 1 or more"):
+        read(RING, sizes={"i": size})
+
+
+def test_sizes_are_chosen_by_the_name_of_the_index():
+    """Of a spec that has it."""
+    assert read(RING, sizes={"i": 17}).family.index.size == 17
+    assert read(RING, ("size = 6, ", "")).family.index.size is None
+    with pytest.raises(SpecError, match="a size is chosen for 'k', which is no index"):
+        read(RING, sizes={"k": 3})
+    with pytest.raises(SpecError, match=r"Leave sizes out, or declare \[index\]"):
+        read(RIGID_BODY, sizes={"i": 3})
+    assert read(RIGID_BODY).family is None
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_shipped_families_have_units_docs_and_defaults(name):
+    """As other shipped systems have."""
+    spec = shipped(name)
+    assert spec.license == "BSD-3-Clause"
+    assert spec.source
+    assert all(each.doc for each in (*spec.variables, *spec.parameters))
+    assert all(each.default is not None for each in spec.parameters)
+    assert "energy" in [each.everywhere for each in spec.conserved]
+
+
+def names_in(text, count, *, periodic):
+    """What a sum over members of S is, as text."""
+    members = Members("i", count, periodic, frozenset({"S"}))
+    tree = write_out(read_expression(text, indexed=True), members, ("hamiltonian", "h"))
+    return show(tree)
+
+
+def show(node):
+    """A tree of sums and products of names."""
+    if hasattr(node, "operator"):
+        return f"{show(node.left)}{node.operator}{show(node.right)}"
+    return node.name if hasattr(node, "name") else str(node.value)
+
+
+def test_sums_go_over_the_members_that_have_their_neighbours():
+    """A ring closes, an open chain ends, and a pair is counted once."""
+    assert names_in("sum(i, S[i]*S[i+1])", 3, periodic=True) == "S_0*S_1+S_1*S_2+S_2*S_0"
+    assert names_in("sum(i, S[i]*S[i+1])", 3, periodic=False) == "S_0*S_1+S_1*S_2"
+    assert names_in("sum(i, S[i-1]*S[i+1])", 4, periodic=False) == "S_0*S_2+S_1*S_3"
+    assert names_in("sum(i, S[i-1]*S[i])", 2, periodic=True) == "S_1*S_0+S_0*S_1"
+    pairs = "S_0*S_1+S_0*S_2+S_1*S_2"
+    assert names_in("sum(i, j, i < j, S[i]*S[j])", 3, periodic=True) == pairs
+    assert reach(read_expression("S[i-2]*S[i+1]", indexed=True)) == (2, 1)
+
+
+def test_windows_are_large_enough_for_what_is_claimed():
+    """Twice the width of a rate in a ring; the width in an open chain; two and three of pairs."""
+
+    def counts(spec):
+        return [len(each.state) // len(spec.family.variables) for each in spec.family.windows]
+
+    assert counts(read(RING)) == [4, 5]
+    wide = (SQUARE[0], '"energy", "sum(i, dot(S[i], S[i+2]))"')
+    assert counts(read(RING, wide)) == [6, 7]
+    assert counts(read(CHAIN)) == [4, 5]
+    assert counts(read(VORTICES)) == [2, 3]
