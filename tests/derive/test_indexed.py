@@ -173,14 +173,6 @@ def test_three_bodies_on_an_equilateral_triangle_turn_together():
         assert force == pytest.approx(expected, abs=1e-12)
 
 
-def test_the_derivation_says_which_member_stands_for_all():
-    """First how many members are written out, last the rates of one that has its neighbours."""
-    steps = derive(read(CHAIN)).steps
-    assert "5 members in the place of N, coupled in an open chain" in steps[0].text
-    assert [left.text for left, _ in steps[-1].lines] == ["dq_2/dt", "dp_2/dt"]
-    assert not any(step.title == "Members" for step in derive(shipped("kepler")).steps)
-
-
 def test_a_pair_counts_the_same_in_both_orders():
     """A term that changes when its members change places is refused, and the advice works."""
     term = ("c[i]*c[j]*log", "c[i]*log")
