@@ -8,6 +8,7 @@ here. The summary of the run counts them all.
 import json
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -48,17 +49,48 @@ def judge():
         server.stdin.close()
 
 
+#: Mutants of each route that every run tries, those by hand first; well-known mistakes, too.
+REGULAR = 2
+
+
+def choose_regular():
+    """The mutants of every run; the others wait for campaigns."""
+    tried, chosen = Counter(), []
+    for mutant in ROUTE_MUTANTS:
+        by_hand = not mutant.edit or mutant.always
+        if by_hand and not mutant.equivalent and (mutant.fallacy or tried[mutant.route] < REGULAR):
+            tried[mutant.route] += 1
+            chosen.append(mutant)
+    return chosen
+
+
+def in_campaigns(regular, argument):
+    """The mark of what belongs to no mutant of every run."""
+    return () if argument in regular else pytest.mark.campaign
+
+
 def killable():
-    """The mutants that must be refuted; of those made by operators most wait for campaigns."""
+    """The mutants that must be refuted."""
+    regular = {mutant.name for mutant in choose_regular()}
     return [
-        pytest.param(
-            mutant,
-            marks=pytest.mark.campaign if mutant.edit and not mutant.always else (),
-            id=mutant.name,
-        )
+        pytest.param(mutant, marks=in_campaigns(regular, mutant.name), id=mutant.name)
         for mutant in ROUTE_MUTANTS
         if not mutant.equivalent
     ]
+
+
+def judged():
+    """Routes with the systems that judge their mutants."""
+    regular = {(m.route, s) for m in choose_regular() for s in m.systems}
+    pairs = sorted({(m.route, s) for m in ROUTE_MUTANTS for s in m.systems})
+    return [pytest.param(*pair, marks=in_campaigns(regular, pair)) for pair in pairs]
+
+
+def judging():
+    """Source tests that judge mutants."""
+    regular = {test for m in choose_regular() for test in m.tests}
+    tests = sorted({test for m in ROUTE_MUTANTS for test in m.tests})
+    return [pytest.param(test, marks=in_campaigns(regular, test)) for test in tests]
 
 
 @pytest.mark.parametrize("mutant", killable())
@@ -85,15 +117,13 @@ def change(line, *systems, tests=()):
     return Mutant(module("derive/euler_poincare"), line, "", systems, tests)
 
 
-@pytest.mark.parametrize(
-    ("route", "system"), sorted({(m.route, s) for m in ROUTE_MUTANTS for s in m.systems})
-)
+@pytest.mark.parametrize(("route", "system"), judged())
 def test_the_unchanged_engine_is_not_refuted(route, system, judge):
     """The certificates hold without a change, by the routes that judge a mutant."""
     assert judge(replace(change("", system), route=route)) == ""
 
 
-@pytest.mark.parametrize("test", sorted({test for m in ROUTE_MUTANTS for test in m.tests}))
+@pytest.mark.parametrize("test", judging())
 def test_the_source_tests_pass_without_a_change(test, judge):
     """The tests that judge mutants exist and pass without a change."""
     assert judge(change("", tests=(test,))) == ""
@@ -117,6 +147,14 @@ def test_every_line_names_one_change():
     for mutant in ROUTE_MUTANTS:
         assert mutant.text()
         assert mutant.systems or mutant.tests, mutant.name
+
+
+def test_every_run_tries_every_route():
+    """Two mutants of each that has so many, and all mistakes that are well known."""
+    regular = choose_regular()
+    assert {m.route for m in regular} == {m.route for m in ROUTE_MUTANTS}
+    assert {m.fallacy for m in ROUTE_MUTANTS} == {m.fallacy for m in regular}
+    assert 50 <= len(regular) <= 120
 
 
 def test_every_route_has_mutants():

@@ -110,6 +110,35 @@ def test_a_claim_that_is_no_sum_is_proved_for_the_loaded_size_alone():
         read(RING, LOADED, ("size = 6, ", ""))
 
 
+@pytest.mark.parametrize(
+    "claim", ["M^2", "energy*sum(i, S[i, 3])", "D[i]*sum(i, S[i, 3])", "energy + M", "M + D[i]"]
+)
+def test_what_is_not_linear_in_sums_is_proved_for_the_loaded_size_alone(claim):
+    """Functions of sums may be constant for few members, and not for more of them."""
+    change = (CLAIM, f'conserved = ["{claim}", "energy"')
+    claims = prove(read(RING, change, ("size = 6", "size = 3"))).claims
+    (found,) = (each for each in claims if each.statement.startswith(f"{claim} is conserved"))
+    assert found.statement.endswith("for N = 3 alone")
+
+
+def test_a_function_of_sums_is_no_casimir_of_every_number_of_members():
+    """A power sum of few numbers is a polynomial in lower ones: 0 here for two members alone."""
+    power = [f"sum(i, c[i]^{n})" for n in (1, 2, 3)]
+    newton = f"2*{power[2]} - 3*{power[0]}*{power[1]} + {power[0]}^3"
+    with pytest.raises(SpecError, match="neither of each member nor a sum"):
+        read(VORTICES, ("[claims]", f'[claims]\ncasimirs = ["{newton}"]'))
+    assert read(VORTICES, ("[claims]", f'[claims]\ncasimirs = ["{power[1]}"]'))
+
+
+def test_a_pair_observable_is_no_total_whose_rate_is_a_sum_over_pairs():
+    """Also by the name of its component."""
+    pairs = 'V = "sum(i, j, i < j, c[i]*c[j]*vector((x[i] - x[j])^2, c[i] + c[j]))"\n'
+    for name in ("V", "V2", "V[2]"):
+        changes = [('Y = "sum', f'{pairs}Y = "sum'), (CLAIM, f'conserved = ["{name}", "energy"')]
+        spec = read(VORTICES, *changes, ("size = 6", "size = 3"))
+        assert [each.formula.text for each in spec.family.loaded.conserved] == [name]
+
+
 def test_an_open_chain_that_is_too_short_is_written_out():
     """It is an ordinary system then, with the same claims and no sentence about other numbers."""
     short = read(CHAIN, sizes={"i": 3})

@@ -15,6 +15,8 @@ from coadjoint.solve.calls import CStepper
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.costs import Costs, choose_order
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.system import load_folder
+from coadjoint.solver_kinds import list_kinds
 from coadjoint.systems import heavy_top, kepler, rigid_body, so8_body
 from tests.driven_specs import PENDULUM, rendered
 from tests.driven_specs import build as build_driven
@@ -22,6 +24,7 @@ from tests.kernels import COMPILER
 from tests.programs import BOUNDED
 from tests.solve.runs import drive_members
 from tests.solve.systems import POLE, build, pendulum
+from tests.trees_of_files import ROOT
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 INERTIA = (1.0, 2.0, 3.0)
@@ -42,6 +45,19 @@ def free_body(time, start1, start3):
             c * np.sqrt(last / (c * (c - a))) * dn,
         ]
     )
+
+
+@pytest.mark.campaign
+def test_solvers_of_every_system_compile_as_users_have_them(system, tmp_path, monkeypatch):
+    """All methods, optimised, without a warning, and with the steps of their twins in NumPy.
+
+    The ladder compiles them without optimisation, but for one of each kind.
+    """
+    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path))
+    loaded = load_folder(ROOT / "generated" / system)
+    for kind in list_kinds(loaded.functions):
+        for name, order in (("taylor", 12), ("dop853", 8), ("rk4", 4)):
+            assert solvers.load(loaded, Choice(name, order, kind=kind), "c")
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,13 @@
 import os
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import DOP853
 
-from coadjoint.lower.tableau import END, FIFTH, STAGES, THIRD, dop853
+from coadjoint.lower.tableau import END, FIFTH, STAGES, THIRD, dop853, load_dop853
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.steps import rough_log2, rough_power
 from tests.kernels import COMPILER, STRICT
@@ -46,6 +48,17 @@ def weights(row):
     for weight, column in dop853().row(row):
         full[column] = weight
     return full
+
+
+@pytest.mark.parametrize("is_there", [True, False])
+def test_the_table_is_that_of_scipy(monkeypatch, is_there):
+    """Read from its file, or by its package where there is no such file."""
+    if not is_there:
+        monkeypatch.setattr(Path, "is_file", lambda path: False)
+    found = load_dop853.__wrapped__()
+    assert (found is DOP853) != is_there
+    for name in ("A", "B", "C", "D", "E3", "E5", "A_EXTRA", "C_EXTRA"):
+        assert np.array_equal(getattr(found, name), getattr(DOP853, name)), name
 
 
 def test_the_table_meets_order_conditions():

@@ -16,6 +16,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from coadjoint.lower.tableau import load_dop853
+
 #: Values in some arithmetic, row by row.
 Row = list[Any]
 #: Rates at a state, some time after the start.
@@ -100,7 +102,7 @@ def dop853(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Ro
 
     E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, II.5, II.6.
     """
-    from scipy.integrate import DOP853
+    DOP853 = load_dop853()
 
     def weigh(weights: Any, ks: list[Row]) -> Row:
         chosen = [(number(Fraction(float(w))), k) for w, k in zip(weights, ks, strict=False) if w]

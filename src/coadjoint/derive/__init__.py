@@ -5,7 +5,7 @@ Routes share the algebra and the Setting, never each other's results: their agre
 """
 
 from coadjoint.callable_module import make_callable
-from coadjoint.derive import indexed, reductions
+from coadjoint.derive import reductions
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics import external, noise, slipping
 from coadjoint.derive.records import Chart, Exact, Relation, Step
@@ -50,8 +50,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
     slipping.check_slipping(given)
     if spec.reduction is not None:
         return reductions.restrict(given, chosen)
-    equations = noise.show_noise(external.add_forces(load_route(chosen)(given)))
-    return equations if spec.family is None else indexed.tell_members(equations)
+    return noise.show_noise(external.add_forces(load_route(chosen)(given)))
 
 
 make_callable(__name__, "derive")

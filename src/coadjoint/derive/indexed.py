@@ -17,7 +17,7 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -26,7 +26,6 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
-from coadjoint.derive.records import write_rates, write_step
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.families import Family, Sum, Total
@@ -82,28 +81,6 @@ def derive_family(equations: Equations) -> Family:
         totals=totals,
         small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
     )
-
-
-def tell_members(equations: Equations) -> Equations:
-    """Equations of a few members, whose derivation says which of them stands for all."""
-    reader = _Reader(equations)
-    count, index = reader.members.count, reader.declared.index
-    shape = "a ring" if index.periodic else "an open chain"
-    shape = "all pairs" if reader.declared.pairs else shape
-    text = (
-        f"{count} members in the place of N, coupled in {shape} and counted from 0; with these "
-        "many, one of them has all its neighbours, and they are different ones"
-    )
-    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
-    names = reader.names_of(reader.declared.variables, reader.middle)
-    first = write_step("Members", text)
-    law = "the rates of this member, with i for its number, are those of every member"
-    last = write_step(
-        f"Generic member, i = {reader.middle}",
-        law,
-        lines=write_rates(names, (rates[name] for name in names)),
-    )
-    return replace(equations, steps=(first, *equations.steps, last))
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,11 @@ from coadjoint.families import Index
 from coadjoint.spec.copies import write_out_file
 from coadjoint.spec.core.faults import ExpressionError, list_names
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.members import has_sum, split_sums
+from coadjoint.spec.core.members import has_sum, split_sums, without_sums
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Name, Sum, walk
+from coadjoint.spec.core.tree import Index as Subscript
+from coadjoint.spec.core.tree import Member, Name, Node, walk
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.lax import Lax
@@ -134,6 +135,7 @@ def _with_family(
     assert large.hamiltonian is not None, large.name
     for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
         _check_total(source, formula)
+    _check_casimirs(source, large)
     kinds = [_kind_of(large, claim) for claim in large.conserved]
     members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
     loaded = None
@@ -163,32 +165,52 @@ def _select(spec: Spec, places: Sequence[int]) -> Spec:
 
 def _kind_of(spec: Spec, claim: Integral) -> str:
     """What a claim is about: a ``total``, each ``member``, or something ``other``."""
-    tree = claim.formula.sums
-    assert tree is not None, claim.formula.key
-    if claim.where:
-        return "other"
-    if isinstance(tree, Name):
-        return "total" if not _counts_pairs(spec, tree.name) else "other"
+    return "other" if claim.where else _kind_of_formula(spec, claim.formula)
+
+
+def _kind_of_formula(spec: Spec, formula: Formula) -> str:
+    """The same of a formula: only what is linear in sums follows for every number of members."""
+    tree, emitted = formula.sums, _list_emitted(spec)
+    assert tree is not None, formula.key
+    if isinstance(tree, Name | Subscript) and tree.name in emitted:
+        return _kind_of_tree(emitted[tree.name])
+    named = {node.name for node in walk(tree) if isinstance(node, Name | Subscript)}
+    return "other" if named & emitted.keys() else _kind_of_tree(tree)
+
+
+def _list_emitted(spec: Spec) -> dict[str, Node | None]:
+    """The trees of what claims may name; of the energy, which is kept at any rate, none."""
+    trees: dict[str, Node | None] = {"energy": None}
+    for each in spec.observables:
+        trees |= dict.fromkeys((each.name, *each.components), each.formula.sums)
+    return trees
+
+
+def _kind_of_tree(tree: Node | None) -> str:
+    """What a tree is about."""
+    if tree is None:
+        return "total"
     if not has_sum(tree):
-        named = {node.name for node in walk(tree) if isinstance(node, Name)}
-        emitted = {"energy", *(each.name for each in spec.observables)}
-        return "other" if named & emitted else "member"
+        return "member"
     try:
         sums = split_sums(tree)
     except ExpressionError:
         return "other"
-    return "other" if any(len(each.indices) > 1 for each, _ in sums) else "total"
+    free = any(isinstance(node, Member) for node in walk(without_sums(tree)))
+    return "other" if free or any(len(each.indices) > 1 for each, _ in sums) else "total"
 
 
-def _counts_pairs(spec: Spec, name: str) -> bool:
-    """Whether an observable is a sum over pairs; the energy is kept all the same."""
-    trees = [each.formula.sums for each in spec.observables if each.name == name]
-    return any(
-        isinstance(node, Sum) and len(node.indices) > 1
-        for tree in trees
-        if tree is not None
-        for node in walk(tree)
-    )
+def _check_casimirs(source: Source, spec: Spec) -> None:
+    """A claimed Casimir is one of each member, or a sum over members.
+
+    Raises:
+        SpecError: It is not: it may be one for few members alone.
+    """
+    for formula in spec.casimirs:
+        if _kind_of_formula(spec, formula) == "other":
+            problem = "the Casimir is neither of each member nor a sum over members"
+            expected = "a function of one member, or sums over members with constant factors"
+            raise source.fault(formula.path, problem, formula.in_one_line, expected)
 
 
 def _read_loaded(

@@ -249,6 +249,15 @@ def split_sums(tree: Node) -> list[tuple[Sum, Node]]:
     return [(each, _keep(tree, each)) for each in sums]
 
 
+def without_sums(tree: Node) -> Node:
+    """A tree with zeros in the place of its sums."""
+
+    def drop(node: Node, below: list[Node]) -> Node:
+        return Number(Fraction(0)) if isinstance(node, Sum) else rebuild(node, below)
+
+    return fold(tree, drop)
+
+
 def has_sum(tree: Node) -> bool:
     """Whether a tree holds a sum over members."""
     return any(isinstance(node, Sum) for node in walk(tree))
