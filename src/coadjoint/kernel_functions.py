@@ -28,9 +28,10 @@ _ENTRIES: Final = (
         name="jacobian_vector",
         summary="Derivative of rhs along a vector, the Jacobian times it",
         shape="(n, *batch)",
-        doc="""Only systems whose rates are loops have it: over a table of coefficients, as a free body
-on so(9) and above, or over equal members. Its second argument is the vector, in the forms of the state; `evaluate` and
-`bind` take one array, ``(2*n, *batch)``, with the vector below the state.""",
+        doc="""Only systems whose rates are loops have it: over a table of coefficients, as a free
+body on so(9) and above, or over equal members. Its second argument is the vector, in the forms of
+the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector below the state.
+""",
         by="state",
         below="vector",
         looped="only",
