@@ -252,8 +252,9 @@ class System(Functions):
                 end the trajectory. `Solution.events` has them by name.
             dense: Whether to keep the steps, from which `Solution.at` has the state at any time.
             seed: Of the noise of a system that has some: from 0 to 2^64 - 1. The same seed gives
-                the same paths, for any number of threads and every target but ``"c-fast"``, and a
-                member has its own by its place in the batch. Such a system has the methods
+                the same paths for any number of threads, and for the targets ``"c"`` and
+                ``"numpy"`` as far as these agree to the bit. A member has its own by its place in
+                the batch. Such a system has the methods
                 ``"heun"`` and ``"midpoint"``, which ``"auto"`` is, with ``step``; samples lie at
                 the ends of steps.
 
