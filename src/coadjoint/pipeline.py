@@ -92,7 +92,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     progress("render")
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED))
     texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
-    return Rendered(first, certificate, programs, texts)
+    return Rendered(equations=first, certificate=certificate, programs=programs, texts=texts)
 
 
 def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:

@@ -250,7 +250,7 @@ k = { positive = true, default = "1/4" }
 [lagrangian]
 l = "dot(Omega, diag(I)*Omega)/2 + k*Omega1*Omega3/(1 + k)"
 [constraints]
-c = "Omega3 == 0"
+c = "2*Omega3 == 0"
 """
 
 

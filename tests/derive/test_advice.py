@@ -313,6 +313,7 @@ ELSEWHERE = {
     "Declare that input and name it": "test_driving.py",
     "Declare the functions: [poisson] nambu = [...].": "test_nambu.py",
     "Declare the momentum map as map.": "test_bound_symmetries.py",
+    "Correct the surface or the body.": "test_contact.py",
 }
 VERBS = "Write|Add|Declare|Give|Choose|Put|Correct|Leave|Remove"
 START = re.compile(rf"(?:^|[.;] )((?:{VERBS})\b[^\n]*)")

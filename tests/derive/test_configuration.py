@@ -8,6 +8,7 @@ import sympy
 
 from coadjoint import pipeline
 from coadjoint.derive import derive, make_setting
+from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
 from coadjoint.derive.routes import euler_lagrange
 from coadjoint.errors import DerivationError, LimitError
@@ -135,6 +136,14 @@ def test_four_coupled_velocities_need_no_quadratic_lagrangian():
     check_accelerations(
         equations, lambda q, v: (1 + v @ v) * np.eye(4) + 2 * np.outer(v, v), lambda q, v: -q
     )
+
+
+def test_a_kinetic_energy_of_either_sign_bounds_no_free_motion():
+    """Its mass matrix is regular all the same; so it is of fewer coupled velocities."""
+    indefinite = ("dot(v, v)/2", "dot(v, v)/2 - 3*v1^2 + v1*v2 + v2*v3/3 + v3*v4/5")
+    equations = derive(spec(FREE, indefinite, *ALONE))
+    assert len(equations.exact.solves) == 1
+    assert bounds(equations) == ()
 
 
 def test_forces_on_four_coupled_velocities_act_along_their_momenta():

@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from math import cos, exp, isclose, log, pi, sin, sqrt
+from xml.etree import ElementTree as ET
 
 import pytest
 import sympy
 
 from coadjoint.derive import derive
 from coadjoint.derive.differences import tidy
+from coadjoint.derive.document import document
 from coadjoint.errors import DerivationError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
@@ -188,3 +190,30 @@ def test_differences_are_written_as_differences():
     far = {r: 1e9 + 1, s: 1e9, t: 1e9 + 1, m: 1}
     assert float(written.subs(far)) == 1.0
     assert tidy(r**2 + s**2, [(r, s)]) == r**2 + s**2
+
+
+def test_a_document_shows_the_generic_member_and_the_ends():
+    """Toda's equations as a book has them, in all formats."""
+    whole = document(derive(shipped("toda_lattice")))
+    generic, ends = whole.sections[:2]
+    assert [line.text for line in generic.lines] == [
+        "dq[i]/dt = p[i]",
+        "dp[i]/dt = -exp(-q[i+1] + q[i]) + exp(q[i-1] - q[i])",
+    ]
+    assert generic.lines[0].latex == r"\dot{q}^{(i)} &= p^{(i)}"
+    assert [line.text for line in ends.lines[1::2]] == [
+        "dp[0]/dt = -exp(q[0] - q[1])",
+        "dp[N-1]/dt = exp(-q[N-1] + q[N-2])",
+    ]
+    for line in (*generic.lines, *ends.lines):
+        ET.fromstring(line.mathml)
+    assert generic.law.endswith("the steps that follow are those of 4 members")
+
+
+def test_a_document_shows_sums_over_partners():
+    """The velocity of a vortex."""
+    (section, *_) = document(derive(shipped("point_vortices"))).sections
+    x = section.lines[2]
+    assert x.text.startswith("x_pairs[i] = sum(j != i, Gamma[j]*(-y[i] + y[j])/(2*pi*")
+    assert r"\sum_{j \ne i}" in x.latex
+    ET.fromstring(x.mathml)

@@ -59,12 +59,12 @@ def test_kernels_declare_blocks_and_mark_what_is_conserved_everywhere(rendered):
 
 
 def test_a_solution_gives_the_block_of_an_observable(rendered, tmp_path):
-    """S has a row for each component; its trace is twice the energy."""
+    """S is a matrix; its trace is twice the energy."""
     for name, text in rendered.texts.items():
         (tmp_path / name).write_text(text)
     solution = load_folder(tmp_path).simulate([1.0, 0.3, -0.8], (0, 2), samples=5, target="numpy")
-    assert solution["S"].shape == (9, 5)
-    assert np.array_equal(solution["S"][1], solution["S12"])
+    assert solution["S"].shape == (3, 3, 5)
+    assert np.array_equal(solution["S"][0, 1], solution["S12"])
     trace = solution["S11"] + solution["S22"] + solution["S33"]
     np.testing.assert_allclose(trace, 2 * solution["energy"], rtol=1e-14)  # three roundings
     assert solution["twice"].shape == (2, 5)

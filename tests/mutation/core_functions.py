@@ -192,7 +192,7 @@ CORE = (
     *core_of(
         "frames",
         "frames",
-        "along bracket _extend rates",
+        "along bracket _extend rates_apart",
         systems=(),
         tests=distributions.FRAMES,
         fallacies={

@@ -91,7 +91,7 @@ DISTRIBUTED = (
         "frames",
         "frames",
         (),
-        "rates: rewrite _1 - setting.sign * _2 -> setting.sign * _2",
+        "rates_apart: rewrite _1 - setting.sign * _2 -> setting.sign * _2",
         tests=FRAMES,
     ),
     *of(

@@ -49,7 +49,7 @@ def test_a_wrong_profile_leaves_the_plane():
     claim = Claim(
         statement, "rolling", decision.verdict, decision.method, 0, decision.point, decision.defect
     )
-    with pytest.raises(ClaimError, match="leaves the plane: correct the arm") as caught:
+    with pytest.raises(ClaimError, match="leaves what it rolls on: correct the arm") as caught:
         Certificate("ball", (claim,)).require()
     assert "refuted: the body stays on the plane: dot(Gamma, d(s)/dt) = 0" in str(caught.value)
     assert "Gamma3 = " in str(caught.value)

@@ -26,9 +26,9 @@ DRIVES = ("damped", "driven", "forced")
 
 
 def free_systems():
-    """Names of the shipped specs whose whole motion is declared, without constraints."""
+    """Names of the shipped specs whose whole motion is declared, without constraints or noise."""
     texts = {path.stem: path.read_text() for path in sorted(FOLDER.glob("*.toml"))}
-    bound = ("[constraints]", "[reduction]")
+    bound = ("[constraints]", "[reduction]", "[noise]")
     return [name for name, text in texts.items() if not any(each in text for each in bound)]
 
 

@@ -11,7 +11,8 @@ import pytest
 from markupsafe import escape
 
 from coadjoint.derive import derive
-from coadjoint.derive.document import ADDENDS, document, formula, formula_line
+from coadjoint.derive.document import document
+from coadjoint.derive.lines import ADDENDS, formula, formula_line
 from coadjoint.derive.records import symbol
 from coadjoint.exact import Field
 from coadjoint.render.document import FORMATS, WIDTH, escape_latex, render_document

@@ -15,6 +15,7 @@ from coadjoint.render.environment import (
     render_templates,
     template_source,
 )
+from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.kernels import TEMPLATES
 from coadjoint.render.targets import FOLDERS
 from coadjoint.resources import derivations_folder, targets_folder, templates_folder
@@ -24,7 +25,8 @@ def test_every_kernel_template_is_rendered():
     """No template of a target lies unused, and none that is rendered is missing."""
     folder = templates_folder()
     present = {path.relative_to(folder).as_posix() for path in folder.rglob("*.j2")}
-    assert {name for name in present if not name.startswith("document/")} == set(TEMPLATES.values())
+    rendered = {*TEMPLATES.values(), *(template for template, _ in FAMILY_FILES.values())}
+    assert {name for name in present if not name.startswith("document/")} == rendered
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}
     assert targets == set(FOLDERS)
     assert {path.name for path in folder.iterdir() if path.is_dir()} >= targets

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from coadjoint import load, pipeline
-from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
 from coadjoint.solve import family as families
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.family_steps import load as load_steps
+from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import RING, VORTICES
 
@@ -141,3 +143,23 @@ def test_pickled_systems_keep_their_size():
 
     copy = pickle.loads(pickle.dumps(system.resize({"i": 7})))
     assert copy.STATE.size == 21
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853"])
+def test_wrong_steps_are_not_taken(tmp_path, method):
+    """A fresh object whose steps are not those of the twin is refused before it is used."""
+    texts = pipeline.render(read_spec_text(RING, "ring.toml")).texts
+    wrong = {"rk4": ("+ half * k[n]", "+ h * k[n]"), "dop853": ("five = five +", "five = part *")}
+    for file, text in texts.items():
+        (tmp_path / file).write_text(text.replace(*wrong[method]) if file == "solver.c" else text)
+    system = load_folder(tmp_path)
+    with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
+        load_steps(system, Choice(method, {"rk4": 4, "dop853": 8}[method]), "c")
+
+
+def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):
+    """Two vortices in one place: sweeps of steps in C leave that to the twin, which says so."""
+    system = vortices.resize({"i": 5})
+    state = np.array([0.0, 0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 1.0, 0.0])
+    run = system.simulate(state, (0, 1), step=0.01, method="rk4", progress=False)
+    assert run.status == "NONFINITE"

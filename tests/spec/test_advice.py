@@ -493,6 +493,20 @@ ADVICE = [
     ),
     (
         BY_BRACKETS,
+        write('= "e3" }', '= "sqrt(5)*e3" }'),
+        'Name a parameter here, with the default "sqrt(5)"',
+        write("sqrt(5)*e3", "k*e3")
+        + write("[variables]", '[parameters]\nk = { default = "sqrt(5)" }\n[variables]'),
+    ),
+    (
+        BY_BRACKETS,
+        write('= "e3" }', '= "2*pi*e3" }'),
+        'Name a parameter here, with the default "pi"',
+        write("2*pi*e3", "2*k*e3")
+        + write("[variables]", '[parameters]\nk = { default = "pi" }\n[variables]'),
+    ),
+    (
+        BY_BRACKETS,
         write("[variables]", '[time]\nname = "t"\n[variables]') + write('= "e3" }', '= "t*e3" }'),
         "Put a parameter in its place.",
         write('[time]\nname = "t"\n', "[parameters]\nt_0 = { default = 1 }\n")

@@ -125,7 +125,7 @@ def _read(system: System, path: Path, one: Members) -> Members:
     known = [each.components for each in tables]
     for name in columns:
         if not any(name in names for names in known):
-            listed = ", ".join(each for names in known for each in names)
+            listed = ", ".join(each.listed for each in tables if each)
             raise _refuse(f"{path}: the column {name!r} is none of {listed}.")
     count = len(next(iter(columns.values())))
     state = np.tile(np.asarray(one.state)[:, np.newaxis], count)

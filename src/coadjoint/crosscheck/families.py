@@ -7,7 +7,8 @@ system. Goes out: a `Report`, or a `CrossCheckError`.
              rest is what the templates print
     rung 4   every target, for the numbers of members of both windows, against their Equations to 50
              digits: these were written out member by member, and know nothing of loops
-    rung 5   NumPy equals every exact target bit for bit, for several numbers of members
+    rung 5   NumPy equals every exact target bit for bit, for several numbers of members; steps in C
+             are those of their twins
 
 Read next: `coadjoint.crosscheck.ladder`.
 """
@@ -40,6 +41,8 @@ from coadjoint.render.families import FamilyContext
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c.loader import ROUNDINGS
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.family_steps import compare_steps, load
 from coadjoint.spec.core.members import member_name
 
 if TYPE_CHECKING:
@@ -55,6 +58,8 @@ POINTS: Final = 24
 #: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors
 #: have, and no multiple of them.
 SIZES: Final = (7, 17, 64)
+#: Methods whose steps are compared with those of their twins.
+METHODS: Final = (Choice("rk4", 4), Choice("dop853", 8))
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
 
@@ -166,6 +171,9 @@ def crosscheck_family(
         exact = set() if _calls(each) else {t for t in counts if t in BUILDS[t].exact}
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
+    for target in (each for each in chosen if BUILDS[each].needs_compiler):
+        for choice in METHODS:
+            compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):
         rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"

@@ -10,48 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import sympy
-from sympy.printing.mathml import mathml
-
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.records import Emitted, Left, Step, is_of_kernel, symbol
+from coadjoint.derive.generic import show_members
+from coadjoint.derive.lines import Section, formula_line
+from coadjoint.derive.records import Emitted, Step, symbol
 from coadjoint.derive.setting import Declared
-from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact import element_text
 from coadjoint.spec.model import Definition, Reconstructed
-
-#: Addends on one line of LaTeX; nine fill a landscape page.
-ADDENDS = 9
-
-
-@dataclass(frozen=True)
-class Line:
-    """A formula, or ``left = right``, as text, LaTeX and presentation MathML."""
-
-    text: str
-    latex: str
-    mathml: str
-
-
-@dataclass(frozen=True)
-class Section:
-    """One step of a derivation, or one part of what was found out.
-
-    Attributes:
-        title: What is done.
-        law: The general law as plain text.
-        law_latex: The same law as LaTeX; empty where it is words.
-        lines: What the law gives here.
-        words: Names and what is said of them, both free text.
-        table: Rows of formulas, the first one and the first column being heads; empty if none.
-    """
-
-    title: str
-    law: str
-    law_latex: str
-    lines: tuple[Line, ...]
-    words: tuple[tuple[str, str], ...] = ()
-    table: tuple[tuple[Line, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -75,6 +41,8 @@ def document(equations: Equations) -> Document:
     """The document of a derivation: its steps, what is emitted as well, and declared charts."""
     spec = equations.spec
     sections = [_section(equations, step) for step in equations.steps]
+    if spec.family is not None:
+        sections[:0] = show_members(equations)
     if spec.definitions:
         sections.insert(0, _definitions(spec.definitions))
     sections += [*_observables(equations), *_units(equations)]
@@ -155,52 +123,6 @@ def _section(equations: Equations, step: Step) -> Section:
     field = equations.setting.field
     lines = tuple(formula_line(field, left, right) for left, right in step.lines)
     return Section(title=step.title, law=step.text, law_latex=step.latex, lines=lines)
-
-
-def formula(field: Field, element: Element) -> Line:
-    """An element in every format."""
-    terms = _terms(field, element)
-    return Line(element_text(field, element), _latex(terms), f"<math>{_mathml(terms)}</math>")
-
-
-def formula_line(field: Field, left: Left, right: Element) -> Line:
-    """``left = right`` in every format."""
-    terms = _terms(field, right)
-    return Line(
-        f"{left.text} = {element_text(field, right)}",
-        f"{left.latex} &= {_latex(terms)}",
-        f"<math><mrow>{left.mathml}<mo>=</mo>{_mathml(terms)}</mrow></math>",
-    )
-
-
-def _terms(field: Field, element: Element) -> list[sympy.Expr]:
-    """Addends in the order in which SymPy prints them."""
-    whole = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(element)))
-    return list(whole.as_ordered_terms())
-
-
-def _latex(terms: list[sympy.Expr]) -> str:
-    """A sum, continued on further lines if it is long."""
-    names = {s: symbol(s.name).latex for s in _of_kernel(terms)}
-    texts = [sympy.latex(term, symbol_names=names) for term in terms]
-    signed = [text if text.startswith("-") else f"+ {text}" for text in texts]
-    rows = [" ".join(signed[n : n + ADDENDS]) for n in range(0, len(signed), ADDENDS)]
-    return " \\\\\n&\\quad ".join(rows).removeprefix("+ ")
-
-
-def _mathml(terms: list[sympy.Expr]) -> str:
-    """A sum as MathML, which browsers show without any script."""
-    text: str = mathml(sympy.Add(*terms), printer="presentation")
-    for s in _of_kernel(terms):
-        text = text.replace(mathml(s, printer="presentation"), symbol(s.name).mathml)
-    # The one named entity that SymPy prints is none of XML's own, so readers of XML refuse it.
-    return text.replace("&InvisibleTimes;", "&#x2062;")
-
-
-def _of_kernel(terms: list[sympy.Expr]) -> list[sympy.Symbol]:
-    """The symbols whose names are those of kernels, in order."""
-    symbols = {s for term in terms for s in term.free_symbols if is_of_kernel(s.name)}
-    return sorted(symbols, key=str)
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

@@ -111,7 +111,7 @@ def _pivots(equations: Equations) -> list[tuple[Bound, Element]]:
 
     A free motion may have a kinetic energy of either sign, which is regular all the same.
     """
-    if equations.distribution is None:
+    if equations.distribution is None or not equations.spec.in_frame:
         return []
     kept = enumerate(equations.distribution.kept)
     reactions = {multiplier_name(n): equation.reaction for n, (equation, _) in kept}

@@ -66,6 +66,17 @@ def rate(name: str) -> Left:
     return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", fraction)
 
 
+def member(of: Left, place: str) -> Left:
+    """What a member has, by its place: ``q[i+1]``.
+
+    >>> member(symbol("q"), "i+1").text, member(symbol("q"), "i+1").latex
+    ('q[i+1]', 'q^{(i+1)}')
+    """
+    inner = f"<mrow><mo>(</mo><mi>{place}</mi><mo>)</mo></mrow>"
+    raised = f"<msup><mrow>{of.mathml}</mrow>{inner}</msup>"
+    return Left(f"{of.text}[{place}]", f"{of.latex}^{{({place})}}", raised)
+
+
 def partial(function: str, name: str) -> Left:
     """A partial derivative: ``dl/dOmega1``."""
     by = symbol(name)

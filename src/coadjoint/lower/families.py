@@ -173,23 +173,29 @@ class _Lowering:
 
     def __init__(self, family: Family) -> None:
         self.family = family
-        rows = {symbol: ("state", 0, n) for n, symbol in enumerate(family.states)}
-        first = len(family.shared)
-        rows |= {symbol: ("parameters", first, n) for n, symbol in enumerate(family.indexed)}
+        rows = {
+            symbol: Read(name="", array="state", rows=0, blocks=n)
+            for n, symbol in enumerate(family.states)
+        }
+        rows |= {
+            symbol: Read(name="", array="parameters", rows=len(family.shared), blocks=n)
+            for n, symbol in enumerate(family.indexed)
+        }
         #: Symbols of member i, and not of its partner or of all.
         self._own = frozenset((*rows, *family.neighbours.values()))
         naming = _Names()
         self._reads: dict[Symbol, Read] = {}
         for symbol, row in rows.items():
-            self._reads[symbol] = Read(naming.find(symbol.name), *row)
+            self._reads[symbol] = replace(row, name=naming.find(symbol.name))
         for n, symbol in enumerate(family.shared):
-            self._reads[symbol] = Read(naming.find(symbol.name), "parameters", n, 0, shift=None)
+            name = naming.find(symbol.name)
+            self._reads[symbol] = Read(name=name, array="parameters", rows=n, blocks=0, shift=None)
         for (component, shift), symbol in family.neighbours.items():
             name = naming.find(f"{component.name}_{'p' if shift > 0 else 'm'}{abs(shift)}")
-            self._reads[symbol] = Read(name, *rows[component], shift=shift)
+            self._reads[symbol] = replace(rows[component], name=name, shift=shift)
         for component, symbol in family.partners.items():
             name = naming.find(f"{component.name}_j")
-            self._reads[symbol] = Read(name, *rows[component], of_partner=True)
+            self._reads[symbol] = replace(rows[component], name=name, of_partner=True)
         #: The vector of a derivative, which stands below the state.
         self._vector = [
             replace(

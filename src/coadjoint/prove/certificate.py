@@ -46,8 +46,8 @@ class Claim:
         statement: What is claimed, e.g. ``dot(Gamma, Gamma) is a Casimir``.
         kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
             ``conserved``, ``constraint``, ``integrability``, ``momentum``, ``integrals``,
-            ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket`` or
-            ``transformation``.
+            ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket``,
+            ``noise`` or ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.
@@ -208,8 +208,8 @@ _REWRITE = (
 _FIX = "Correct the claim, or the formulas of the spec that contradict it."
 _FIXES = MappingProxyType(
     {
-        "rolling": "The body slips or leaves the plane: correct the arm in [rolling], the profile "
-        "of the body that it stands for, or the constraints."
+        "rolling": "The body slips or leaves what it rolls on: correct the arm in [rolling], the "
+        "profile of the body that it stands for, the surfaces, or the constraints."
     }
 )
 

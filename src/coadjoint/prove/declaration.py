@@ -139,7 +139,7 @@ def family_lines(family: Family) -> tuple[str, ...]:
     ...     small=1,
     ... )
     >>> family_lines(ring)
-    ('dq[i]/dt = -q[i] + q[i-1]',)
+    ('dq[i]/dt = q[i-1] - q[i]',)
     """
     i, own = family.index.name, (*family.states, *family.indexed)
 

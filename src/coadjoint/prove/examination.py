@@ -15,7 +15,8 @@ from time import perf_counter
 from typing import Any
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.derive.document import Document, Line, Section, formula, formula_line
+from coadjoint.derive.document import Document
+from coadjoint.derive.lines import Line, Section, formula, formula_line
 from coadjoint.derive.records import algebra_bracket, symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import CHANCE

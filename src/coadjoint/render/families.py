@@ -8,7 +8,7 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
@@ -16,6 +16,7 @@ from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
+from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.kernels import (
     declaration,
@@ -29,6 +30,7 @@ from coadjoint.render.kernels import (
     tuple_text,
     wrap,
 )
+from coadjoint.render.tables import fill
 
 
 @dataclass(frozen=True)
@@ -197,11 +199,11 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         ),
         totals=tuple(
             TotalsText(
-                _arrange(each.part, loops.is_periodic, target, ""),
-                each.over,
-                each.before,
-                each.after,
-                first,
+                part=_arrange(each.part, loops.is_periodic, target, ""),
+                over=each.over,
+                before=each.before,
+                after=each.after,
+                first=first,
             )
             for each, first in zip(loops.totals, firsts, strict=True)
         ),
@@ -278,6 +280,8 @@ FAMILY_FILES: Final = {
     "kernel.py": ("numpy/family.py.j2", "numpy"),
     "kernel.c": ("c/family.c.j2", "c"),
     "kernel.h": ("c/family.h.j2", "c"),
+    "solver.c": ("c/family_solver.c.j2", "c"),
+    "solver.h": ("c/family_solver.h.j2", "c"),
     "kernel_python.py": ("python/family_python.py.j2", "python"),
 }
 
@@ -297,7 +301,7 @@ def render_family(context: FamilyContext) -> dict[str, str]:
 def _render_file(context: FamilyContext, template: str, target: str, identity: str) -> str:
     """One file, given the id."""
     programs = [part.program for loops in context.loops.values() for part in loops.parts]
-    shared = rows_of(context.shared)
+    shared, table = rows_of(context.shared), dop853()
     values: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
@@ -330,6 +334,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
         ],
+        "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "
             f"periodic={context.index.periodic}), {context.small}"

@@ -399,7 +399,7 @@ def check_rows(array: Array, quantities: Quantities, name: str, system: str) -> 
     if array.ndim == 0 or array.shape[0] != quantities.size:
         raise KernelArgumentError(
             f"the shape of {name} of {system} is {array.shape}; expected ({quantities.size},) or "
-            f"({quantities.size}, *batch), the rows being {', '.join(quantities.components)}."
+            f"({quantities.size}, *batch), the rows being {quantities.listed}."
             f"{suggest_axes(array.shape, quantities.size, name)}",
             found=list(array.shape),
             expected=quantities.size,

@@ -100,6 +100,7 @@ def describe_run(solution: Solution) -> dict[str, Any]:
         "status": np.asarray(solution.status).tolist(),
         "message": np.asarray(solution.message).tolist(),
         **solution.settings,
+        **({"seed": str(solution.course.seed)} if solution.course.seed is not None else {}),
         **versions,
         "course": solution.course.as_record(),
         **({"events": describe_events(solution.events)} if solution.events else {}),
@@ -143,6 +144,8 @@ def rebuild(
         atol=said.get("atol"),
         step=said.get("step"),
         stepwise=said.get("stepwise", ""),
+        seed=int(said["seed"]) if "seed" in said else None,
+        keeps=said.get("keeps", ""),
         codes=None if codes is None else codes.reshape(status.shape),
         **_read_course(said["course"], path),
     )

@@ -107,7 +107,7 @@ class Function(Signal):
         """
         where, given = f"of the function inputs at t = {time:.12g}", self.function(float(time))
         if given is None:
-            size, wanted = self.system.INPUTS.size, ", ".join(self.system.INPUTS.components)
+            size, wanted = self.system.INPUTS.size, self.system.INPUTS.listed
             raise KernelArgumentError(
                 f"{self.system.name}: the function inputs returns None at t = {time:.12g}; "
                 f"expected ({size},): {wanted}, or values by name. Write return before its value.",
@@ -320,7 +320,7 @@ def _check_one(system: System, values: Array, where: str) -> Array:
     size = system.INPUTS.size
     if values.shape != (size,):
         wanted = f"the shape {values.shape}, expected ({size},): "
-        wanted += ", ".join(system.INPUTS.components)
+        wanted += system.INPUTS.listed
         raise KernelArgumentError(
             f"values {where} have {wanted}, which all members share."
             if where

@@ -20,6 +20,8 @@ from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.family_steps import find_stepper
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
@@ -147,6 +149,8 @@ def _find_stepper(system: System, request: Request, signal: Signal | Array | Non
     if not request.stepwise:
         members = math.prod(request.state.shape[1:])
         return system._solvers.get(request.choice, request.target, members)
+    if isinstance(system, FamilySystem):
+        return find_stepper(system, request.choice, request.target)
     function = signal if isinstance(signal, Function) else None
     return StepwiseStepper(system, request.choice, request.target, function)
 

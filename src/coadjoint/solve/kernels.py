@@ -125,6 +125,15 @@ class Kernels:
         self._loaded[target].prepare(function)
         return self._loaded[target]
 
+    def find(self, target: str, function: str) -> int:
+        """Where a function of a kernel in C stands, which is compiled if need be.
+
+        Raises:
+            CompilerError: It cannot be compiled.
+            CrossCheckError: It differs from the NumPy kernel.
+        """
+        return self._prepare(target, function).find(function)
+
     def _load(self, target: str) -> Kernel:
         """The kernel of a target itself."""
         return BUILDS[target].load(self.system, target, self._numpy)

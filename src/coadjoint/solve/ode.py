@@ -13,6 +13,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, find_slopes, pack_parameters
 from coadjoint.solve.driving import Function, Linear, Previous, make_signal
+from coadjoint.solve.noisy import has_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,6 +41,13 @@ class Ode:
     """
 
     def __init__(self, system: System, parameters: Any, inputs: Any, target: str) -> None:
+        if has_noise(system):
+            raise KernelArgumentError(
+                f"Wiener processes move the state of {system.name}, and integrators of ordinary "
+                "equations know none; expected a system without noise. System.simulate follows "
+                "its paths.",
+                found=system.name,
+            )
         self.system, self._target = system, target
         self.parameters = pack_parameters(system, parameters).copy()
         if self.parameters.ndim != 1:

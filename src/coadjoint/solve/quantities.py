@@ -6,13 +6,16 @@ rows, light to import.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from html import escape
 from typing import Any
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError
+
+#: Most names, or values, that are listed for a person.
+LISTED = 40
 
 
 class Quantities(Mapping[str, Quantity]):
@@ -84,6 +87,11 @@ class Quantities(Mapping[str, Quantity]):
             return self._by_name[name]
         return next(q for q in self.values() if name in q.components)
 
+    @property
+    def listed(self) -> str:
+        """The names of the rows for a message: of many the first ones and the last."""
+        return _list(self.components)
+
     def __reduce__(self) -> tuple[type[Quantities], tuple[Quantity, ...]]:
         """Pickled as the quantities alone; the rest is made of them again."""
         return Quantities, tuple(self.values())
@@ -91,7 +99,7 @@ class Quantities(Mapping[str, Quantity]):
     def _table(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = [("name", "shape", "unit", "default")]
         for q in self.values():
-            default = "" if q.default is None else ", ".join(f"{value:g}" for value in q.default)
+            default = _list([f"{value:g}" for value in q.default or ()])
             rows.append((q.name, str(q.shape), q.unit, default))
         return rows
 
@@ -108,3 +116,14 @@ class Quantities(Mapping[str, Quantity]):
         head, *rows = [[escape(cell) for cell in row] for row in self._table()]
         body = "".join("<tr><td>" + "</td><td>".join(row) + "</td></tr>" for row in rows)
         return f"<table><tr><th>{'</th><th>'.join(head)}</th></tr>{body}</table>"
+
+
+def _list(texts: Sequence[str]) -> str:
+    """Texts in order; of many the first ones and the last.
+
+    >>> _list(["a", "b"]), len(_list(["0"] * 30000))
+    ('a, b', 123)
+    """
+    if len(texts) > LISTED:
+        texts = [*texts[: LISTED - 1], "...", texts[-1]]
+    return ", ".join(texts)

@@ -364,11 +364,7 @@ class DormandPrince8:
             if fresh.any():
                 lanes.step = np.where(fresh, self._first(lanes, most), lanes.step)
         h = find_fixed_step(self.size, most) if self.size > 0 else _free(lanes, lanes.step, most)
-        k: list[Array] = []
-        x = lanes.state
-        for stage in range(STAGES):
-            k.append(self.rates(lanes, self.table.nodes[stage] * h, x))
-            x = lanes.state + h * self._add(k, stage + 1)
+        k, x = self._find_stages(lanes, h)
         if self.branches:
             x = _check_end(self.rates, lanes, h, x)
         accepted = np.ones(h.shape, bool)
@@ -382,6 +378,25 @@ class DormandPrince8:
             path=lambda after: _evaluate(start, parts(), after / h),
             coefficients=lambda: _multiply_out(start, parts(), h),
         )
+
+    def _find_stages(self, lanes: Lanes, h: Array) -> tuple[list[Array], Array]:
+        """The rates of all stages, and the end of the step."""
+        k: list[Array] = []
+        x = lanes.state
+        for stage in range(STAGES):
+            k.append(self.rates(lanes, self.table.nodes[stage] * h, x))
+            x = lanes.state + h * self._add(k, stage + 1)
+        return k, x
+
+    def _find_errors(self, lanes: Lanes, k: list[Array], end: Array) -> tuple[Array, Array]:
+        """The squares of the errors that orders 5 and 3 tell of, in units of what is allowed."""
+        sizes = larger(np.abs(lanes.state), np.abs(end))
+        top = np.fmax.reduce(sizes, axis=0, initial=0.0)
+        # below the roundings of the largest component no error can be seen
+        least = larger(np.full(top.shape, self.atol), ROUNDING * top)
+        unit = 1.0 / (least + self.rtol * sizes)
+        five, three = (_square(self._add(k, row) * unit) for row in (FIFTH, THIRD))
+        return five, three
 
     def _add(self, k: list[Array], row: int) -> Array:
         """The sum of a row of the table over rates."""
@@ -411,12 +426,7 @@ class DormandPrince8:
 
     def _control(self, lanes: Lanes, h: Array, most: Array, k: list[Array], end: Array) -> Mask:
         """Whether the error is small enough, and the next step."""
-        sizes = larger(np.abs(lanes.state), np.abs(end))
-        top = np.fmax.reduce(sizes, axis=0, initial=0.0)
-        # below the roundings of the largest component no error can be seen
-        least = larger(np.full(h.shape, self.atol), ROUNDING * top)
-        unit = 1.0 / (least + self.rtol * sizes)
-        five, three = (_square(self._add(k, row) * unit) for row in (FIFTH, THIRD))
+        five, three = self._find_errors(lanes, k, end)
         part, rest = h * five, (five + 0.01 * three) * float(len(end))
         accepted: Mask = (part * part < rest) | (rest == 0.0)
         octaves = (0.5 * rough_log2(rest) - rough_log2(part)) * 0.125 - 0.15200309344504997

@@ -399,7 +399,7 @@ class System(Functions):
         tables = {"state": self.STATE, "parameters": self.PARAMETERS}
         driving = {"inputs": self.INPUTS, "time": self.TIME}
         tables |= {name: quantities for name, quantities in driving.items() if quantities}
-        told = (f"{name} {', '.join(q.components) or 'none'}" for name, q in tables.items())
+        told = (f"{name} {q.listed or 'none'}" for name, q in tables.items())
         return f"<System {self.name}: {'; '.join(told)}>"
 
 

@@ -94,6 +94,10 @@ class Kernel:
             CrossCheckError: What was compiled differs from the NumPy kernel.
         """
 
+    def find(self, function: str) -> int:
+        """The address of a function that is ready to be called from C."""
+        raise NotImplementedError
+
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
         """What evaluates all members, called one after the other."""
         raise NotImplementedError

@@ -23,7 +23,18 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Binary, Index, Name, Negate, Node, Number, Power, fold, walk
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Index,
+    Name,
+    Negate,
+    Node,
+    Number,
+    Power,
+    fold,
+    walk,
+)
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
@@ -171,12 +182,13 @@ class _Reading:
     """The reading of one text as a combination of basis vectors, or as a coefficient."""
 
     def __init__(self, basis: Sequence[str], scalars: Scalars, wanted: tuple[str, str]) -> None:
+        self._text = ""
         self.places = {name: place for place, name in enumerate(basis)}
         self.scalars, self.wanted = scalars, wanted
 
     def read(self, text: str) -> _Linear:
         """The coefficients of the vectors, or of 1 where the basis is empty."""
-        tree = read_expression(text)
+        tree, self._text = read_expression(text), text
         self.scalars.check_names(tree)
         scope: Mapping[str, Shape] = {**self.scalars.shapes, **dict.fromkeys(self.places, ())}
         shape_of(tree, scope)
@@ -244,7 +256,15 @@ class _Reading:
 
     def _refusal(self, node: Node) -> ExpressionError:
         what, expected = self.wanted
-        return ExpressionError(f"this is not {what}", node.start, node.end, expected=expected)
+        hint = ""
+        if isinstance(node, Call) and not any(isinstance(n, Name | Index) for n in walk(node)):
+            part = self._text[node.start : node.end]
+            hint = (
+                f'Name a parameter here, with the default "{part}": laws are proved for all values.'
+            )
+        return ExpressionError(
+            f"this is not {what}", node.start, node.end, expected=expected, hint=hint
+        )
 
 
 def _multiply(a: _Linear, factor: Coefficient) -> _Linear:

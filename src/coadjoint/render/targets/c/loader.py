@@ -70,6 +70,10 @@ class CKernel(Kernel):
         functions = [function] if function else list(self._system.functions)
         return partial(_verify, self._system, self._build, self._reference, functions)
 
+    def find(self, function: str) -> int:
+        """The address of a function of its object."""
+        return self._libraries[function].find(function)
+
     def calls(self, function: str, call: Call) -> Iterator[Callable[[], None]]:
         """C calls that together evaluate all members."""
         return _calls(self._libraries[function], function, call)

@@ -1,0 +1,101 @@
+"""The generic member of a system of equal members, as sections of a document.
+
+Comes in: the Equations of a few members. Goes out: the rates of member i, and of the members at the
+ends of an open chain. Read next: `coadjoint.derive.indexed`, which reads them off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import sympy
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.indexed import derive_family
+from coadjoint.derive.lines import Line, Section, write_line
+from coadjoint.derive.records import Left, member, rate, symbol
+from coadjoint.families import Family
+
+Names = Mapping[sympy.Symbol, Left]
+
+
+def show_members(equations: Equations) -> Iterator[Section]:
+    """The equations that are the same for every number of members."""
+    family = derive_family(equations)
+    i, written = family.index.name, len(equations.spec.state)
+    declared = equations.spec.family
+    assert declared is not None, equations.spec.name
+    kind = "a ring" if family.index.periodic else "an open chain" if family.ends else "a system"
+    written //= len(declared.variables)
+    names = _name_around(family, i, {n: f"{i}{n:+d}" for n in _list_shifts(family)})
+    pairs = [_write_pairs(names, each.symbol, each.term, family) for each in family.pair_sums]
+    yield Section(
+        title=f"Equations of member {i}",
+        law=f"{kind} of N members, N >= {family.small}; the steps that follow are those of "
+        f"{written} members",
+        law_latex="",
+        lines=(*_write_rates(names, family.states, family.rates), *pairs),
+    )
+    ends = [
+        line
+        for end, rates in family.ends.items()
+        for line in _write_rates(_name_at(family, end), family.states, rates)
+    ]
+    if ends:
+        law = "members that lack a neighbour, the first one being 0 and the last one N-1"
+        yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends))
+
+
+def _list_shifts(family: Family) -> set[int]:
+    """Where the neighbours are that have symbols."""
+    return {shift for _, shift in family.neighbours}
+
+
+def _name_at(family: Family, end: int) -> Names:
+    """How symbols are written of a member at an end, counted from 0, or from N as -1, -2, ..."""
+    places = {n: str(end + n) if end >= 0 else f"N{end + n}" for n in (0, *_list_shifts(family))}
+    return _name_around(family, places[0], places)
+
+
+def _name_around(family: Family, own: str, near: Mapping[int, str]) -> Names:
+    """How symbols are written; those of the member itself come first."""
+    names = {s: member(symbol(s.name), own) for s in (*family.states, *family.indexed)}
+    names |= {s: member(symbol(of.name), near[n]) for (of, n), s in family.neighbours.items()}
+    names |= {s: member(symbol(of.name), _other(family)) for of, s in family.partners.items()}
+    return names | {each.symbol: member(symbol(each.symbol.name), own) for each in family.pair_sums}
+
+
+def _other(family: Family) -> str:
+    """The index of a partner."""
+    return "j" if family.index.name != "j" else "k"
+
+
+def _write_rates(
+    names: Names, states: Sequence[sympy.Symbol], rates: Sequence[sympy.Expr]
+) -> Iterator[Line]:
+    """The rates of a member."""
+    for state, value in zip(states, rates, strict=True):
+        own, plain = names[state], symbol(state.name)
+        latex = rate(state.name).latex + own.latex.removeprefix(plain.latex)
+        maths = rate(state.name).mathml.replace(plain.mathml, own.mathml)
+        left = Left(f"d{own.text}/dt", latex, maths)
+        yield write_line(left, _write(value, names), value.as_ordered_terms(), names)
+
+
+def _write_pairs(names: Names, of: sympy.Symbol, term: sympy.Expr, family: Family) -> Line:
+    """A sum over the partners of a member."""
+    i, j = family.index.name, _other(family)
+    plain = write_line(names[of], _write(term, names), [term], names)
+    under = f"<mrow><mi>{j}</mi><mo>&#x2260;</mo><mi>{i}</mi></mrow>"
+    total = f"<munder><mo>&#x2211;</mo>{under}</munder>"
+    return Line(
+        f"{names[of].text} = sum({j} != {i}, {_write(term, names)})",
+        plain.latex.replace("&= ", rf"&= \sum_{{{j} \ne {i}}} ", 1),
+        plain.mathml.replace("<mo>=</mo>", f"<mo>=</mo>{total}", 1),
+    )
+
+
+def _write(value: sympy.Expr, names: Names) -> str:
+    """An expression as text."""
+    told = str(value.xreplace({s: sympy.Symbol(left.text) for s, left in names.items()}))
+    return told.replace("**", "^")
