@@ -20,7 +20,7 @@ def of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (
     *of(
-        "families",
+        "algebra/families",
         "hat: rewrite {_1: 1, _2: -1} -> {_1: -1, _2: 1}",
         "_rotations: rewrite {_1: 1, _2: -1} -> {_1: -1, _2: 1}",
         "se: rewrite {_1: -1, _2: 1} -> {_1: 1, _2: -1}",
@@ -166,7 +166,7 @@ MUTANTS = (
         tests=("tests/crosscheck/test_driven.py",),
     ),
     *of(
-        "families",
+        "algebra/families",
         "hat: flip 1 in return",
         "_columns: rewrite unit(i, column) -> unit(i, column, -1)",
         "hat: reverse axis",
