@@ -15,7 +15,7 @@ from types import MappingProxyType
 from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, regenerate
-from coadjoint.solve.family import resize
+from coadjoint.solve.family import lacks_size, resize
 from coadjoint.solve.system import System, load_folder
 
 
@@ -56,4 +56,4 @@ def load(
         raise error
     note_use(folder)
     system = load_folder(folder / source.stem)
-    return resize(system, sizes) if sizes else system
+    return resize(system, sizes) if sizes or lacks_size(system) else system

@@ -314,6 +314,8 @@ ELSEWHERE = {
     "Declare the functions: [poisson] nambu = [...].": "test_nambu.py",
     "Declare the momentum map as map.": "test_bound_symmetries.py",
     "Correct the surface or the body.": "test_contact.py",
+    "Write it as half the sum of both.": "test_indexed.py",
+    "Write the energy as sums over members.": "where the reader let other members into the energy",
 }
 VERBS = "Write|Add|Declare|Give|Choose|Put|Correct|Leave|Remove"
 START = re.compile(rf"(?:^|[.;] )((?:{VERBS})\b[^\n]*)")

@@ -19,6 +19,7 @@ ROUTE_MUTANTS = (
     *algebras.BODY_ROUTES,
     *algebras.PAIRS,
     *coordinates.BRACKETS,
+    *coordinates.FIRST_ORDER,
     *coordinates.LAGRANGE,
     *coordinates.HAMILTON,
     *coordinates.NEWTON,

@@ -58,6 +58,45 @@ BRACKETS = (
     ),
 )
 
+#: Singular Lagrangians, with rates by hand.
+SINGULAR = (
+    "tests/derive/test_first_order.py -k 'vortices_turn or gives_the_rest or declared_to_follow or moves_with_time'",
+)
+
+FIRST_ORDER = (
+    *of(
+        "first-order",
+        "mechanics/bound",
+        (),
+        (
+            "Form.two_form: rewrite slopes[j][i] - slopes[i][j] -> slopes[i][j] - slopes[j][i]",
+            "omega of the other sign",
+        ),
+        tests=SINGULAR,
+    ),
+    *of(
+        "first-order",
+        "mechanics/bound",
+        (),
+        "Form.put: rewrite named[x] + own * slope -> named[x]",
+        tests=("tests/derive/test_first_order.py -k give_momenta_and_multipliers",),
+    ),
+    *of(
+        "first-order",
+        "mechanics/first_order",
+        (),
+        "_whole_form: rewrite p - slope -> p + slope",
+        tests=SINGULAR,
+    ),
+    *of(
+        "first-order",
+        "routes/first_order",
+        (),
+        "derive: rewrite explicit(_1, _2) + _3 -> explicit(_1, _2)",
+        tests=SINGULAR,
+    ),
+)
+
 LAGRANGE = (
     *of(
         "euler-lagrange",

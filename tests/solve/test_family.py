@@ -129,11 +129,14 @@ def test_a_system_without_an_index_has_no_size(ring):
 
 
 def test_loading_takes_sizes(tmp_path):
-    """The number of members is chosen when a spec is loaded; the kernels are the same."""
-    (tmp_path / "spins.toml").write_text(RING)
+    """The number of members is chosen when a spec is loaded, if the spec does not say it."""
+    chosen = RING.replace("size = 6, ", "")
+    assert chosen != RING
+    (tmp_path / "spins.toml").write_text(chosen)
     system = load(tmp_path / "spins.toml", sizes={"i": 40})
     assert system.STATE.size == 120
-    assert load(tmp_path / "spins.toml").STATE.size == 18
+    with pytest.raises(KernelArgumentError, match=r"for the index i. Choose it, sizes=\{'i': 1000"):
+        load(tmp_path / "spins.toml")
 
 
 def test_pickled_systems_keep_their_size():

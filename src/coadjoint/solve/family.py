@@ -144,6 +144,11 @@ def resize(system: System, sizes: Mapping[str, int]) -> FamilySystem:
     )
 
 
+def lacks_size(system: System) -> bool:
+    """Whether nobody has said yet how many members it has."""
+    return isinstance(system, FamilySystem) and system.index.size is None
+
+
 def _find_resized(
     find: Callable[..., Any], given: tuple[Any, ...], sizes: Mapping[str, int]
 ) -> System:
@@ -172,7 +177,8 @@ def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -
     if list(sizes) != [index.name]:
         raise KernelArgumentError(
             f"sizes of {name} are {dict(sizes)!r}; expected a number of members for the index "
-            f"{index.name}: {{{index.name!r}: 1000}}.",
+            f"{index.name}. Choose it, sizes={{{index.name!r}: 1000}}, or declare it, [index] "
+            f"{index.name} = {{ size = 1000 }}.",
             found=list(sizes),
             expected=[index.name],
         )
