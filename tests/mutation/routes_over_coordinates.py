@@ -60,7 +60,8 @@ BRACKETS = (
 
 #: Singular Lagrangians, with rates by hand.
 SINGULAR = (
-    "tests/derive/test_first_order.py -k 'vortices_turn or gives_the_rest or declared_to_follow or moves_with_time'",
+    "tests/derive/test_first_order.py "
+    "-k 'vortices_turn or gives_the_rest or declared_to_follow or moves_with_time'",
 )
 
 FIRST_ORDER = (
