@@ -284,8 +284,8 @@ def test_a_child_serves_one_request_after_the_other(helper):
             helper + function, argument, seconds=seconds, memory=2**31, children=children
         )
 
-    first = ask("chatter", None)
-    assert ask("compute", 1.2, 1) == first  # of which a part was used by the request before
+    first = ask("compute", 1)
+    assert ask("compute", 1.6, 1) == first  # of which one second was used by the request before
     with pytest.raises(ResourceError, match="spin: stopped after 1 s") as caught:
         ask("spin", 0, 1)
     assert caught.value.used < 3

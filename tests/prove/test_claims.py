@@ -38,6 +38,7 @@ def check_claims(system, claims):
     expected |= {"bracket"} if declared.brackets else set()
     expected |= {"galilean"} if declared.galilean else set()
     expected |= {"dissipation"} if declared.relaxation else set()
+    expected |= {"noise"} if declared.noise else set()
     found = {"transformation", "integrals", "measure", "symmetry"}  # also without being claimed
     if not declared.constraints:
         assert kinds - found == expected - found

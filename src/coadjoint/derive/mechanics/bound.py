@@ -109,7 +109,7 @@ def left_kernel(field: Field, matrix: Sequence[Row]) -> list[Row]:
     >>> field = Field(["x"])
     >>> x = field["x"]
     >>> left_kernel(field, ((x**2, x), (x, field.one), (field.zero, x)))
-    [((-1)/x, 1, 0)]
+    [(-1/x, 1, 0)]
     """
     kept, vectors = _independent(field, matrix), list[Row]()
     columns = _independent(field, transpose([matrix[i] for i in kept])) if kept else []
