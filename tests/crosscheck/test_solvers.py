@@ -40,7 +40,8 @@ from coadjoint.lower.program import (
 )
 from coadjoint.render.kernels import render_system
 from coadjoint.render.solvers import Line, arrange, select_programs
-from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
+from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
 from tests.kernels import COMPILER, ProgramReference
 from tests.programs import BOUNDED, HEAVY_TOP, LOOPED, PENDULUM, program

@@ -95,14 +95,18 @@ MUTANTS = (
         tests=("tests/lower/test_jets.py",),
     ),
     *of(
-        "solve/steps",
+        "solve/runge_kutta",
         "RungeKutta4.try_step: rewrite h * 0.5 -> h",
+        tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
+    ),
+    *of(
+        "solve/steps",
         "Taylor._choose: rewrite 0.7 / _1 -> 0.9 / _1",
         "_evaluate_path: rewrite total * after + _1 -> total + _1",
         tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
     ),
     *of(
-        "solve/steps",
+        "solve/runge_kutta",
         "_multiply_out: rewrite path[order] / h -> path[order] * h",
         tests=("tests/solve/test_ensemble.py -k the_path",),
     ),

@@ -182,6 +182,8 @@ def test_no_step_ends_beyond_a_branch_point(tank, options):
 @pytest.mark.parametrize("options", RUNGE_KUTTA[1:4], ids=str)
 def test_without_a_look_at_the_end_they_go_beyond(tank, monkeypatch, options):
     """Spoiled: a step may end where the rates are not finite, with a depth below zero."""
-    monkeypatch.setattr("coadjoint.solve.steps._check_end", lambda rates, lanes, h, state: state)
+    monkeypatch.setattr(
+        "coadjoint.solve.runge_kutta._check_end", lambda rates, lanes, h, state: state
+    )
     found, _ = empty(tank, target="numpy", **options)
     assert (found.course.last < 0).any()

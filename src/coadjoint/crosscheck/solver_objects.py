@@ -26,7 +26,8 @@ from coadjoint.errors import OutputError
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
-from coadjoint.solve.steps import DormandPrince8, Lanes, Method, RungeKutta4, Taylor
+from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
+from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 

@@ -21,7 +21,7 @@ from coadjoint.lower.tableau import STAGES
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.kernels import say_once
-from coadjoint.solve.steps import DormandPrince8
+from coadjoint.solve.runge_kutta import DormandPrince8
 from coadjoint.solve.twins import StepwiseStepper
 
 if TYPE_CHECKING:

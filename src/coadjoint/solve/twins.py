@@ -18,7 +18,8 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import Limits
-from coadjoint.solve.steps import DormandPrince8, RungeKutta4, Taylor
+from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
+from coadjoint.solve.steps import Taylor
 from coadjoint.solve.stochastic import METHODS
 
 if TYPE_CHECKING:

@@ -20,7 +20,8 @@ from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, ki
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
-from coadjoint.spec.sections.variables import VARIABLES, Variable
+from coadjoint.spec.sections.state import Variable
+from coadjoint.spec.sections.variables import VARIABLES
 from coadjoint.spec.tables import BY_KEY, TABLES, list_formulas
 
 _ENERGIES = ("hamiltonian", "lagrangian")

@@ -43,10 +43,10 @@ from coadjoint.spec.sections.reconstruction import Reconstructed
 from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.relaxation import Relaxation
 from coadjoint.spec.sections.rolling import Rolling
+from coadjoint.spec.sections.state import Variable, find_defined, state_of
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
 from coadjoint.spec.sections.transformations import Transformation
-from coadjoint.spec.sections.variables import Variable, find_defined, state_of
 
 __all__ = [
     "FORMS",

@@ -21,7 +21,8 @@ from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.sections.reduction import REDUCTION
-from coadjoint.spec.sections.variables import VARIABLES, state_of
+from coadjoint.spec.sections.state import state_of
+from coadjoint.spec.sections.variables import VARIABLES
 
 #: Ways to say how a chart moves.
 _MOTIONS = ("rates", "hamiltonian", "lagrangian")

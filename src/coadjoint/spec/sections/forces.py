@@ -19,7 +19,8 @@ from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.constraints import list_reactions
-from coadjoint.spec.sections.variables import VARIABLES, Variable, motion_roles, state_of
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES, motion_roles
 
 
 def read_forces(reading: Reading, texts: Mapping[str, str]) -> dict[str, Formula]:

@@ -16,7 +16,8 @@ from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
-from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES
 
 
 class NewtonPart(Part):

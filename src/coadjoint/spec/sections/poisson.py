@@ -21,7 +21,8 @@ from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.values import POISSON_PATTERN
-from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of, state_roles
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES, state_roles
 
 
 class PoissonPart(Part):

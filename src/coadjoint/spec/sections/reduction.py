@@ -16,7 +16,8 @@ from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Declared, Formula, make_scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES
 
 
 class ReductionPart(Part):

@@ -14,7 +14,8 @@ from coadjoint.spec.core.formulas import Formula, misfit
 from coadjoint.spec.core.parts import Accept, Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
-from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_of, state_roles
+from coadjoint.spec.sections.state import state_of
+from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_roles
 
 
 class DoubleBracketPart(Part):

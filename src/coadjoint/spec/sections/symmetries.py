@@ -28,7 +28,8 @@ from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra, scalars_of
 from coadjoint.spec.sections.momenta import Section
 from coadjoint.spec.sections.observables import OBSERVABLES, Observable
-from coadjoint.spec.sections.variables import VARIABLES, Variable, state_of, state_roles
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES, state_roles
 
 
 class SymmetryPart(Part):
