@@ -166,3 +166,23 @@ def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):
     state = np.array([0.0, 0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 1.0, 0.0])
     run = system.simulate(state, (0, 1), step=0.01, method="rk4", progress=False)
     assert run.status == "NONFINITE"
+
+
+FIELDS = [[0, 0, k] for k in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("default", "expected", "resized"),
+    [
+        (FIELDS, [0.0] * 12 + [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], False),
+        ([1, 2, 3], [1.0] * 6 + [2.0] * 6 + [3.0] * 6, True),
+    ],
+)
+def test_defaults_may_differ_from_member_to_member(default, expected, resized):
+    """A vector for each spin, or one for all; another number of members has none of the former."""
+    field = f'B = {{ shape = [3], index = "i", default = {default} }}\n[hamiltonian]'
+    text = RING.replace("[hamiltonian]", field)
+    with load_texts(pipeline.render(read_spec_text(text, "ring.toml")).texts) as system:
+        known = system.PARAMETERS.defaults
+        assert [known[f"B{c}[{i}]"] for c in (1, 2, 3) for i in range(6)] == expected
+        assert ("B1[0]" in system.resize({"i": 7}).PARAMETERS.defaults) == resized

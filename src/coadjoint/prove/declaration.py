@@ -105,7 +105,10 @@ def family_context(
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),
-        defaults={name: tuple(map(float, values)) for name, values in declared.defaults.items()},
+        defaults={
+            name: tuple(float(value) for component in values for value in component)
+            for name, values in declared.defaults.items()
+        },
         observables=tuple(
             _observable(equations, kept[name])
             for name in (

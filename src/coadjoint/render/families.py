@@ -251,8 +251,8 @@ class FamilyContext:
         indexed: Quantities of the parameters of a member, in order.
         observables: Quantities that the function ``observables`` returns, in order.
         loops: The functions by name.
-        defaults: Of indexed parameters that differ from member to member: a number for each of the
-            members of the declared size.
+        defaults: Of indexed parameters that differ from member to member: component after component
+            a number for each of the members of the declared size.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
     """
@@ -333,7 +333,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
+            *(["defaults=DEFAULTS"] * bool(context.defaults)),
         ],
+        "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "

@@ -59,16 +59,21 @@ class FamilySystem(System):
         elementary: Sequence[str],
         identity: str,
         unit_of_time: str = "s",
+        defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
     ) -> None:
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
+        self._defaults = defaults
         size = self.index.size or self.small
         check_memory(name, self.index, size * (state.size + indexed.size))
         super().__init__(
             name,
             file,
             Quantities(*(_repeat(each, size) for each in state.values())),
-            Quantities(*shared.values(), *(_repeat(each, size) for each in indexed.values())),
+            Quantities(
+                *shared.values(),
+                *(_repeat(each, size, defaults.get(each.name)) for each in indexed.values()),
+            ),
             observables,
             {
                 function: (state.size * size,) if shape is None else shape
@@ -115,6 +120,7 @@ class FamilySystem(System):
             elementary,
             self.id,
             unit_of_time=self.unit_of_time,
+            defaults=self._defaults,
         )
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
@@ -157,15 +163,20 @@ def _find_resized(
     return system
 
 
-def _repeat(quantity: Quantity, size: int) -> Quantity:
-    """A quantity of a member as one of all members, component after component."""
-    default = quantity.default
-    return replace(
-        quantity,
-        shape=(*quantity.shape, size),
-        components=tuple(f"{name}[{i}]" for name in quantity.components for i in range(size)),
-        default=None if default is None else tuple(v for v in default for _ in range(size)),
-    )
+def _repeat(quantity: Quantity, size: int, own: tuple[float, ...] | None = None) -> Quantity:
+    """A quantity of a member as one of all members, component after component.
+
+    Args:
+        quantity: Of a member.
+        size: N.
+        own: A default for each row, which differs from member to member; there is none for another
+            number of members.
+    """
+    components = tuple(f"{name}[{i}]" for name in quantity.components for i in range(size))
+    default = quantity.default and tuple(v for v in quantity.default for _ in range(size))
+    if own is not None:
+        default = own if len(own) == len(components) else None
+    return replace(quantity, shape=(*quantity.shape, size), components=components, default=default)
 
 
 def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -> int:

@@ -34,7 +34,7 @@ def write_out_file(source: Source, file: Any, index: Index, count: int) -> tuple
             continue
         for k in range(count):
             default = part.default
-            if isinstance(default, list):
+            if differs(part):
                 default = default[k % len(default)]
             own = part.model_copy(update={"index": None, "default": default})
             parameters[member_name(name, k)] = own
@@ -54,6 +54,14 @@ def write_out_file(source: Source, file: Any, index: Index, count: int) -> tuple
         bound=bound,
     )
     return replace(source, positions=places.all, members=members), file.model_copy(update=update)
+
+
+def differs(part: Any) -> bool:
+    """Whether a default has an entry for each member: it is one level deeper than the shape."""
+    depth, entry = 0, part.default
+    while isinstance(entry, list):
+        depth, entry = depth + 1, entry[0] if entry else None
+    return depth > len(part.shape or ())
 
 
 class _Places:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -128,7 +129,8 @@ class Windows:
         variables: Names of the variables that each member has, in declared order.
         shared: Names of the parameters that all members share.
         indexed: Names of the parameters that each member has.
-        defaults: Defaults of indexed parameters that differ from member to member, for all N.
+        defaults: Defaults of indexed parameters that differ from member to member: of each
+            component those of all members.
         reach: How many members further the energy couples.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
@@ -144,7 +146,7 @@ class Windows:
     variables: tuple[str, ...]
     shared: tuple[str, ...]
     indexed: tuple[str, ...]
-    defaults: Mapping[str, tuple[Any, ...]]
+    defaults: Mapping[str, tuple[tuple[Fraction, ...], ...]]
     reach: int
     pairs: bool
     least: int

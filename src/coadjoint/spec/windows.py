@@ -16,12 +16,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.families import Index
-from coadjoint.spec.copies import write_out_file
+from coadjoint.spec.copies import differs, write_out_file
 from coadjoint.spec.core.faults import ExpressionError, list_names
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.members import has_sum, split_sums, without_sums
@@ -29,6 +30,7 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index as Subscript
 from coadjoint.spec.core.tree import Member, Name, Node, walk
+from coadjoint.spec.core.values import read_default
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.lax import Lax
@@ -93,9 +95,9 @@ def read_windows(
         shared=tuple(name for name, own in parameters.items() if not own),
         indexed=tuple(name for name, own in parameters.items() if own),
         defaults={
-            name: tuple(part.default)
+            name: _read_defaults(source, name, part)
             for name, part in file.parameters.items()
-            if part.index is not None and isinstance(part.default, list)
+            if part.index is not None and differs(part)
         },
         reach=reach,
         pairs=pairs,
@@ -290,15 +292,26 @@ def _check(source: Source, file: Any, index: Index) -> None:
             hint = f'Add index = "{index.name}".'
             expected = f"the index {index.name!r} of every variable"
             raise source.at_key((table, name), problem, name, expected, hint)
-        default = part.default
-        per_member = table == "parameters" and part.index is not None and isinstance(default, list)
-        if per_member and len(default) != index.size:
-            problem = f"the default of {name!r} has {len(default)} entries"
-            expected = f"a number for all members, or {index.size or 'N'} entries"
-            raise source.fault((table, name, "default"), problem, len(default), expected)
+        if table == "parameters" and part.index is not None and differs(part):
+            _check_count(source, index, name, len(part.default))
     if index.size is not None and index.size > limits.FAMILY_MEMBERS:
         problem = f"the index {index.name!r} counts {index.size} members"
         raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
+
+
+def _check_count(source: Source, index: Index, name: str, count: int) -> None:
+    """A default that differs from member to member has an entry for each."""
+    if count != index.size:
+        problem = f"the default of {name!r} has {count} entries"
+        expected = f"one for all members, or {index.size or 'N'} entries"
+        raise source.fault(("parameters", name, "default"), problem, count, expected)
+
+
+def _read_defaults(source: Source, name: str, part: Any) -> tuple[tuple[Fraction, ...], ...]:
+    """The defaults of each component, of all members."""
+    key, shape = ("parameters", name, "default"), tuple(part.shape or ())
+    members = (read_default(source, key, each, shape) or () for each in part.default)
+    return tuple(zip(*members, strict=True))
 
 
 _HEAD = ("title", "source", "description", "license", "routes")
