@@ -277,11 +277,11 @@ def test_stopping_all_children_ends_what_they_started(helper):
 
 def test_a_child_serves_one_request_after_the_other(helper):
     """It is there for the next request of its task, with limits of its own; then it ends."""
-    children = sandbox.Children()
+    children, _ballast = sandbox.Children(), bytearray(b"x") * (200 * 2**20)  # not the child's own
 
     def ask(function, argument, seconds=60):
         return run_bounded(
-            helper + function, argument, seconds=seconds, memory=2**31, children=children
+            helper + function, argument, seconds=seconds, memory=2**29, children=children
         )
 
     first = ask("compute", 1)

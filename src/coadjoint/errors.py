@@ -172,8 +172,10 @@ _WORDS: Final = {
 _TRIAL: Final = 4
 
 
-def system_error(error: OSError | ImportError) -> OutputError | None:
+def system_error(error: BaseException) -> OutputError | None:
     """A refusal of the operating system as an error that says what it is; None for other faults."""
+    if not isinstance(error, OSError | ImportError):
+        return None
     number, help_with = errno_of(error), remedy_for(error)
     reason = getattr(error, "strerror", None) or str(error)
     if number == errno.ENOENT and "temporary directory" in str(error):

@@ -14,6 +14,7 @@ import gc
 import json
 import math
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -384,9 +385,21 @@ def _is_fresh(memory: int) -> bool:
 
     A limit of processor time of the whole session is shared out to processes of their own.
     """
-    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     unlimited = resource.getrlimit(resource.RLIMIT_CPU)[1] == resource.RLIM_INFINITY
-    return unlimited and largest < memory / MEMORY_PART
+    return unlimited and _find_peak() < memory / MEMORY_PART
+
+
+def _find_peak() -> int:
+    """The most memory that this process has had, bytes.
+
+    What getrusage says begins with the peak of the process that started this one, which may be a
+    large one.
+    """
+    with suppress(OSError):
+        told = re.search(r"VmHWM:\s*(\d+) kB", Path("/proc/self/status").read_text("ascii"))
+        if told is not None:
+            return int(told[1]) * 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
 def _measure_use(*whose: int) -> float:
@@ -401,7 +414,7 @@ def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:
         memory: int = request["memory"]
         message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."
         return ResourceError(f"{request['subject']}: {message}", limit=memory)
-    refused = system_error(error) if isinstance(error, OSError | ImportError) else None
+    refused = system_error(error)
     if refused is not None:
         return refused
     message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."

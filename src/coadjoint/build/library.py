@@ -178,7 +178,7 @@ def load_library(
                 (work / file).write_bytes(content)
             fresh = compile_kernel(compiler, work, build, kind)
         except (OSError, OutputError) as error:
-            reason = (isinstance(error, OSError) and system_error(error)) or error
+            reason = system_error(error) or error
             raise CompilerError(
                 f"the {kind.stem} of {name} cannot be compiled here: {reason}", found=str(reason)
             ) from error

@@ -22,7 +22,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.declared import Bound, Quantity
-from coadjoint.errors import OutputError
+from coadjoint.errors import OutputError, system_error
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
@@ -420,7 +420,7 @@ def load_folder(folder: Path) -> System:
     try:
         module = _execute(folder, spec)
     except Exception as error:
-        raise OutputError(
+        raise system_error(error) or OutputError(
             f"{folder / '__init__.py'} cannot be loaded: {type(error).__name__}: {error}. "
             "Run `coadjoint regenerate`.",
             path=str(folder),

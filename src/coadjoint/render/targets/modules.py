@@ -11,7 +11,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from coadjoint.errors import OutputError
+from coadjoint.errors import OutputError, system_error
 from coadjoint.render.targets.protocol import Generated, Kernel
 
 
@@ -34,7 +34,7 @@ class KernelModule(Kernel):
             exec(compile(content, self.path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
             identity = module.ID
         except Exception as error:
-            raise self.explain_broken(
+            raise system_error(error) or self.explain_broken(
                 f"cannot be loaded: {type(error).__name__}: {error}"
             ) from error
         if identity != system.id:
