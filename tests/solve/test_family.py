@@ -13,6 +13,7 @@ from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import RING, VORTICES
+from tests.specs import shipped
 
 
 @pytest.fixture(scope="module")
@@ -186,3 +187,13 @@ def test_defaults_may_differ_from_member_to_member(default, expected, resized):
         known = system.PARAMETERS.defaults
         assert [known[f"B{c}[{i}]"] for c in (1, 2, 3) for i in range(6)] == expected
         assert ("B1[0]" in system.resize({"i": 7}).PARAMETERS.defaults) == resized
+
+
+def test_starts_may_differ_from_member_to_member():
+    """Three bodies on the figure eight of Chenciner and Montgomery come back after its period."""
+    with load_texts(pipeline.render(shipped("n_body")).texts) as system:
+        start = [system.STATE.defaults[name] for name in system.STATE.components]
+        run = system.simulate(start, (0.0, 6.32591398), target="numpy", rtol=1e-11, samples=1)
+        np.testing.assert_allclose(run.state[:, -1], start, atol=2e-7)
+        assert np.ptp(start) > 1
+        assert not system.resize({"i": 4}).STATE.defaults

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 #: Steps of a run with noise for which none is given, at the least.
 LEAST_STEPS = 1000
+#: Most rows of a table of first and last values.
+SHOWN = 60
 Assignment = tuple[str, list[float]]
 
 
@@ -323,6 +325,8 @@ def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str 
         columns.append(">drift")
         for row in rows:
             row.append(f"{solution.drift[row[0]]:.1e}" if row[0] in solution.drift else "")
+    if len(rows) > SHOWN:
+        rows[SHOWN // 2 : -SHOWN // 2] = [["...", *("" for _ in columns[1:])]]
     print_table(columns, rows, title=title)
 
 

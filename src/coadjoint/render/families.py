@@ -251,7 +251,7 @@ class FamilyContext:
         indexed: Quantities of the parameters of a member, in order.
         observables: Quantities that the function ``observables`` returns, in order.
         loops: The functions by name.
-        defaults: Of indexed parameters that differ from member to member: component after component
+        defaults: Of quantities that differ from member to member: component after component
             a number for each of the members of the declared size.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.

@@ -69,7 +69,7 @@ class FamilySystem(System):
         super().__init__(
             name,
             file,
-            Quantities(*(_repeat(each, size) for each in state.values())),
+            Quantities(*(_repeat(each, size, defaults.get(each.name)) for each in state.values())),
             Quantities(
                 *shared.values(),
                 *(_repeat(each, size, defaults.get(each.name)) for each in indexed.values()),

@@ -34,7 +34,7 @@ def write_out_file(source: Source, file: Any, index: Index, count: int) -> tuple
             continue
         for k in range(count):
             default = part.default
-            if differs(part):
+            if differs(file, part):
                 default = default[k % len(default)]
             own = part.model_copy(update={"index": None, "default": default})
             parameters[member_name(name, k)] = own
@@ -56,12 +56,14 @@ def write_out_file(source: Source, file: Any, index: Index, count: int) -> tuple
     return replace(source, positions=places.all, members=members), file.model_copy(update=update)
 
 
-def differs(part: Any) -> bool:
-    """Whether a default has an entry for each member: it is one level deeper than the shape."""
+def differs(file: Any, part: Any) -> bool:
+    """Whether a default has an entry for each member: it is one level deeper than that of one."""
     depth, entry = 0, part.default
     while isinstance(entry, list):
         depth, entry = depth + 1, entry[0] if entry else None
-    return depth > len(part.shape or ())
+    whole = file.variables.get(getattr(part, "of", None), part)
+    along = getattr(whole, "role", "") in ("velocity", "momentum", "advected")
+    return depth > (1 if along else len(whole.shape or ()))
 
 
 class _Places:
@@ -96,6 +98,8 @@ def _write_variables(
         for k in range(count):
             own = member_name(name, k)
             update: dict[str, Any] = {"index": None, "block": blocks.of(name, part, k)}
+            if differs(file, part):
+                update["default"] = part.default[k % len(part.default)]
             if part.of is not None:
                 update["of"] = member_name(part.of, k)
             variables[own] = part.model_copy(update=update)

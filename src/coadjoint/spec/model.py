@@ -129,7 +129,7 @@ class Windows:
         variables: Names of the variables that each member has, in declared order.
         shared: Names of the parameters that all members share.
         indexed: Names of the parameters that each member has.
-        defaults: Defaults of indexed parameters that differ from member to member: of each
+        defaults: Defaults of quantities that differ from member to member: of each
             component those of all members.
         reach: How many members further the energy couples.
         pairs: Whether it couples every two members.

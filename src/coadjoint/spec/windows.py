@@ -23,9 +23,10 @@ from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.families import Index
 from coadjoint.spec.copies import differs, write_out_file
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError, list_names
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.members import has_sum, split_sums, without_sums
+from coadjoint.spec.core.members import has_sum, member_name, split_sums, without_sums
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index as Subscript
@@ -89,15 +90,16 @@ def read_windows(
         if file.lax is not None
     )
     parameters = {name: part.index is not None for name, part in file.parameters.items()}
+    shapes = {each.name: each.shape for each in (*small.variables, *small.parameters)}
     family = Windows(
         index=index,
         variables=tuple(file.variables),
         shared=tuple(name for name, own in parameters.items() if not own),
         indexed=tuple(name for name, own in parameters.items() if own),
         defaults={
-            name: _read_defaults(source, name, part)
-            for name, part in file.parameters.items()
-            if part.index is not None and differs(part)
+            name: _read_defaults(source, (table, name), part, shapes[member_name(name, 0)])
+            for table, name, part in _list_quantities(file)
+            if part.index is not None and differs(file, part)
         },
         reach=reach,
         pairs=pairs,
@@ -277,9 +279,7 @@ def _check(source: Source, file: Any, index: Index) -> None:
             problem = f"there is a table [{table}] in a spec with [index]"
             expected = f"the tables {list_names(TABLES)}"
             raise source.at_key((table,), problem, table, expected, f"Remove [{table}].")
-    quantities = [("variables", n, part) for n, part in file.variables.items()]
-    quantities += [("parameters", n, part) for n, part in file.parameters.items()]
-    for table, name, part in quantities:
+    for table, name, part in _list_quantities(file):
         if name == index.name:
             problem, expected = f"{name!r} is the index, too", "names that differ"
             raise source.at_key((table, name), problem, name, expected, "Rename one of them.")
@@ -292,25 +292,32 @@ def _check(source: Source, file: Any, index: Index) -> None:
             hint = f'Add index = "{index.name}".'
             expected = f"the index {index.name!r} of every variable"
             raise source.at_key((table, name), problem, name, expected, hint)
-        if table == "parameters" and part.index is not None and differs(part):
-            _check_count(source, index, name, len(part.default))
+        if part.index is not None and differs(file, part):
+            _check_count(source, index, (table, name), len(part.default))
     if index.size is not None and index.size > limits.FAMILY_MEMBERS:
         problem = f"the index {index.name!r} counts {index.size} members"
         raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
 
 
-def _check_count(source: Source, index: Index, name: str, count: int) -> None:
+def _list_quantities(file: Any) -> list[tuple[str, str, Any]]:
+    """Table, name and keys of each quantity."""
+    tables = ("variables", "parameters")
+    return [(table, name, part) for table in tables for name, part in getattr(file, table).items()]
+
+
+def _check_count(source: Source, index: Index, key: tuple[str, str], count: int) -> None:
     """A default that differs from member to member has an entry for each."""
     if count != index.size:
-        problem = f"the default of {name!r} has {count} entries"
+        problem = f"the default of {key[1]!r} has {count} entries"
         expected = f"one for all members, or {index.size or 'N'} entries"
-        raise source.fault(("parameters", name, "default"), problem, count, expected)
+        raise source.fault((*key, "default"), problem, count, expected)
 
 
-def _read_defaults(source: Source, name: str, part: Any) -> tuple[tuple[Fraction, ...], ...]:
+def _read_defaults(
+    source: Source, key: tuple[str, str], part: Any, shape: Shape
+) -> tuple[tuple[Fraction, ...], ...]:
     """The defaults of each component, of all members."""
-    key, shape = ("parameters", name, "default"), tuple(part.shape or ())
-    members = (read_default(source, key, each, shape) or () for each in part.default)
+    members = (read_default(source, (*key, "default"), x, shape) or () for x in part.default)
     return tuple(zip(*members, strict=True))
 
 
