@@ -312,7 +312,7 @@ def test_generated_methods_ask_a_function(system, target, method, step):
     np.testing.assert_allclose(found["f"], found.time**3 - 2 * found.time, rtol=1e-15)
     assert found.method == method
     assert "inputs are a function of Python" in found.settings["stepwise"]
-    assert "the steps were made in Python: inputs are a function" in repr(found)
+    assert "Python led the steps: inputs are a function" in repr(found)
     lines = ([0.0, 4.0], np.zeros((3, 2)), "linear")
     assert "stepwise" not in pushed(system, lines, method="dop853").settings
 

@@ -56,7 +56,7 @@ class Course:
         last: The state there, ``(n, *batch)``; likewise.
         below: What is reconstructed there, ``(k, *batch)``; None if nothing is.
         driven: Inputs there, ``(m, *batch)``; None if they are constant.
-        stepwise: Why the steps were made in Python; empty where a solver made them.
+        stepwise: Why Python led the steps; empty where a solver made them all.
         seed: Of the noise; None without any.
         keeps: What the method keeps of what each path of a motion with noise keeps; empty without.
         start: Where the trajectories began, if no sample has it.
@@ -80,8 +80,8 @@ class Course:
     start: Start | None = None
 
     def tell_stepwise(self) -> str:
-        """That the steps were made in Python, and why; "" where a solver made them."""
-        return f"the steps were made in Python: {self.stepwise}" if self.stepwise else ""
+        """That Python led the steps, and why: C may have made some in a row; "" elsewhere."""
+        return f"Python led the steps: {self.stepwise}" if self.stepwise else ""
 
     def tell_keeps(self) -> str:
         """What the method keeps of what each path keeps; "" without noise."""
