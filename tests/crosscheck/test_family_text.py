@@ -25,6 +25,15 @@ SPOILED = [
     ("vortices", "kernel.c", "const double y_j = _batch ?", "const double y_j = _shared ?"),
     ("vortices", "kernel.py", "size + j]", "size + i]"),
     ("vortices", "kernel_python.py", "_t1 * ", "_t1 + "),
+    ("ring", "solver.c", "near(_at, 0, -1)", "near(_at, 0, 1)"),
+    ("ring", "solver.py", "at.near(0, -1)", "at.near(1, -1)"),
+    ("ring", "solver.c", "_slots + 1 * ORDER", "_slots + 0 * ORDER"),
+    ("chain", "solver.c", "_orders[_m] * ", "_orders[_k] * "),
+    ("chain", "solver.py", "_parts[_k] * ", ""),
+    ("vortices", "solver.c", "partner(_at, 1)", "own(_at, 1)"),
+    ("vortices", "solver.py", "_t2[_k - _m]", "_t2[_m]"),
+    ("vortices", "solver.py", "for _m in range(1, _k)", "for _m in range(0, _k)"),
+    ("vortices", "solver.c", "        return;", ""),
 ]
 
 
@@ -71,6 +80,25 @@ def test_the_ladder_sees_wrong_loops(rendered):
         "for j in range(size)", "for j in range(size - 1)"
     )
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 4"):
+        crosscheck_family(
+            own.windows, own.declared, own.family, own.context, texts, texts, system, ("numpy",)
+        )
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("ring", "row[k + 1, place.i] = _parts[k + 1]", "row[k + 1, place.i] = _parts[k]"),
+        ("chain", "place.fill(k)", "place.fill(0)"),
+        ("vortices", "(slice(0, j), slice(j + 1, size))", "(slice(0, j), slice(j + 2, size))"),
+    ],
+)
+def test_the_ladder_sees_wrong_series(rendered, name, old, new):
+    """Loops around recurrences that are right give other coefficients than the equations have."""
+    own, texts = rendered[name].family, dict(rendered[name].texts)
+    assert old in texts["solver.py"]
+    texts["solver.py"] = texts["solver.py"].replace(old, new)
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="power series"):
         crosscheck_family(
             own.windows, own.declared, own.family, own.context, texts, texts, system, ("numpy",)
         )

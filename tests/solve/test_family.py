@@ -8,6 +8,7 @@ import pytest
 from coadjoint import load, pipeline
 from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
 from coadjoint.solve import family as families
+from coadjoint.solve import family_steps
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
@@ -116,7 +117,7 @@ def test_too_few_members_are_refused(vortices):
 
 def test_memory_is_looked_at_before_work(ring, monkeypatch):
     """Millions of members on a small machine are refused with both numbers of bytes."""
-    monkeypatch.setattr(families, "_find_memory", lambda: 2e9)
+    monkeypatch.setattr(families, "find_memory", lambda: 2e9)
     with pytest.raises(ResourceError, match=r"4\.0 GB.*2\.0 GB"):
         ring.resize({"i": 1_000_000})
 
@@ -149,16 +150,56 @@ def test_pickled_systems_keep_their_size():
     assert copy.STATE.size == 21
 
 
-@pytest.mark.parametrize("method", ["rk4", "dop853"])
+@pytest.mark.parametrize("method", ["rk4", "dop853", "taylor"])
 def test_wrong_steps_are_not_taken(tmp_path, method):
     """A fresh object whose steps are not those of the twin is refused before it is used."""
     texts = pipeline.render(read_spec_text(RING, "ring.toml")).texts
-    wrong = {"rk4": ("+ half * k[n]", "+ h * k[n]"), "dop853": ("five = five +", "five = part *")}
+    wrong = {
+        "rk4": ("+ half * k[n]", "+ h * k[n]"),
+        "dop853": ("five = five +", "five = part *"),
+        "taylor": ("row[-places] = row[find_member(size, 0, -places)]", "row[-places] = row[0]"),
+    }
+    assert wrong[method][0] in texts["solver.c"]
     for file, text in texts.items():
         (tmp_path / file).write_text(text.replace(*wrong[method]) if file == "solver.c" else text)
     system = load_folder(tmp_path)
     with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
-        load_steps(system, Choice(method, {"rk4": 4, "dop853": 8}[method]), "c")
+        load_steps(system, Choice(method, {"rk4": 4}.get(method, 8)), "c")
+
+
+@pytest.mark.parametrize("size", [5, 8])
+def test_series_have_the_bits_of_the_twin(vortices, size):
+    """Lanes are members of one trajectory, or trajectories; both have the bits of NumPy."""
+    system, source = vortices.resize({"i": size}), np.random.default_rng(size)
+    states = source.normal(size=(2 * size, 11))
+    options = {"t": (0, 0.03), "method": "taylor", "samples": 3, "progress": False}
+    runs = [system.simulate(states, target=each, **options) for each in ("c", "numpy")]
+    assert np.array_equal(runs[0].state, runs[1].state)
+    assert np.ptp(runs[0].steps) > 0  # each trajectory has steps of its own
+    alone = system.simulate(states[:, 3].copy(), target="c", **options)
+    assert np.array_equal(alone.state, runs[0].state[:, 3])
+
+
+def test_series_follow_the_tolerance(ring):
+    """The error is below it, against a motion that other steps tell; nobody has to ask for it."""
+    system, source = ring.resize({"i": 12}), np.random.default_rng(2)
+    state = source.normal(size=36)
+    options = {"t": (0, 2), "samples": 1, "progress": False}
+    exact = system.simulate(state, method="dop853", rtol=1e-13, atol=1e-14, **options).state
+    for rtol in (1e-6, 1e-9):
+        run = system.simulate(state, rtol=rtol, atol=rtol, **options)
+        assert run.settings["method"] == "taylor"
+        np.testing.assert_allclose(run.state, exact, rtol=0, atol=rtol)
+
+
+def test_series_that_do_not_fit_are_refused(vortices, monkeypatch):
+    """Series of all pairs grow with the square of the members: another method is named."""
+    system, state = vortices.resize({"i": 400}), np.random.default_rng(0).normal(size=800)
+    monkeypatch.setattr(family_steps, "find_memory", lambda: 1e8)
+    with pytest.raises(KernelArgumentError, match=r"0\.2 GB.*0\.1 GB.*dop853"):
+        system.simulate(state, (0, 0.1), method="taylor", progress=False)
+    run = system.simulate(state, (0, 1e-6), progress=False, samples=1)
+    assert run.settings["method"] == "dop853"
 
 
 def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):

@@ -24,6 +24,7 @@ import numpy as np
 
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.crosscheck.compare import Figures
+from coadjoint.crosscheck.family_series import ORDER, check_series
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
@@ -59,7 +60,7 @@ POINTS: Final = 24
 #: have, and no multiple of them.
 SIZES: Final = (7, 17, 64)
 #: Methods whose steps are compared with those of their twins.
-METHODS: Final = (Choice("rk4", 4), Choice("dop853", 8))
+METHODS: Final = (Choice("rk4", 4), Choice("dop853", 8), Choice("taylor", ORDER))
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
 
@@ -165,6 +166,10 @@ def crosscheck_family(
         window = _Window.of(equations, declared, family)
         for name, each in loops.items():
             _check_window(window, name, each, system, chosen, figures[name])
+        sized = system.resize({system.index.name: window.size})
+        names, made = (window.state, window.parameters), {"c", "numpy"} & set(chosen)
+        if made:
+            check_series(window.reference, names, sized, sorted(made))
     equal, together = dict[str, dict[str, int]](), dict[str, dict[str, int]]()
     for name, each in loops.items():
         counts = _compare_targets(system, name, family.small, chosen, calls=_calls(each))

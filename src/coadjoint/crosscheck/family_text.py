@@ -14,11 +14,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
+from coadjoint.crosscheck.family_series import check_series_text
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.families import SUM, Loops, Part, Read
 from coadjoint.lower.program import Node
 from coadjoint.render.families import FamilyContext
+from coadjoint.render.family_solvers import arrange_family
 from coadjoint.render.targets.body import failure
 from coadjoint.render.targets.c.reader import read_expression as read_c
 from coadjoint.render.targets.numpy.reader import read_expression as read_numpy
@@ -78,6 +80,9 @@ def check_family_text(
             for file, read in readers.items():
                 found = read(texts[file], part_name, name)
                 lines[name] += _check_part(part, found, loops.is_periodic, file, part_name)
+    shared, indexed = context.shared, context.indexed
+    rows = (sum(len(each.components) for each in group) for group in (shared, indexed))
+    lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], *rows), texts)
     return lines
 
 

@@ -26,6 +26,10 @@ LEVELS = ("parameters", "member")
 FUNCTIONS = tuple(ELEMENTARY)
 
 
+#: What a statement depends on.
+Level = Literal["parameters", "member"]
+
+
 @dataclass(frozen=True, slots=True)
 class Number:
     """An exact constant; a printer writes the nearest double."""
@@ -106,7 +110,7 @@ class Statement:
 
     name: str
     value: Node
-    level: Literal["parameters", "member"]
+    level: Level
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import names_read, render_templates
+from coadjoint.render.family_solvers import arrange_family
 from coadjoint.render.kernels import (
     declaration,
     elementary_functions,
@@ -282,6 +283,7 @@ FAMILY_FILES: Final = {
     "kernel.h": ("c/family.h.j2", "c"),
     "solver.c": ("c/family_solver.c.j2", "c"),
     "solver.h": ("c/family_solver.h.j2", "c"),
+    "solver.py": ("numpy/family_solver.py.j2", "numpy"),
     "kernel_python.py": ("python/family_python.py.j2", "python"),
 }
 
@@ -302,6 +304,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     """One file, given the id."""
     programs = [part.program for loops in context.loops.values() for part in loops.parts]
     shared, table = rows_of(context.shared), dop853()
+    indexed = rows_of(context.indexed, len(shared))
     values: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
@@ -312,7 +315,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "equations": wrap(context.equations),
         "state": rows_of(context.state),
         "parameters": shared,
-        "indexed": rows_of(context.indexed, len(shared)),
+        "indexed": indexed,
         "called": list_called(programs),
         "elementary": tuple_text(map(quote, elementary_functions(programs))),
         "functions": [
@@ -342,9 +345,10 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             f"periodic={context.index.periodic}), {context.small}"
         ),
     }
-    return render_templates((template,), {name: values[name] for name in names_read(template)})[
-        template
-    ]
+    names = names_read(template)
+    if "solver" in names:
+        values["solver"] = arrange_family(context.loops["rhs"], len(shared), len(indexed))
+    return render_templates((template,), {name: values[name] for name in names})[template]
 
 
 def tell_summary(loops: Loops) -> str:

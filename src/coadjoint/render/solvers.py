@@ -175,8 +175,8 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
 def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, ...]) -> SolverText:
     """The lines of recurrences; weights come before them."""
     arrays = jets.kept.union(jets.state, jets.driving)
-    first = [*weights, *_first(jets, arrays)]
-    stages = tuple(_stages(jets, arrays, is_one_loop=bool(weights)))
+    first = [*weights, *arrange_first(jets, arrays)]
+    stages = tuple(arrange_stages(jets, arrays, is_one_loop=bool(weights)))
     rates = tuple(
         Line(f"{name}[_k + 1]", _next(tail, arrays))
         for name, (_, tail) in zip(jets.state, jets.rates, strict=bool(jets.rates))
@@ -275,19 +275,19 @@ def _reads(lines: Iterable[Line]) -> frozenset[str]:
     return frozenset(node.name.split("[")[0] for node in nodes if isinstance(node, Symbol))
 
 
-def _at(node: Node, order: str, arrays: frozenset[str]) -> Node:
+def set_order(node: Node, order: str, arrays: frozenset[str]) -> Node:
     """A node with the coefficients of one order in the place of names."""
     match node:
         case Symbol(name=name):
             return Symbol(f"{name}[{order}]") if name in arrays else node
         case Negate(operand=operand):
-            return Negate(_at(operand, order, arrays))
+            return Negate(set_order(operand, order, arrays))
         case Call(function=function):
-            return Call(function, *(_at(each, order, arrays) for each in children(node)))
+            return Call(function, *(set_order(each, order, arrays) for each in children(node)))
         case Add(left=left, right=right) | Multiply(left=left, right=right):
-            return type(node)(_at(left, order, arrays), _at(right, order, arrays))
+            return type(node)(set_order(left, order, arrays), set_order(right, order, arrays))
         case Divide(left=left, right=right):
-            return Divide(_at(left, order, arrays), _at(right, order, arrays))
+            return Divide(set_order(left, order, arrays), set_order(right, order, arrays))
     return node
 
 
@@ -295,18 +295,18 @@ def _next(tail: Node, arrays: frozenset[str]) -> Node:
     """A coefficient of the state, from its rate; zero where the rate is constant."""
     if tail == ZERO:
         return ZERO
-    return Multiply(Symbol("_parts[_k + 1]"), _at(tail, "_k", arrays))
+    return Multiply(Symbol("_parts[_k + 1]"), set_order(tail, "_k", arrays))
 
 
-def _first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:
+def arrange_first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:
     """Order 0 of all cells, and the rates."""
     for cell in jets.cells:
-        yield _line(cell.name, "0", _at(cell.value, "0", arrays), arrays)
+        yield _line(cell.name, "0", set_order(cell.value, "0", arrays), arrays)
         divisor = _divisor(cell)
         if divisor is not None:
-            yield Line(f"{cell.name}_r", Divide(ONE, _at(divisor, "0", arrays)))
+            yield Line(f"{cell.name}_r", Divide(ONE, set_order(divisor, "0", arrays)))
     for name, (whole, _) in zip(jets.state, jets.rates, strict=bool(jets.rates)):
-        yield Line(f"{name}[1]", _at(whole, "0", arrays))
+        yield Line(f"{name}[1]", set_order(whole, "0", arrays))
 
 
 def _divisor(cell: Cell) -> Node | None:
@@ -326,7 +326,7 @@ def _line(name: str, order: str, value: Node, arrays: frozenset[str]) -> Line:
     return Line(f"{name}[{order}]" if name in arrays else name, value)
 
 
-def _stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterator[Stage]:
+def arrange_stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterator[Stage]:
     """The loops of an order k > 0, and the coefficients that follow from their sums.
 
     The terms of a loop are known when the order begins, whatever depends on what.
@@ -337,7 +337,7 @@ def _stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterato
             total = f"{cell.name}_s"
             terms[total], value = _recurrence(cell, Symbol(total), jets, arrays)
         else:
-            value = _at(cell.tail, "_k", arrays)
+            value = set_order(cell.tail, "_k", arrays)
         lines.append(_line(cell.name, "_k", value, arrays))
     for loop in [list(terms.items())] if is_one_loop else _loops(terms):
         sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
@@ -347,23 +347,23 @@ def _stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterato
 
 def _rates(jets: Jets, arrays: frozenset[str]) -> Iterator[Node]:
     """The rates of the state at an order k > 0."""
-    return (_at(tail, "_k", arrays) for _, tail in jets.rates)
+    return (set_order(tail, "_k", arrays) for _, tail in jets.rates)
 
 
 def _without_unread(lines: list[Line], others: list[Node]) -> list[Line]:
     """Lines but for names that nothing reads, as the arguments of signs at orders k > 0."""
-    kept, read = list[Line](), {name for node in others for name in _names(node)}
+    kept, read = list[Line](), {name for node in others for name in list_names(node)}
     for line in reversed(lines):
         if not line.is_new or line.name in read:
             kept.append(line)
-            read.update(_names(line.value))
+            read.update(list_names(line.value))
     return kept[::-1]
 
 
 def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:
     """Terms by loops, those together that read the same coefficients, which are loaded once."""
     rest = {
-        name: [(form, frozenset(_names(form))) for form in (term, *_turned(term))]
+        name: [(form, frozenset(list_names(form))) for form in (term, *_turned(term))]
         for name, term in terms.items()
     }
     while rest:
@@ -386,7 +386,8 @@ def _turned(term: Node) -> Iterator[Node]:
             yield Multiply(Symbol(f"{second}[_m]"), Symbol(f"{first}[_k - _m]"))
 
 
-def _names(node: Node) -> Iterator[str]:
+def list_names(node: Node) -> Iterator[str]:
+    """The names that a node reads, with their orders."""
     return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
@@ -408,10 +409,10 @@ def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -
             return term(a, b), Add(Add(total, ends(b, a)), ends(a, b))
         case Divide(left=above, right=Symbol(name=b)):
             moves = isinstance(above, Symbol) and above.name in jets.moving
-            known = Add(_at(above, "_k", arrays), Negate(total)) if moves else Negate(total)
+            known = Add(set_order(above, "_k", arrays), Negate(total)) if moves else Negate(total)
             return term(b, name), Multiply(Add(known, Negate(ends(b, name))), reciprocal)
         case Call(function="sqrt", argument=argument):
-            rest = Add(_at(argument, "_k", arrays), Negate(total))
+            rest = Add(set_order(argument, "_k", arrays), Negate(total))
             return term(name, name), Multiply(rest, reciprocal)
         case Call(argument=Symbol(name=a), other=None):
             ((factor, minus),) = cell.factors

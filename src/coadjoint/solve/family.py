@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from coadjoint.render.targets.modules import KernelModule
+
 #: Bytes of memory for each row of the state and of the parameters: its name and its place among
 #: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
 ROW_BYTES: Final = 1000
 #: The largest part of the memory of a machine that a System may take.
-_SHARE: Final = 0.5
+SHARE: Final = 0.5
 
 
 class FamilySystem(System):
@@ -95,6 +97,29 @@ class FamilySystem(System):
         import numpy as np
 
         return MappingProxyType({"sizes": np.array([float(self.size)])})
+
+    @cached_property
+    def series(self) -> KernelModule:
+        """The recurrences of its series in NumPy, and what they keep.
+
+        Raises:
+            OutputError: The file cannot be loaded.
+        """
+        from coadjoint.render.targets.modules import KernelModule
+
+        return KernelModule(self, "solver.py")
+
+    def count_series(self, order: int, trajectories: int) -> tuple[int, int]:
+        """Bytes of the series of members and of those of pairs, as solvers keep them.
+
+        Args:
+            order: Of the method of Taylor.
+            trajectories: How many there are, of which some are computed together.
+        """
+        module = self.series
+        lanes = 8 * min(trajectories, int(module.value("TOGETHER"))) * (order + 1)
+        own, pairs = int(module.value("MEMBER")), int(module.value("PAIR"))
+        return lanes * own * self.size, lanes * pairs * self.size**2
 
     def resize(self, sizes: Mapping[str, int]) -> FamilySystem:
         """The system with another number of members.
@@ -210,18 +235,18 @@ def check_memory(name: str, index: Index, rows: int) -> None:
     Raises:
         ResourceError: They do not.
     """
-    needed, there = rows * ROW_BYTES, _find_memory()
-    if needed > there * _SHARE:
+    needed, there = rows * ROW_BYTES, find_memory()
+    if needed > there * SHARE:
         raise ResourceError(
             f"{name} with {index.size} members {index.name} has {rows} rows, which take about "
             f"{needed / 1e9:.1f} GB; expected at most half of the {there / 1e9:.1f} GB of this "
             "machine. Take fewer members.",
             found=needed,
-            expected=int(there * _SHARE),
+            expected=int(there * SHARE),
         )
 
 
-def _find_memory() -> float:
+def find_memory() -> float:
     """The memory of this machine in bytes; no bound where it does not tell."""
     import os
 

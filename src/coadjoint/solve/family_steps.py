@@ -2,7 +2,8 @@
 
 Comes in: a System of equal members and a choice. Goes out: who advances an `Ensemble`. Times,
 samples and what is recorded are the twin's affair; C makes what takes time, with the same bits: all
-steps of a fixed length up to the next sample, and the stages of a step that follows tolerances.
+steps of a fixed length up to the next sample, the stages of a step that follows tolerances, and the
+series of a method of Taylor.
 What is not finite is left to the twin, which says so.
 Read next: `coadjoint.solve.twins`.
 """
@@ -10,7 +11,7 @@ Read next: `coadjoint.solve.twins`.
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.lower.tableau import STAGES
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.runge_kutta import DormandPrince8
 from coadjoint.solve.twins import StepwiseStepper
@@ -31,14 +33,23 @@ if TYPE_CHECKING:
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.steps import Lanes, Method
-    from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
 
 #: Numbers that one call of C works on, about: it ends within a tenth of a second.
 CALL: Final = 1 << 24
 #: States that the work has room for.
-ROOM: Final = {"rk4": 5, "dop853": STAGES + 2}
+ROOM: Final = {"rk4": 5, "dop853": STAGES + 2, "taylor": 0}
+#: What the objects of methods have.
+FUNCTIONS: Final = {
+    "rk4": ("march",),
+    "dop853": ("march", "try"),
+    "taylor": ("expand", "room"),
+}
+#: How near states are whose functions have other roundings.
+CLOSE: Final = 1e-9
+#: Bytes of series of pairs beyond which ``dop853`` is faster: docs/decisions/family-kernels.md.
+KEPT_NEAR: Final = 1 << 22
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
@@ -60,26 +71,48 @@ class _Run(ctypes.Structure):
         ("atol", _DOUBLE),
         ("five", _DOUBLE),
         ("three", _DOUBLE),
+        ("path", _PLACE),
     )
 
 
-class FamilyStepper(StepwiseStepper):
+class FamilyTwin(StepwiseStepper):
+    """Steps of a family in NumPy, with the kernel of a target.
+
+    Args:
+        system: Whose steps they are.
+        choice: A generated method.
+        target: Who computes the rates.
+    """
+
+    def __init__(self, system: FamilySystem, choice: Choice, target: str) -> None:
+        super().__init__(system, choice, target, None)
+        self._members = system.fixed["sizes"]
+        if choice.name == "taylor":
+            module = system.series
+            self._series = module.function("expand")
+            self._branches = bool(module.value("BRANCHES"))
+
+    def _expand(self, lanes: Lanes, order: int) -> Array:
+        """Coefficients of the motion."""
+        path: Array = self._series(lanes.state, lanes.parameters, self._members, order)
+        return path
+
+
+class FamilyStepper(FamilyTwin):
     """Steps of a family in C.
 
     Args:
         system: Whose steps they are.
-        choice: ``rk4`` or ``dop853``.
+        choice: A generated method.
         target: ``"c"`` or ``"c-fast"``: who computes the rates. The steps have no fused operations.
         library: The object of the solver.
     """
 
-    def __init__(self, system: System, choice: Choice, target: str, library: Library) -> None:
-        super().__init__(system, choice, target, None)
+    def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
+        super().__init__(system, choice, target)
         self._rates_place = system._kernels.find(target, "rhs")
-        self._march = library.take("solver_march")
-        self._try = library.take("solver_try") if choice.name == "dop853" else None
-        self.library, self._members = library, system.fixed["sizes"]
-        self._work = np.empty(0)
+        self._functions = {name: library.take(f"solver_{name}") for name in FUNCTIONS[choice.name]}
+        self.library, self._work = library, np.empty(0)
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
@@ -88,7 +121,7 @@ class FamilyStepper(StepwiseStepper):
         members = slice(first, last)
         while work > 0:
             made = 0
-            if record is None and ensemble.size > 0 and work > 1:
+            if "march" in self._functions and record is None and ensemble.size > 0 and work > 1:
                 made = self._sweep(ensemble, members, work - 1)
             going = super().advance(ensemble, first, last, 1, record)
             work -= made + 1
@@ -110,7 +143,7 @@ class FamilyStepper(StepwiseStepper):
         if steps < 1:
             return 0
         state = state.copy() if state is run.state or state.base is run.state else state
-        self._call(self._march, run, state, members, run.size, steps)
+        self._call("march", run, state, members, run.size, steps)
         if not np.isfinite(state).all():
             return 0
         run.state[:, members] = state
@@ -119,16 +152,21 @@ class FamilyStepper(StepwiseStepper):
         return steps
 
     def _call(
-        self, function: Any, run: Ensemble, state: Array, members: slice, step: float, steps: int
+        self, name: str, run: Ensemble, state: Array, members: slice, step: float, steps: int
     ) -> _Run:
         """Call a function of the solver for a state, which it may write to."""
-        size = ROOM[self._choice.name] * state.size
-        if self._work.size < size:
-            self._work = np.empty(size)
         parameters = run.parameters
         if parameters.ndim > 1:
             parameters = np.ascontiguousarray(parameters[:, members])
-        given = _Run(
+        given = self._give(state, parameters)
+        given.step, given.steps, given.rtol, given.atol = step, steps, run.rtol, run.atol
+        self._provide(given, ROOM[self._choice.name] * state.size)
+        self._functions[name](ctypes.byref(given))
+        return given
+
+    def _give(self, state: Array, parameters: Array) -> _Run:
+        """What every function of the solver takes."""
+        return _Run(
             rates=self._rates_place,
             rows=len(state),
             count=state.shape[1],
@@ -136,18 +174,27 @@ class FamilyStepper(StepwiseStepper):
             parameters_stride=0 if parameters.ndim == 1 else state.shape[1],
             sizes=self._members.ctypes.data,
             state=state.ctypes.data,
-            work=self._work.ctypes.data,
-            step=step,
-            steps=steps,
-            rtol=run.rtol,
-            atol=run.atol,
         )
-        function(ctypes.byref(given))
-        return given
+
+    def _provide(self, given: _Run, size: int) -> None:
+        """Memory for so many numbers to work with."""
+        if self._work.size < size:
+            self._work = np.empty(size)
+        given.work = self._work.ctypes.data
+
+    def _expand(self, lanes: Lanes, order: int) -> Array:
+        """Coefficients of the motion."""
+        state, parameters = map(np.ascontiguousarray, (lanes.state, lanes.parameters))
+        path = np.empty((len(state), order + 1, state.shape[1]))
+        given = self._give(state, parameters)
+        given.path = path.ctypes.data
+        self._provide(given, self._functions["room"](ctypes.byref(given)))
+        self._functions["expand"](ctypes.byref(given))
+        return path
 
     def _method(self, run: Ensemble) -> Method:
         """The method, of which C makes the stages for one trajectory."""
-        if self._try is None or run.state.shape[1] != 1 or run.size > 0:
+        if "try" not in self._functions or run.state.shape[1] != 1 or run.size > 0:
             return super()._method(run)
         return _Stages(self, run)
 
@@ -163,7 +210,7 @@ class _Stages(DormandPrince8):
     def _find_stages(self, lanes: Lanes, h: Array) -> tuple[list[Array], Array]:
         """As `DormandPrince8` does."""
         stepper, state = self._stepper, np.ascontiguousarray(lanes.state)
-        made = stepper._call(stepper._try, self._run, state, slice(None), float(h[0]), 1)
+        made = stepper._call("try", self._run, state, slice(None), float(h[0]), 1)
         self._errors = made.five, made.three
         rows = stepper._work[: (STAGES + 1) * state.size].reshape(STAGES + 1, *state.shape)
         return list(rows[:STAGES]), rows[STAGES].copy()
@@ -198,7 +245,9 @@ def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
 
 
 def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
-    """A fresh object makes the steps of the twin, bit for bit: both ask one kernel for rates.
+    """A fresh object makes the steps of the twin, bit for bit.
+
+    Where series call functions beyond sqrt, states are near: 1e-9 of the largest.
 
     Raises:
         CrossCheckError: It does not.
@@ -206,15 +255,21 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
     sized = system.resize({system.index.name: system.small + 6})
     fresh, twin = (
         FamilyStepper(sized, choice, target, library),
-        StepwiseStepper(sized, choice, target, None),
+        FamilyTwin(sized, choice, target),
     )
-    lengths = [(3, 2.0**-7), *([(1, 0.0)] if choice.name == "dop853" else [])]
+    # functions of NumPy differ from those of C, and a rounding may decide on the length of a step
+    exact = choice.name != "taylor" or not system.elementary
+    lengths = [(3, 2.0**-7), (13, 2.0**-7)]
+    if exact and choice.name != "rk4":
+        lengths += [(1, 0.0), (13, 0.0)] if choice.name == "taylor" else [(1, 0.0)]
     for members, step in lengths:
         found, expected = (_probe(sized, members, step) for _ in range(2))
         fresh.advance(found, 0, members, 12)
         twin.advance(expected, 0, members, 12)
         for name in ("state", "time", "step", "steps", "status"):
-            if not np.array_equal(getattr(found, name), getattr(expected, name), equal_nan=True):
+            one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
+            tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
+            if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
                 raise CrossCheckError(
                     f"a wrong solver was compiled: {choice} of {system.name}, solver.c, differs "
                     "from its NumPy twin. Set CC to another compiler, or run `coadjoint "
@@ -245,6 +300,29 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     return run
 
 
+def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_auto: bool) -> str:
+    """Why the method of Taylor does not apply to a family, as a clause; "" where it does.
+
+    Args:
+        system: The family.
+        order: Of the method.
+        members: How many trajectories there are.
+        is_auto: Whether it does not apply either where ``dop853`` is faster.
+    """
+    if not (system.folder / "solver.py").is_file():
+        return "its folder was generated without series: run `coadjoint regenerate`"
+    own, pairs = system.count_series(order, members)
+    most = SHARE * find_memory()
+    if own + pairs > most:
+        return (
+            f"its series of {system.size} members {system.index.name} take "
+            f"{(own + pairs) / 1e9:.1f} GB, and at most {most / 1e9:.1f} GB are taken"
+        )
+    if is_auto and pairs > KEPT_NEAR:
+        return f"its series of pairs take {pairs / 1e6:.0f} MB, and dop853 is faster"
+    return ""
+
+
 def find_stepper(system: FamilySystem, choice: Choice, target: str) -> StepwiseStepper:
     """Who makes the steps of a family: C, or its twin where that is asked for or C fails."""
     if target in FLAGS:
@@ -253,4 +331,4 @@ def find_stepper(system: FamilySystem, choice: Choice, target: str) -> StepwiseS
         except (CompilerError, CrossCheckError) as error:
             advice = HOW_TO_GET_ONE if isinstance(error, CompilerError) else ""
             say_once(f"{error} The NumPy steps are used instead. {advice}".rstrip())
-    return StepwiseStepper(system, choice, target, None)
+    return FamilyTwin(system, choice, target)

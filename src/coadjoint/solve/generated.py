@@ -16,12 +16,13 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
-from coadjoint.solve.family_steps import find_stepper
+from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
@@ -74,6 +75,23 @@ def find_stepwise(system: System, inputs: Any) -> str:
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
     return system.stepwise
+
+
+def find_series_obstacle(
+    system: System, stepwise: str, rtol: float, members: int, *, is_auto: bool
+) -> str:
+    """Why the method of Taylor does not apply, as a clause; "" where it does.
+
+    Args:
+        system: The System.
+        stepwise: Why its steps are made in Python, or "".
+        rtol: As given, or the default.
+        members: How many trajectories there are.
+        is_auto: Whether a method that is slower does not apply either.
+    """
+    if isinstance(system, FamilySystem):
+        return tell_series_obstacle(system, choose_order(rtol), members, is_auto=is_auto)
+    return f"it needs rates of all orders, and {stepwise}" if stepwise else ""
 
 
 def simulate(system: System, request: Request) -> Solution:

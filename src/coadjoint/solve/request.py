@@ -288,7 +288,7 @@ def prefers_dop853(
         obstacle: Why generated solvers do not apply or their polynomials are asked for, or "".
     """
     solvers = system._solvers
-    if _normal(method) != "auto" or step is not None or obstacle or not solvers.has_files(kind):
+    if not is_auto(method) or step is not None or obstacle or not solvers.has_files(kind):
         return False
     return solvers.find_costs(kind).is_dop853_faster(rtol)
 
@@ -335,6 +335,11 @@ def choose_method(
         )
     _check_step(name, step, tolerances=tolerances)
     return name
+
+
+def is_auto(method: Any) -> bool:
+    """Whether a method is left to us."""
+    return _normal(method) == "auto"
 
 
 def _normal(method: Any) -> str:

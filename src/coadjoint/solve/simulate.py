@@ -42,6 +42,7 @@ from coadjoint.solve.request import (
     check_steps,
     choose_method,
     find_kind,
+    is_auto,
     list_times,
     prefers_dop853,
 )
@@ -103,8 +104,14 @@ def simulate(
     else:
         check_no_noise(system, method, seed)
         obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
-        if stepwise and not obstacle:
-            obstacles["taylor"] = f"it needs rates of all orders, and {stepwise}"
+        without = (
+            ""
+            if obstacle
+            else generated.find_series_obstacle(
+                system, stepwise, float(rtol), initial[0].size, is_auto=is_auto(method)
+            )
+        )
+        obstacles |= {"taylor": without} if without else {}
         name = choose_method(system, method, step, obstacles, tolerances=tolerances)
         within = "the path within steps is asked for" if events or dense else obstacle or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):

@@ -93,7 +93,7 @@ def _is_allowed(item: ast.stmt) -> bool:
     return False
 
 
-def _called(function: ast.expr) -> str | None:
+def find_function(function: ast.expr) -> str | None:
     """``sqrt`` of ``np.sqrt``."""
     match function:
         case ast.Attribute(ast.Name("np"), called):
@@ -105,7 +105,7 @@ class _Reading(Reader):
     """The function being read."""
 
     def __init__(self, file: str) -> None:
-        super().__init__(file, "expand", _called)
+        super().__init__(file, "expand", find_function)
         self.body = SolverBody()
         self._told: list[str] = []
 

@@ -1,0 +1,235 @@
+"""Render, solvers of families: the recurrences of a member as the templates of solvers read them.
+
+Comes in: the rates of a family as loops. Goes out: a `FamilySolverText`, plain records that
+templates loop over. Names of coefficients are written with their order, as in all solvers.
+Read next: ``templates/c/family_solver.c.j2`` and ``templates/numpy/family_solver.py.j2``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from coadjoint.elementary import ELEMENTARY
+from coadjoint.lower.families import SUM, Loops, Read
+from coadjoint.lower.family_jets import PartJets, make_family_jets
+from coadjoint.lower.program import Call, Symbol, walk
+from coadjoint.render.solvers import (
+    Line,
+    Stage,
+    arrange_first,
+    arrange_stages,
+    list_names,
+    set_order,
+)
+
+#: What parts compute, by the beginnings of their names.
+_SUMMARIES = {
+    "partners": "Terms of sums over partners",
+    "member": "Rates of a member",
+    "end": "Rates of a member at an end",
+}
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a name of a part is read: ``near(0, -1)`` is the first component of the member before.
+
+    Attributes:
+        name: The name.
+        function: Which kind of place it is.
+        arguments: Which one of these.
+        moves: Whether it has a coefficient of each order.
+    """
+
+    name: str
+    function: str
+    arguments: tuple[int, ...]
+    moves: bool
+
+    @property
+    def text(self) -> str:
+        """Its arguments as they are printed."""
+        return ", ".join(map(str, self.arguments))
+
+
+@dataclass(frozen=True)
+class PartText:
+    """The recurrences of a part as templates print them.
+
+    Attributes:
+        name: In texts.
+        summary: What it computes.
+        places: Where its names are read.
+        kept: Names of arrays of coefficients.
+        fixed: What depends on parameters alone.
+        first: Order 0, results among it.
+        stages: Each order k > 0.
+        results: Results at an order k > 0.
+        single: Names of what is computed at order 0 and read at later ones.
+        count: How many results there are.
+        products: How many sums over orders there are.
+    """
+
+    name: str
+    summary: str
+    places: tuple[Place, ...]
+    kept: tuple[str, ...]
+    fixed: tuple[Line, ...]
+    first: tuple[Line, ...]
+    stages: tuple[Stage, ...]
+    results: tuple[Line, ...]
+    single: tuple[str, ...]
+    count: int
+    products: int
+
+
+@dataclass(frozen=True)
+class FamilySolverText:
+    """The recurrences of a family as templates print them.
+
+    Attributes:
+        partners: Terms of pairs, or None.
+        member: Rates of a member.
+        ends: Rates of those at the ends of an open chain, with their numbers.
+        before: How many members at the beginning have rates of their own.
+        after: How many at the end.
+        components: Rows of the state for each member.
+        shared: Parameters that all members share.
+        indexed: Parameters of each member.
+        reach: How far the members are apart that a part reads, at the most.
+        is_periodic: Whether the last member is followed by the first.
+        functions: Elementary functions that are called, with their arguments, sqrt left out.
+        orders: Whether factors k are read.
+        branches: Whether rates have branch points or jumps.
+    """
+
+    partners: PartText | None
+    member: PartText
+    ends: tuple[tuple[int, PartText], ...]
+    before: int
+    after: int
+    components: int
+    shared: int
+    indexed: int
+    reach: int
+    is_periodic: bool
+    functions: tuple[tuple[str, str], ...]
+    orders: bool
+    branches: bool
+
+    @property
+    def parts(self) -> tuple[PartText, ...]:
+        """All of them, in order."""
+        pairs = () if self.partners is None else (self.partners,)
+        return (*pairs, self.member, *(part for _, part in self.ends))
+
+
+def arrange_family(rates: Loops, shared: int, indexed: int) -> FamilySolverText:
+    """The recurrences of rates.
+
+    Args:
+        rates: The function ``rhs`` of a family.
+        shared: How many parameters all members share.
+        indexed: How many each member has.
+    """
+    parts = [_arrange_part(each, shared) for each in make_family_jets(rates)]
+    by_name = {part.name: part for part in parts}
+    lines = [line for part in parts for line in list_lines(part)]
+    calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
+    read = {name for line in lines for name in list_names(line.value)}
+    return FamilySolverText(
+        partners=by_name.get("partners"),
+        member=by_name["member"],
+        ends=tuple((place, by_name[f"end_{n}"]) for n, (place, _) in enumerate(rates.ends)),
+        before=len(rates.first_ends),
+        after=len(rates.last_ends),
+        components=rates.blocks,
+        shared=shared,
+        indexed=indexed,
+        reach=max(part.reach for part in rates.parts),
+        is_periodic=rates.is_periodic,
+        functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
+        orders="_orders[_m]" in read,
+        branches=any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls),
+    )
+
+
+def list_lines(part: PartText) -> Iterator[Line]:
+    """All lines of a part, in order."""
+    yield from (*part.fixed, *part.first)
+    for stage in part.stages:
+        yield from (*stage.starts, *stage.terms, *stage.lines)
+    yield from part.results
+
+
+def _arrange_part(part: PartJets, shared: int) -> PartText:
+    """The recurrences of a part."""
+    jets = part.jets
+    moving = jets.kept.union(jets.state)
+    first = [*arrange_first(replace(jets, rates=()), moving)]
+    results = [(f"_out[{n}]", rate) for n, rate in enumerate(jets.rates)]
+    first += [Line(name, set_order(whole, "0", moving)) for name, (whole, _) in results]
+    later = tuple(Line(name, set_order(tail, "_k", moving)) for name, (_, tail) in results)
+    stages = tuple(arrange_stages(jets, moving, is_one_loop=False))
+    fixed = tuple(Line(each.name, each.value) for each in jets.fixed)
+    text = PartText(
+        name=part.name,
+        summary=_SUMMARIES[part.name.split("_")[0]],
+        places=tuple(_list_places(part, shared)),
+        kept=tuple(cell.name for cell in jets.cells if cell.name in moving),
+        fixed=fixed,
+        first=tuple(first),
+        stages=stages,
+        results=later,
+        single=(),
+        count=len(results),
+        products=jets.products,
+    )
+    read = _read(later, *((*s.starts, *s.terms, *s.lines) for s in stages))
+    kept, needed = list[Line](), set(read)
+    for line in reversed((*fixed, *first)):
+        if not line.is_new or line.name in needed:
+            kept.append(line)
+            needed |= set(list_names(line.value))
+    early = kept[::-1]
+    names = {line.name for line in fixed}
+    again = {line.name for stage in stages for line in (*stage.starts, *stage.lines)}
+    return replace(
+        text,
+        fixed=tuple(line for line in early if line.name in names),
+        first=tuple(line for line in early if line.name not in names),
+        single=tuple(line.name for line in early if line.is_new and line.name in read - again),
+    )
+
+
+def _read(*groups: Iterable[Line]) -> frozenset[str]:
+    """The names that lines read."""
+    return frozenset(name for lines in groups for line in lines for name in list_names(line.value))
+
+
+def _list_places(part: PartJets, shared: int) -> Iterator[Place]:
+    """Where the names of a part are read, as far as its recurrences read them."""
+    jets = part.jets
+    nodes = [each.value for each in jets.fixed]
+    nodes += [node for cell in jets.cells for node in (cell.value, cell.tail) if node is not None]
+    nodes += [node for rate in jets.rates for node in rate]
+    read = {each.name for node in nodes for each in walk(node) if isinstance(each, Symbol)}
+    for place in (_find_place(each, shared) for each in part.part.reads):
+        if place.name in read:
+            yield place
+    for name in part.program.state:
+        if name.startswith(SUM) and name in read:
+            yield Place(name, "total", (int(name.removeprefix(SUM)),), moves=True)
+
+
+def _find_place(read: Read, shared: int) -> Place:
+    """Where one name is read."""
+    if read.shift is None:
+        return Place(read.name, "shared", (read.rows,), moves=False)
+    moves, function = read.array == "state", "partner" if read.of_partner else "own"
+    assert read.rows == (0 if moves else shared), read
+    arguments: tuple[int, ...] = (read.blocks,)
+    if read.shift and not read.of_partner:
+        function, arguments = "near", (read.blocks, read.shift)
+    return Place(read.name, function if moves else f"{function}_value", arguments, moves)
