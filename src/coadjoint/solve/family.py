@@ -46,7 +46,7 @@ class FamilySystem(System):
         small: The fewest members for which the equations hold.
     """
 
-    stepwise = "the kernels of a family are loops over its members"
+    stepwise = "steps of many equal members are recorded by their twin"
 
     def __init__(
         self,

@@ -1,16 +1,15 @@
 """Steps of families: the steps of a generated ``solver.c``, made for a twin in NumPy.
 
-Comes in: a System of equal members and a choice. Goes out: who advances an `Ensemble`. Times,
-samples and what is recorded are the twin's affair; C makes what takes time, with the same bits: all
-steps of a fixed length up to the next sample, the stages of a step that follows tolerances, and the
-series of a method of Taylor.
-What is not finite is left to the twin, which says so.
+Comes in: a System of equal members and a choice. Goes out: who advances an `Ensemble`, with the
+bits of the twin. Steps that are recorded are led by the twin; C makes their series, or their stages
+for one trajectory.
 Read next: `coadjoint.solve.twins`.
 """
 
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -20,7 +19,7 @@ from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.lower.tableau import STAGES
 from coadjoint.render.targets.c.loader import FLAGS
-from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.runge_kutta import DormandPrince8
@@ -36,16 +35,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-#: Numbers that one call of C works on, about: it ends within a tenth of a second.
-CALL: Final = 1 << 24
-#: States that the work has room for.
-ROOM: Final = {"rk4": 5, "dop853": STAGES + 2, "taylor": 0}
-#: What the objects of methods have.
-FUNCTIONS: Final = {
-    "rk4": ("march",),
-    "dop853": ("march", "try"),
-    "taylor": ("expand", "room"),
-}
+#: Numbers that a first call works on, about: it ends within some hundredths of a second.
+FIRST_NUMBERS: Final = 1 << 14
+#: What the objects of methods have in addition to what all have.
+FUNCTIONS: Final = {"rk4": (), "dop853": ("try",), "taylor": ("expand", "room")}
+#: What two runs have alike.
+COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
+#: Arrays of an ensemble that are handed over.
+ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
 #: How near states are whose functions have other roundings.
 CLOSE: Final = 1e-9
 #: Bytes of series of pairs beyond which ``dop853`` is faster: docs/decisions/family-kernels.md.
@@ -66,12 +63,34 @@ class _Run(ctypes.Structure):
         ("state", _PLACE),
         ("work", _PLACE),
         ("step", _DOUBLE),
-        ("steps", _SIZE),
         ("rtol", _DOUBLE),
         ("atol", _DOUBLE),
         ("five", _DOUBLE),
         ("three", _DOUBLE),
         ("path", _PLACE),
+        ("path_row", _SIZE),
+        ("path_order", _SIZE),
+    )
+
+
+class _Ensemble(ctypes.Structure):
+    """``NAME_solver_ensemble`` of the header, field by field."""
+
+    _fields_ = (
+        ("rates", _PLACE),
+        ("sizes", _PLACE),
+        *((name, _SIZE) for name in ("rows", "parameter_rows", "members", "first", "last")),
+        *((name, _PLACE) for name in ("state", "time", "step", "next", "steps", "rejected")),
+        ("status", _PLACE),
+        ("parameters", _PLACE),
+        ("parameters_stride", _SIZE),
+        ("samples", _PLACE),
+        ("sample_count", _SIZE),
+        ("out", _PLACE),
+        *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
+        ("max_steps", _SIZE),
+        ("work", _SIZE),
+        ("scratch", _PLACE),
     )
 
 
@@ -111,57 +130,49 @@ class FamilyStepper(FamilyTwin):
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
         self._rates_place = system._kernels.find(target, "rhs")
-        self._functions = {name: library.take(f"solver_{name}") for name in FUNCTIONS[choice.name]}
-        self.library, self._work = library, np.empty(0)
+        names = ("advance", "work", *FUNCTIONS[choice.name])
+        self._functions = {name: library.take(f"solver_{name}") for name in names}
+        self.library, self._own = library, threading.local()
+
+    @property
+    def first_work(self) -> int:
+        """Steps of a first call, which are to take some hundredths of a second at the most."""
+        return max(1, FIRST_NUMBERS // self._system.STATE.size)
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
-        """As `Stepper.advance`."""
-        members = slice(first, last)
-        while work > 0:
-            made = 0
-            if "march" in self._functions and record is None and ensemble.size > 0 and work > 1:
-                made = self._sweep(ensemble, members, work - 1)
-            going = super().advance(ensemble, first, last, 1, record)
-            work -= made + 1
-            if not going or (record is not None and len(record.rows) - record.count < going):
-                return going
-        return int((ensemble.status[members] == Status.GOES_ON).sum())
+        """As `Stepper.advance`; the twin makes steps that are recorded."""
+        if record is not None:
+            return super().advance(ensemble, first, last, work, record)
+        given = self._describe(ensemble, first, last)
+        given.work = work
+        given.scratch = self._provide(self._functions["work"](ctypes.byref(given)))
+        return self._functions["advance"](ctypes.byref(given))
 
-    def _sweep(self, run: Ensemble, members: slice, most: int) -> int:
-        """Steps of all members up to the last before a sample or an end; how many were made."""
-        time, following = run.time[members], run.next[members]
-        same = (time == time[0]).all() and (following == following[0]).all()
-        if not same or (run.status[members] != Status.GOES_ON).any():
-            return 0
-        state = np.ascontiguousarray(run.state[:, members])
-        most = min(
-            most, max(1, CALL // state.size), run.max_steps - int(run.steps[members].max()) - 1
+    def _describe(self, run: Ensemble, first: int, last: int) -> _Ensemble:
+        """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
+        given = _Ensemble(
+            rates=self._rates_place,
+            sizes=self._members.ctypes.data,
+            rows=len(run.state),
+            parameter_rows=len(run.parameters),
+            members=run.state.shape[1],
+            first=first,
+            last=last,
+            parameters_stride=0 if run.parameters.ndim == 1 else run.state.shape[1],
+            samples=run.samples.ctypes.data,
+            sample_count=len(run.samples),
+            out=None if run.out is None else run.out.ctypes.data,
+            rtol=run.rtol,
+            atol=run.atol,
+            size=run.size,
+            max_steps=run.max_steps,
         )
-        steps, end = _count_steps(float(time[0]), run.size, float(run.samples[following[0]]), most)
-        if steps < 1:
-            return 0
-        state = state.copy() if state is run.state or state.base is run.state else state
-        self._call("march", run, state, members, run.size, steps)
-        if not np.isfinite(state).all():
-            return 0
-        run.state[:, members] = state
-        run.time[members] = end
-        run.steps[members] += np.uint64(steps)
-        return steps
-
-    def _call(
-        self, name: str, run: Ensemble, state: Array, members: slice, step: float, steps: int
-    ) -> _Run:
-        """Call a function of the solver for a state, which it may write to."""
-        parameters = run.parameters
-        if parameters.ndim > 1:
-            parameters = np.ascontiguousarray(parameters[:, members])
-        given = self._give(state, parameters)
-        given.step, given.steps, given.rtol, given.atol = step, steps, run.rtol, run.atol
-        self._provide(given, ROOM[self._choice.name] * state.size)
-        self._functions[name](ctypes.byref(given))
+        for name in ARRAYS:
+            array = getattr(run, name)
+            assert array.flags.c_contiguous, name
+            setattr(given, name, array.ctypes.data)
         return given
 
     def _give(self, state: Array, parameters: Array) -> _Run:
@@ -176,11 +187,22 @@ class FamilyStepper(FamilyTwin):
             state=state.ctypes.data,
         )
 
-    def _provide(self, given: _Run, size: int) -> None:
-        """Memory for so many numbers to work with."""
-        if self._work.size < size:
-            self._work = np.empty(size)
-        given.work = self._work.ctypes.data
+    def _provide(self, size: int) -> int:
+        """Where this thread has memory for so many numbers to work with."""
+        room: Array | None = getattr(self._own, "room", None)
+        if room is None or room.size < size:
+            room = self._own.room = np.empty(size)
+        return room.ctypes.data
+
+    def _find_stages(self, run: Ensemble, state: Array, step: float) -> tuple[_Run, Array]:
+        """The stages of a step of one trajectory, and its end below them."""
+        parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
+        given = self._give(state, parameters)
+        given.step, given.rtol, given.atol = step, run.rtol, run.atol
+        rows = np.empty((STAGES + 2, *state.shape))
+        given.work = rows.ctypes.data
+        self._functions["try"](ctypes.byref(given))
+        return given, rows
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
@@ -188,7 +210,7 @@ class FamilyStepper(FamilyTwin):
         path = np.empty((len(state), order + 1, state.shape[1]))
         given = self._give(state, parameters)
         given.path = path.ctypes.data
-        self._provide(given, self._functions["room"](ctypes.byref(given)))
+        given.work = self._provide(self._functions["room"](ctypes.byref(given)))
         self._functions["expand"](ctypes.byref(given))
         return path
 
@@ -210,23 +232,14 @@ class _Stages(DormandPrince8):
     def _find_stages(self, lanes: Lanes, h: Array) -> tuple[list[Array], Array]:
         """As `DormandPrince8` does."""
         stepper, state = self._stepper, np.ascontiguousarray(lanes.state)
-        made = stepper._call("try", self._run, state, slice(None), float(h[0]), 1)
+        made, rows = stepper._find_stages(self._run, state, float(h[0]))
         self._errors = made.five, made.three
-        rows = stepper._work[: (STAGES + 1) * state.size].reshape(STAGES + 1, *state.shape)
-        return list(rows[:STAGES]), rows[STAGES].copy()
+        return list(rows[:STAGES]), rows[STAGES]
 
     def _find_errors(self, lanes: Lanes, k: list[Array], end: Array) -> tuple[Array, Array]:
         """As `DormandPrince8` does, of the stages that were made last."""
         five, three = self._errors
         return np.array([five]), np.array([three])
-
-
-def _count_steps(time: float, size: float, until: float, most: int) -> tuple[int, float]:
-    """Steps that end before a time, the last of them left out, and when they end."""
-    steps = 0
-    while steps < most and until - time >= 2.0 * size * 1.000001:
-        time, steps = time + size, steps + 1
-    return steps, time
 
 
 def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
@@ -252,21 +265,23 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
     Raises:
         CrossCheckError: It does not.
     """
-    sized = system.resize({system.index.name: system.small + 6})
+    size = 8 * -(-(system.small + 5) // 8) + 1  # so that fifteen trajectories are computed together
+    sized = system.resize({system.index.name: size})
     fresh, twin = (
         FamilyStepper(sized, choice, target, library),
         FamilyTwin(sized, choice, target),
     )
     # functions of NumPy differ from those of C, and a rounding may decide on the length of a step
     exact = choice.name != "taylor" or not system.elementary
-    lengths = [(3, 2.0**-7), (13, 2.0**-7)]
+    lengths = [(3, 2.0**-7), (15, 2.0**-7)]
     if exact and choice.name != "rk4":
-        lengths += [(1, 0.0), (13, 0.0)] if choice.name == "taylor" else [(1, 0.0)]
+        lengths += [(1, 0.0), (15, 0.0)]
     for members, step in lengths:
         found, expected = (_probe(sized, members, step) for _ in range(2))
-        fresh.advance(found, 0, members, 12)
-        twin.advance(expected, 0, members, 12)
-        for name in ("state", "time", "step", "steps", "status"):
+        for stepper, run in ((fresh, found), (twin, expected)):
+            while stepper.advance(run, 0, members, 5):
+                pass
+        for name in COMPARED:
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):

@@ -98,8 +98,8 @@ class Functions:
     A System has those of its ``functions``.
 
     Attributes:
-        stepwise: Why generated methods make their steps in Python, as a clause; "" where they need
-            not.
+        stepwise: Why generated methods make steps that are recorded in Python, as a clause; ""
+            where they need not.
     """
 
     stepwise: str = ""

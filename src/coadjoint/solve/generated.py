@@ -65,16 +65,17 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     return ""
 
 
-def find_stepwise(system: System, inputs: Any) -> str:
+def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     """Why a generated method makes its steps in Python, as a clause; "" where it does not.
 
     Args:
         system: The System.
         inputs: As `System.simulate` takes them.
+        is_recorded: Whether events or paths within steps are asked for.
     """
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
-    return system.stepwise
+    return system.stepwise if is_recorded else ""
 
 
 def find_series_obstacle(
@@ -164,11 +165,11 @@ def _make_recording(
 
 def _find_stepper(system: System, request: Request, signal: Signal | Array | None) -> Stepper:
     """Who makes the steps."""
+    if isinstance(system, FamilySystem):
+        return find_stepper(system, request.choice, request.target)
     if not request.stepwise:
         members = math.prod(request.state.shape[1:])
         return system._solvers.get(request.choice, request.target, members)
-    if isinstance(system, FamilySystem):
-        return find_stepper(system, request.choice, request.target)
     function = signal if isinstance(signal, Function) else None
     return StepwiseStepper(system, request.choice, request.target, function)
 

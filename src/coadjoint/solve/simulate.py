@@ -94,7 +94,8 @@ def simulate(
     check_target(target)
     check_progress(progress)
     obstacle = generated.find_obstacle(system, target, reconstruct)
-    stepwise = generated.find_stepwise(system, inputs)
+    recorded = bool(events or dense)
+    stepwise = generated.find_stepwise(system, inputs, is_recorded=recorded)
     if has_noise(system):
         given = {"rtol or atol": tolerances, "events": events, "dense": dense, "inputs": inputs}
         given["reconstruct"] = is_asked(reconstruct)
@@ -113,7 +114,8 @@ def simulate(
         )
         obstacles |= {"taylor": without} if without else {}
         name = choose_method(system, method, step, obstacles, tolerances=tolerances)
-        within = "the path within steps is asked for" if events or dense else obstacle or stepwise
+        within = "the path within steps is asked for" if recorded else obstacle or system.stepwise
+        within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
     request = Request(
