@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.render.targets.modules import KernelModule
+    from coadjoint.solve.choices import Choice
+    from coadjoint.solve.family_steps import FamilyTwin
 
 #: Bytes of memory for each row of the state and of the parameters: its name and its place among
 #: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
@@ -44,6 +46,7 @@ class FamilySystem(System):
     Attributes:
         index: The index, with N as its size.
         small: The fewest members for which the equations hold.
+        steppers: Who makes its steps, by method and target, as far as that was asked for.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -66,6 +69,7 @@ class FamilySystem(System):
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
         self._defaults = defaults
+        self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
         size = self.index.size or self.small
         check_memory(name, self.index, size * (state.size + indexed.size))
         super().__init__(

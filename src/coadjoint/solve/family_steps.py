@@ -45,8 +45,9 @@ COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status"
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
 #: How near states are whose functions have other roundings.
 CLOSE: Final = 1e-9
-#: Bytes of series of pairs beyond which ``dop853`` is faster: docs/decisions/family-kernels.md.
-KEPT_NEAR: Final = 1 << 22
+#: Bytes of series of pairs of one trajectory beyond which ``dop853`` is faster:
+#: docs/decisions/family-kernels.md.
+KEPT_NEAR: Final = 1 << 17
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
@@ -333,13 +334,20 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
             f"its series of {system.size} members {system.index.name} take "
             f"{(own + pairs) / 1e9:.1f} GB, and at most {most / 1e9:.1f} GB are taken"
         )
-    if is_auto and pairs > KEPT_NEAR:
-        return f"its series of pairs take {pairs / 1e6:.0f} MB, and dop853 is faster"
+    if is_auto and system.count_series(order, 1)[1] > KEPT_NEAR:
+        return "dop853 is faster for so many pairs"
     return ""
 
 
-def find_stepper(system: FamilySystem, choice: Choice, target: str) -> StepwiseStepper:
+def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
     """Who makes the steps of a family: C, or its twin where that is asked for or C fails."""
+    if (choice, target) not in system.steppers:
+        system.steppers[choice, target] = _find_stepper(system, choice, target)
+    return system.steppers[choice, target]
+
+
+def _find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
+    """The same, of a system that has none yet."""
     if target in FLAGS:
         try:
             return load(system, choice, target)
