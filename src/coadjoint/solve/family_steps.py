@@ -134,11 +134,7 @@ class FamilyStepper(FamilyTwin):
         names = ("advance", "work", *FUNCTIONS[choice.name])
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
-
-    @property
-    def first_work(self) -> int:
-        """Steps of a first call, which are to take some hundredths of a second at the most."""
-        return max(1, FIRST_NUMBERS // self._system.STATE.size)
+        self.first_work = max(1, FIRST_NUMBERS // system.STATE.size)
 
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
