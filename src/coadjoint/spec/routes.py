@@ -30,8 +30,8 @@ class Route:
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
         needs_energy: Whether it must have one of its energies.
-        is_first_order: Whether velocities of all coordinates follow from the state, in which the
-            Lagrangian is of first order.
+        is_first_order: Whether all velocities follow from the state, in which the Lagrangian is of
+            first order.
         is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
             before the variation give.
     """
@@ -101,7 +101,13 @@ _ROUTES = (
         energies=_LAGRANGIAN,
         options=_ACTS,
     ),
-    Route(name="first-order", kinds=("configuration",), energies=_LAGRANGIAN, is_first_order=True),
+    Route(
+        name="first-order",
+        kinds=("configuration", "algebra"),
+        energies=_LAGRANGIAN,
+        options=("forces", "dissipation"),
+        is_first_order=True,
+    ),
     Route(name="newton", kinds=_SPACE, table="newton"),
     Route(name="alignment", kinds=_SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),
