@@ -7,6 +7,7 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics import bound_momenta, first_order
+from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
 from tests.derive.test_first_order import FOLLOWS, PINNED, THREE, VORTICES, rates, refuse
 from tests.specs import prove_claims, spec
@@ -156,6 +157,69 @@ def test_forces_that_are_pushed_wrongly_are_refuted(monkeypatch):
     monkeypatch.setattr(bound_momenta, "apply", lambda matrix, a: (0 * matrix[0][0],) * len(matrix))
     statement = "the motion by first-order is {x, h} and the forces"
     assert verdicts(TOP, *FORCED)[statement] is Verdict.REFUTED
+
+
+# -- a bracket of the spec, and one of the form ---------------------------------------------------
+
+OSCILLATOR = """
+title = "An oscillator, by its bracket and by its form"
+routes = ["poisson", "first-order"]
+[variables]
+q = { role = "coordinate", default = 1 }
+p = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+f = { role = "velocity", of = "p" }
+[poisson]
+canonical = [["q", "p"]]
+[lagrangian]
+l = "p*v - p^2/2 - q^2/2"
+[hamiltonian]
+h = "p^2/2 + q^2/2"
+"""
+SAME = "the bracket (d theta)^-1 of the Lagrangian is that of [poisson]"
+LAW = "d/dt dl/dv = dl/dq along the motion"
+EQUAL = "poisson and first-order give the same motion"
+
+
+def test_a_declared_bracket_and_that_of_the_form_have_to_agree():
+    """Both give the same motion; velocities are emitted by either."""
+    found = verdicts(OSCILLATOR)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert {SAME, LAW, EQUAL} <= found.keys()
+    equations = derive(spec(OSCILLATOR))
+    q, p = equations.state
+    assert (equations.observables["v"], equations.observables["f"]) == (p, -q)
+
+
+@pytest.mark.parametrize(
+    ("change", "refuted"),
+    [
+        (("p*v", "2*p*v"), {SAME, LAW, EQUAL}),
+        (("p*v - p^2/2", "p*v - p^2"), {LAW, EQUAL}),
+        (('routes = ["poisson", "first-order"]', 'routes = ["first-order"]'), set()),
+    ],
+)
+def test_a_form_of_another_bracket_or_energy_is_refuted(change, refuted):
+    """With one route alone the bracket is compared all the same."""
+    changes = [change, ("[hamiltonian]\nh = ", "#")] if not refuted else [change]
+    found = verdicts(OSCILLATOR, *changes)
+    assert {text for text, verdict in found.items() if verdict is Verdict.REFUTED} == refuted
+    assert SAME in found
+
+
+def test_a_declared_bracket_leaves_nothing_to_follow_and_no_forces():
+    """They are refused where the spec is read."""
+    with pytest.raises(SpecError, match="is one of all coordinates"):
+        spec(
+            OSCILLATOR,
+            ('p = { role = "coordinate" }', 'p = { role = "coordinate", follows = true }'),
+        )
+    forced = ("[hamiltonian]", '[forces]\nv = "-v"\n[hamiltonian]')
+    with pytest.raises(SpecError, match=r"poisson does not accept \[forces\]"):
+        spec(OSCILLATOR, forced)
+    alone = ('"poisson", "first-order"', '"first-order"')
+    damped = ("[hamiltonian]", '[forces]\nv = "-v"\n#')
+    assert verdicts(OSCILLATOR, alone, damped, ('h = "p^2', '# "p^2'))[SAME] is Verdict.PROVED
 
 
 # -- forces over coordinates ----------------------------------------------------------------------

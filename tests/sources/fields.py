@@ -211,12 +211,13 @@ def centre_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def centre_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """``m u^2/2 + mu |B|``, and ``q A_phi rho``."""
+    """``m u^2/2 + mu |B|``, the rates by the names of velocities, and ``q A_phi rho``."""
     m, q, mu, B0, L = parameters
     x, y, z, u = state
     flux = B0 * (x**2 + y**2) * (1 + z**2 / L**2) / 2
     return {
         "energy": m * u**2 / 2 + mu * centre_parts(state, parameters)[1],
+        **dict(zip(("V1", "V2", "V3", "a"), centre_rates(state, parameters), strict=True)),
         "J": q * flux,
     }
 

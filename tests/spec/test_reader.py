@@ -169,7 +169,7 @@ SHIPPED = {
         "m q B0 L",
         ("euler-lagrange", "canonical", "newton"),
     ),
-    "guiding_centre": ("X1 X2 X3 u", "m q mu B0 L", ("poisson",)),
+    "guiding_centre": ("X1 X2 X3 u", "m q mu B0 L", ("poisson", "first-order")),
     "suslov_so5": ("w1 w2 w3 w4", "K1 K2 K3 K4 k1 k2 k3 k4 j", CONSTRAINED),
     "roller_racer": ("v omega phi", "m1 m2 I1 I2 d1 d2", CONSTRAINED),
     "appell_machine": ("omega z phi vphi", "M m A C a b rho g", CONSTRAINED),

@@ -8,12 +8,14 @@ Read next: `coadjoint.derive.mechanics.first_order`, `coadjoint.derive.mechanics
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
+from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.records import sign_text
+from coadjoint.derive.structure import poisson_structure
 from coadjoint.exact import Element
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Examined
@@ -34,6 +36,25 @@ def about_stationarity(motion: Motion) -> Iterator[Examined]:
     if motion.setting.momenta:
         text += ", with p = dl/dv of the declared momenta"
     yield text, "legendre", partial(_defects, motion)
+
+
+def about_form(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """That the bracket of the one-form is the one that a spec declares."""
+    for each in routes:
+        if each.route == "first-order" and each.spec.poisson is not None:
+            text = "the bracket (d theta)^-1 of the Lagrangian is that of [poisson]"
+            yield text, "equivalence", partial(_bracket_defects, each)
+
+
+def _bracket_defects(by_form: Equations) -> list[Element]:
+    """The brackets of the state by the form, minus those that are declared."""
+    found, declared = by_form.exact.poisson_tensor, poisson_structure(by_form.setting).tensor
+    assert found is not None, "a form of first order has a bracket"
+    return [
+        by_form.close(a) - b
+        for rows in zip(found, declared, strict=True)
+        for a, b in zip(*rows, strict=True)
+    ]
 
 
 def _defects_over_algebra(motion: Motion) -> list[Element]:

@@ -103,7 +103,7 @@ _ROUTES = (
     ),
     Route(
         name="first-order",
-        kinds=("configuration", "algebra"),
+        kinds=("configuration", "poisson", "algebra"),
         energies=_LAGRANGIAN,
         options=("forces", "dissipation"),
         is_first_order=True,
@@ -119,8 +119,11 @@ ROUTES: Mapping[str, Route] = MappingProxyType({route.name: route for route in _
 
 
 def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """The tables of which a route takes one: a bracket that pairs nothing knows no Lagrangian."""
-    energies = ROUTES[route].energies
-    if "poisson" in kinds and "canonical" not in kinds:
+    """The tables of which a route takes one: a bracket that pairs nothing knows no Lagrangian.
+
+    One of first order has a bracket of its own, which is compared with that of the spec.
+    """
+    energies, is_first_order = ROUTES[route].energies, ROUTES[route].is_first_order
+    if "poisson" in kinds and "canonical" not in kinds and not is_first_order:
         return tuple(each for each in energies if each != "lagrangian")
     return energies

@@ -161,6 +161,10 @@ def _read_variable(
         problem = f"{name!r} follows from constraints that only the route first-order finds"
         expected = 'routes = ["first-order"], or a coordinate of the state'
         raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    if part.follows and reading.file.poisson is not None:
+        problem = f"{name!r} follows, and the bracket of [poisson] is one of all coordinates"
+        expected = "a state of all of them, or no [poisson]"
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
     whole = follows and not isinstance(part.follows, list)
     if part.default is not None and (whole or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
