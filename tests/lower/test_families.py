@@ -7,9 +7,9 @@ import pytest
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
-from tests.families import CHAIN, RING, VORTICES, family_of, read
+from tests.families import CHAIN, PEAKONS, RING, VORTICES, family_of, read
 
-TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES}
+TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "peakons": PEAKONS}
 #: Operations of a member and of a pair, counted by hand before the kernels were looked at. A spin:
 #: three sums of neighbours, three by J, the anisotropy 2 D S3, a cross product. Vortices: two
 #: differences, the square of the distance, one quotient, two products for each sum.

@@ -701,7 +701,7 @@ FORMULAS = [
     ("a \u00d7 b", "The cross product is cross(a, b).", "cross(a, b)"),
     ("a \u00b7 b", "The dot product is dot(a, b), a product *.", "dot(a, b)"),
     ("m \u2212 c", "Write the minus sign of the keyboard, -.", "m - c"),
-    ("sum(a, b)", "Sums over members need a table [index].", "dot(a, b)"),
+    ("sum(a, b)", "Sums over members need [index]; events name an observable.", "dot(a, b)"),
     ("m^2^c", "Write (a^b)^c, or multiply the exponents out.", "(m^2)^2"),
     ("m c", "Write m*c.", "m*c"),
     ("2(m + c)", "Write * for a product.", "2*(m + c)"),

@@ -76,9 +76,16 @@ class _Symbols:
         return self._family.neighbours[component, read.shift] if read.shift else component
 
     def slope(self, tree: Tree, sums: Mapping[Symbol, Symbol]) -> Tree:
-        """The derivative of a tree along the vector."""
+        """The derivative of a tree along the vector, between jumps.
+
+        SymPy differentiates `sign` of real symbols alone, and gives it a derivative where it jumps.
+        """
         moving = self.vector | dict(sums)
-        return sympy.Add(*(sympy.diff(tree, s) * h for s, h in moving.items() if tree.has(s)))
+        real = {s: sympy.Dummy(s.name, real=True) for s in tree.free_symbols}
+        back, whole = {dummy: s for s, dummy in real.items()}, tree.xreplace(real)
+        slopes = (sympy.diff(whole, real[s]) * h for s, h in moving.items() if s in real)
+        along = sympy.Add(*slopes).replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
+        return along.xreplace(back)
 
 
 def _list_parts(

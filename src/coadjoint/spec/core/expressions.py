@@ -231,7 +231,8 @@ class _Reader:
         if name.text not in self.functions:
             expected = f"one of {', '.join(sorted(self.functions))}"
             plain = f"Write {name.text}[1] for a component, {name.text}*(...) for a product."
-            plain = "Sums over members need a table [index]." if name.text == "sum" else plain
+            if name.text == "sum":
+                plain = "Sums over members need [index]; events name an observable."
             hint = did_you_mean(name.text, self.functions, plain)
             problem = f"{name.text!r} is not a function"
             raise self._fault(problem, name.start, name.end, expected, hint)
