@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.lower.families import Loops, Part
 from coadjoint.lower.jets import Jets, make_jets
-from coadjoint.lower.program import Level, Program, Symbol, walk
+from coadjoint.lower.program import Level, Node, Program, Statement, Symbol, walk
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,29 @@ def make_family_jets(rates: Loops) -> tuple[PartJets, ...]:
 def list_rate_parts(rates: Loops) -> Iterator[tuple[str, Part]]:
     """The parts of rates by their names in texts."""
     if rates.partners is not None:
-        yield "partners", rates.partners
+        yield "partners", _take_first(rates.partners, rates.pair_sums)
     assert rates.member is not None, rates.name
     yield "member", rates.member
     for n, (_, part) in enumerate(rates.ends):
         yield f"end_{n}", part
+
+
+def _take_first(part: Part, count: int) -> Part:
+    """The terms of member i alone: each member goes through all its partners."""
+    outputs = part.program.outputs[:count]
+    needed = {name for output in outputs for name in _list_names(output.value)}
+    statements = list[Statement]()
+    for statement in reversed(part.program.statements):
+        if statement.name in needed:
+            statements.append(statement)
+            needed |= set(_list_names(statement.value))
+    program = replace(part.program, statements=tuple(statements[::-1]), outputs=outputs)
+    return Part(program, part.reads)
+
+
+def _list_names(node: Node) -> Iterator[str]:
+    """The names that a node reads."""
+    return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
 def _make(name: str, part: Part) -> PartJets:
@@ -63,7 +81,7 @@ def _separate(part: Part) -> Program:
     constant = [read.name for read in part.reads if read.array == "parameters"]
     known, statements = set(constant), []
     for statement in program.statements:
-        read = {node.name for node in walk(statement.value) if isinstance(node, Symbol)}
+        read = set(_list_names(statement.value))
         if read <= known:
             known.add(statement.name)
         level: Level = "parameters" if read <= known else "member"
