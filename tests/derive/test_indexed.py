@@ -13,7 +13,9 @@ from coadjoint.derive.document import document
 from coadjoint.errors import DerivationError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
+    BEADS,
     CHAIN,
+    NECKLACE,
     RING,
     VORTICES,
     are_equal,
@@ -23,7 +25,9 @@ from tests.families import (
     rates_of_members,
     read,
     value_of,
+    write_beads,
     write_chain,
+    write_necklace,
     write_ring,
     write_vortices,
 )
@@ -33,6 +37,8 @@ SYSTEMS = {
     "ring": (RING, write_ring, (2, 3, 4, 5)),
     "chain": (CHAIN, write_chain, (4, 5, 6)),
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
+    "beads": (BEADS, write_beads, (2, 3, 5)),
+    "necklace": (NECKLACE, write_necklace, (2, 4, 7)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -79,6 +85,9 @@ def spoil_pairs(family):
         ("chain", 5, spoil_neighbour),
         ("chain", 5, spoil_end),
         ("vortices", 3, spoil_pairs),
+        ("beads", 4, spoil_end),
+        ("beads", 4, spoil_pairs),
+        ("necklace", 5, spoil_neighbour),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
@@ -87,7 +96,9 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
         check_rates(spoil(families[name]), SYSTEMS[name][1](n), n)
 
 
-@pytest.mark.parametrize(("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4)])
+@pytest.mark.parametrize(
+    ("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("beads", 4)]
+)
 def test_the_energy_is_that_of_all_members(families, name, n):
     """Sums begin and end where the energy that is written out has its terms."""
     energy = derive(read_spec_text(SYSTEMS[name][1](n), "whole.toml")).energy

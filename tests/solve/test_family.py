@@ -12,7 +12,7 @@ from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import RING, VORTICES
+from tests.families import NECKLACE, RING, VORTICES
 from tests.specs import shipped
 
 
@@ -82,6 +82,33 @@ def test_rates_are_those_of_the_equations(ring, size, target):
     S, D = source.normal(size=(3, size)), source.uniform(1, 2, size)
     rates = system.rhs({"S": S}, {"J": 0.7, "D": D}, target=target)
     np.testing.assert_allclose(rates.reshape(3, size), turn(S, 0.7, D), rtol=1e-13, atol=1e-14)
+
+
+@pytest.fixture(scope="module")
+def necklace():
+    """Beads on a ring, with springs between neighbours, of which all repel each other."""
+    with load_texts(pipeline.render(read_spec_text(NECKLACE, "necklace.toml")).texts) as system:
+        yield system
+
+
+def pull(q, k, c):
+    """The forces on beads, typed by hand."""
+    apart = q[:, np.newaxis] - q
+    repelled = 2 * np.outer(c, c) * apart / (1 + apart**2) ** 2
+    springs = k * (np.roll(q, -1) - q)
+    return springs - np.roll(springs, 1) + repelled.sum(axis=1)
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "python"])
+@pytest.mark.parametrize("size", [4, 39, 40, 53])
+def test_springs_and_all_pairs_act_together(necklace, size, target):
+    """In a kernel whose vectors end where a ring closes; with blocks of members and without."""
+    system, source = necklace.resize({"i": size}), np.random.default_rng(size)
+    q, p = source.normal(size=(2, size))
+    k, c = source.uniform(1, 2, (2, size))
+    found = system.rhs({"q": q, "p": p}, {"k": k, "c": c}, target=target)
+    np.testing.assert_allclose(found[:size], p)
+    np.testing.assert_allclose(found[size:], pull(q, k, c), rtol=1e-12, atol=1e-12)
 
 
 def test_a_batch_has_the_bits_of_its_members(ring):

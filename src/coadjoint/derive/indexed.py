@@ -55,10 +55,9 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
-    small = 2 * declared.reach
+    small = max(1 if declared.index.periodic else 2 * declared.reach, 2 if declared.pairs else 1)
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
-    rates = reader.rates_with_pairs if declared.pairs else reader.rates_of(reader.middle)
-    rates = tuple(rates)
+    rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
     named |= {
@@ -79,7 +78,7 @@ def derive_family(equations: Equations) -> Family:
         pair_sums=pairs,
         ends=reader.ends,
         totals=totals,
-        small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
+        small=small,
     )
 
 
@@ -216,7 +215,9 @@ class _Reader:
         return 0 if self.declared.index.periodic else self.declared.reach
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
-        """The rates of a member in generic symbols."""
+        """The rates of a member in generic symbols, and in those of sums over its partners."""
+        if self.declared.pairs:
+            return tuple(self._rates_with_pairs(member))
         reach = self.declared.reach
         new = self.rename(member, reach, reach)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
@@ -227,7 +228,7 @@ class _Reader:
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
         """The rates of the members of an open chain that lack neighbours."""
-        if self.declared.index.periodic or self.declared.pairs:
+        if self.declared.index.periodic:
             return {}
         reach, count = self.declared.reach, self.members.count
         starts = {k: self.rates_of(k) for k in range(reach)}
@@ -334,13 +335,13 @@ class _Reader:
             terms.append(value)
         return terms
 
-    def _flow(self, energy: Element) -> list[Element]:
-        """The brackets of the first member's state with a function."""
+    def _flow(self, energy: Element, member: int = 0) -> list[Element]:
+        """The brackets of a member's state with a function."""
         tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
         assert tensor is not None, self.equations.route
         state = self.equations.variables
         slopes = field.gradient(energy, state)
-        rows = [state.index(name) for name in self.names_of(self.declared.variables, 0)]
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
         return [
             field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
             for row in rows
@@ -350,30 +351,34 @@ class _Reader:
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
         """What the partners add to the rates of a member, by the components to which they add."""
         field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
-        flows = zip(*map(self._flow, self.pair_energies), strict=True)
-        for state, parts in zip(self.states, flows, strict=True):
-            term = field.sum(parts)
+        flows = [self._flow(energy) for energy in self.pair_energies]
+        for n, state in enumerate(self.states):
+            term = field.sum(flow[n] for flow in flows)
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
                 sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
         return sums
 
-    @property
-    def rates_with_pairs(self) -> Iterator[sympy.Expr]:
-        """The rates of a member with sums over its partners.
-
-        What the energy of one member gives is the member's own share.
-        """
-        spec, field = self.equations.spec, self.equations.setting.field
+    @cached_property
+    def own_energy(self) -> Element:
+        """What the sums over members give to the energy of the window."""
+        spec, values = self.equations.spec, list[Element]()
         assert spec.hamiltonian is not None, spec.name
-        own = [field.zero for _ in self.states]
         for each, term in self.sums_of(spec.hamiltonian):
             if len(each.indices) == 1:
-                placed = place_at(term, {each.indices[0]: 0}, self.members)
-                flow = self._flow(*self.value(placed))
-                own = [a + b for a, b in zip(own, flow, strict=True)]
-        new = self.rename(0, 0, 0)
-        for state, value in zip(self.states, own, strict=True):
+                before, after = (0, 0) if self.members.periodic else reach(each.term)
+                for at in range(before, self.members.count - after):
+                    values += self.value(place_at(term, {each.indices[0]: at}, self.members))
+        return self.equations.setting.field.sum(values)
+
+    def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:
+        """The rates of a member with sums over its partners.
+
+        What the energy of members and neighbours gives is the member's own share.
+        """
+        width = self.declared.reach
+        new = self.rename(member, width, width)
+        for state, value in zip(self.states, self._flow(self.own_energy, member), strict=True):
             total = self.see(self.write(value), new)
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

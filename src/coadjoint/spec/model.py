@@ -134,7 +134,7 @@ class Windows:
         reach: How many members further the energy couples.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
-        windows: The spec written out for two numbers of members, the smaller first.
+        windows: The spec written out for two or three numbers of members, the smallest first.
         of_members: The claims of what each member conserves, as statements.
         lax: The spec and its Lax pair, written out for all numbers of members from the least one
             to that at which both ends of the matrices keep apart.
@@ -150,7 +150,7 @@ class Windows:
     reach: int
     pairs: bool
     least: int
-    windows: tuple[Spec, Spec]
+    windows: tuple[Spec, ...]
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
     lax: tuple[tuple[Spec, Lax], ...] = ()

@@ -1,4 +1,4 @@
-"""Windows: a spec with an index, written out for two small numbers of members.
+"""Windows: a spec with an index, written out for two or three small numbers of members.
 
 Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
 spec has, with all that is known of the others in its attribute ``family``. The numbers are those
@@ -6,7 +6,8 @@ from which the claims follow for every other number (docs/decisions/windows.md):
 
 * a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
 * an open chain: w and w + 1, and enough for a member with all its neighbours;
-* pairs: 2 and 3.
+* pairs: 2 and 3;
+* pairs and neighbours: 4 w, 4 w + 1 and 4 w + 2 in a ring, and in a chain 2 w, 2 w + 1 and 2 w + 2.
 
 Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
 """
@@ -77,12 +78,14 @@ def read_windows(
     least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
-        if pairs:
+        if pairs and size < 2:
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         return read(*write_out_file(source, file, index, size))
     bare = file.model_copy(update={"lax": None})
-    small, large = (read(*write_out_file(source, bare, index, first + more)) for more in (0, 1))
+    count = 3 if pairs and (reach or width) else 2
+    windows = tuple(read(*write_out_file(source, bare, index, first + n)) for n in range(count))
+    small = windows[0]
     last = first if file.lax is None else max(first, 2 * reach + width + 3)
     lax = tuple(
         _split_lax(source, read(*write_out_file(source, file, index, count)))
@@ -104,7 +107,7 @@ def read_windows(
         reach=reach,
         pairs=pairs,
         least=least,
-        windows=(small, large),
+        windows=windows,
         lax=lax,
     )
     return _with_family(source, bare, read, family)
@@ -135,7 +138,7 @@ def _with_family(
     Raises:
         SpecError: The energy or an observable is no sum over members.
     """
-    large, index = family.windows[1], family.index
+    large, index = family.windows[-1], family.index
     assert large.hamiltonian is not None, large.name
     for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
         _check_total(source, formula)
@@ -148,14 +151,14 @@ def _with_family(
         loaded = _read_loaded(source, file, read, family, place)
         loaded = _select(loaded, [n for n, kind in enumerate(kinds) if kind == "other"])
     kept = [n for n, kind in enumerate(kinds) if kind != "other"]
-    small, large = (_select(each, kept) for each in family.windows)
+    windows = tuple(_select(each, kept) for each in family.windows)
     family = replace(
         family,
-        windows=(small, large),
+        windows=windows,
         of_members=frozenset(f"{each.formula.in_one_line} is conserved" for each in members),
         loaded=loaded,
     )
-    return replace(large, family=family, index=(index,))
+    return replace(windows[-1], family=family, index=(index,))
 
 
 def _select(spec: Spec, places: Sequence[int]) -> Spec:
@@ -251,9 +254,12 @@ def _check_total(source: Source, formula: Formula) -> None:
 
 
 def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
-    """The smaller of two numbers of members from which claims follow for all."""
-    if pairs:
+    """The smallest of the numbers of members from which claims follow for all."""
+    if pairs and not (reach or width):
         return 2
+    if pairs:
+        whole = reach + width
+        return 4 * whole if index.periodic else max(2 * whole, 2 * reach + width, 2)
     whole = reach + max(width, reach)
     return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
 
@@ -355,10 +361,6 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
     reach = span(energy)
     width = span([*shared, *_texts(file.observables), *_texts(file.claims), *_texts(file.lax)])
     pairs = any(_PAIRS.search(text) for text in [*energy, *_texts(file.observables)])
-    if pairs and (reach or width):
-        problem = "there are sums over pairs, and sums that name neighbours"
-        expected = "one of them in a spec"
-        raise source.fault(("hamiltonian",), problem, "pairs and neighbours", expected)
     most = limits.NEIGHBOURS
     if max(reach, width) > 2 * most:
         problem = f"members that are {max(reach, width)} apart stand in one formula"
