@@ -9,6 +9,7 @@ from coadjoint import load, pipeline
 from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
 from coadjoint.solve import family as families
 from coadjoint.solve.choices import Choice
+from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
@@ -251,6 +252,28 @@ def test_defaults_may_differ_from_member_to_member(default, expected, resized):
         known = system.PARAMETERS.defaults
         assert [known[f"B{c}[{i}]"] for c in (1, 2, 3) for i in range(6)] == expected
         assert ("B1[0]" in system.resize({"i": 7}).PARAMETERS.defaults) == resized
+
+
+def test_the_drift_of_what_begins_at_zero_is_told_as_it_is():
+    """Momentum of the figure eight: a ratio to its own roundings says nothing."""
+    with load_texts(pipeline.render(shipped("n_body")).texts) as system:
+        start = [system.STATE.defaults[name] for name in system.STATE.components]
+        run = system.simulate(start, (0.0, 1.0), target="numpy", samples=5)
+        many = system.simulate(np.transpose([start] * 2), (0.0, 1.0), target="numpy", samples=5)
+        for solution in (run, many):
+            told = {name: tell_drift(solution, name) for name in solution.conserved}
+            assert told["P"].endswith("e-16 absolute") or told["P"] == "0.0e+00"
+            assert float(told["energy"]) == float(f"{np.max(solution.drift['energy']):.1e}") > 0
+
+
+@pytest.mark.parametrize(("text", "pair"), [(VORTICES, 18), (RING, 0)])
+def test_operations_of_a_pair_are_counted(text, pair):
+    """Those of both members together, and none where there are no pairs."""
+    rendered = pipeline.render(read_spec_text(text, "sample.toml"))
+    assert rendered.pair_operations == pair
+    assert (
+        "Operations per pair of members, for both of them" in rendered.texts["kernel.c"]
+    ) == bool(pair)
 
 
 def test_starts_may_differ_from_member_to_member():

@@ -369,7 +369,8 @@ def tell_summary(loops: Loops) -> str:
 
 def count_costs(loops: Loops) -> list[str]:
     """What a call costs, for each member or pair."""
-    told = [("pair of members", loops.partners), ("member", loops.member)]
+    told = [("pair of members, for both of them", loops.partners)]
+    told += [("member without its pairs" if loops.partners else "member", loops.member)]
     told += [
         ("member" if each.over == "members" else "pair of members", each.part)
         for each in loops.totals
