@@ -254,6 +254,19 @@ def test_defaults_may_differ_from_member_to_member(default, expected, resized):
         assert ("B1[0]" in system.resize({"i": 7}).PARAMETERS.defaults) == resized
 
 
+def test_spins_begin_as_a_wave_of_any_number_of_waves():
+    """It turns with the frequency 2 J cos(theta) (1 - cos(k)), k = pi/4 and cos(theta) = 4/5."""
+    with load_texts(pipeline.render(shipped("heisenberg_lattice")).texts) as system:
+        waves = system.resize({"i": 24})
+        start = np.array(list(waves.STATE.defaults.values())).reshape(3, 24)
+        rates = waves.rhs(start.ravel(), target="numpy").reshape(3, 24)
+        assert not system.resize({"i": 12}).STATE.defaults
+    frequency = 1.6 * (1 - np.sqrt(0.5))
+    np.testing.assert_allclose(start[0], 0.6 * np.cos(np.pi * np.arange(24) / 4), atol=1e-14)
+    wave = [frequency * start[1], -frequency * start[0], 0 * start[2]]
+    np.testing.assert_allclose(rates, wave, atol=1e-14)
+
+
 def test_the_drift_of_what_begins_at_zero_is_told_as_it_is():
     """Momentum of the figure eight: a ratio to its own roundings says nothing."""
     with load_texts(pipeline.render(shipped("n_body")).texts) as system:

@@ -99,6 +99,19 @@ BAD = [
     (RING, ("size = 6", "size = 0"), "greater than or equal to 1"),
     (RING, ('D = { index = "i"', 'D = { index = "k"'), "there is no index 'k'"),
     (RING, ('D = { index = "i", default = 1', 'D = { index = "i", default = [1, 2]'), "6 entries"),
+    (
+        RING,
+        (
+            'D = { index = "i", default = 1',
+            'D = { index = "i", repeats = true, default = [1, 2, 3, 4]',
+        ),
+        "and 6 a multiple of their number",
+    ),
+    (
+        RING,
+        ('D = { index = "i", default = 1', 'D = { index = "i", repeats = true, default = 1'),
+        "one default for all members, which repeats",
+    ),
     (VORTICES, ("size = 6", "size = 1"), "at least 2 for pairs"),
     (
         VORTICES,

@@ -109,6 +109,7 @@ def family_context(
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
         },
+        repeating=declared.repeating,
         observables=tuple(
             _observable(equations, kept[name])
             for name in (

@@ -131,6 +131,7 @@ class Windows:
         indexed: Names of the parameters that each member has.
         defaults: Defaults of quantities that differ from member to member: of each
             component those of all members.
+        repeating: Names of those that have a default for some members, which are taken again.
         reach: How many members further the energy couples.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
@@ -147,6 +148,7 @@ class Windows:
     shared: tuple[str, ...]
     indexed: tuple[str, ...]
     defaults: Mapping[str, tuple[tuple[Fraction, ...], ...]]
+    repeating: tuple[str, ...]
     reach: int
     pairs: bool
     least: int

@@ -102,6 +102,9 @@ def read_windows(
             for table, name, part in _list_quantities(file)
             if part.index is not None and differs(file, part)
         },
+        repeating=tuple(
+            n for _, n, p in _list_quantities(file) if p.index is not None and _repeats(p)
+        ),
         reach=reach,
         pairs=pairs,
         least=least,
@@ -290,7 +293,11 @@ def _check(source: Source, file: Any, index: Index) -> None:
             problem = f"there is no index {part.index!a}"
             raise source.unknown(key, problem, part.index, [index.name])
         if part.index is not None and differs(file, part):
-            _check_count(source, index, (table, name), len(part.default))
+            _check_count(source, index, (table, name), part)
+        elif _repeats(part):
+            problem = f"{name!r} has one default for all members, which repeats"
+            expected = "a list with an entry for each of some members"
+            raise source.fault((table, name, "repeats"), problem, name, expected)
     if index.size is not None and index.size > limits.FAMILY_MEMBERS:
         problem = f"the index {index.name!r} counts {index.size} members"
         raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
@@ -303,9 +310,19 @@ def _list_quantities(file: Any) -> list[tuple[str, str, Any]]:
     ]
 
 
-def _check_count(source: Source, index: Index, key: tuple[str, str], count: int) -> None:
-    """A default that differs from member to member has an entry for each."""
-    if count != index.size:
+def _repeats(part: Any) -> bool:
+    """Whether the default of some members is taken again for others; inputs know no such key."""
+    return bool(getattr(part, "repeats", False))
+
+
+def _check_count(source: Source, index: Index, key: tuple[str, str], part: Any) -> None:
+    """A default that differs from member to member has an entry for each, or for some again."""
+    count = len(part.default)
+    if _repeats(part) and (not count or (index.size or 0) % count):
+        problem = f"the default of {key[1]!r} has {count} entries, which repeat"
+        expected = f"one entry or more, and {index.size or 'N'} a multiple of their number"
+        raise source.fault((*key, "default"), problem, count, expected)
+    if count != index.size and not _repeats(part):
         problem = f"the default of {key[1]!r} has {count} entries"
         expected = f"one for all members, or {index.size or 'N'} entries"
         raise source.fault((*key, "default"), problem, count, expected)
