@@ -373,7 +373,24 @@ class Ideal:
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:
-    """A Groebner basis; of one polynomial it is that polynomial."""
-    if len(polynomials) < 2:
-        return list(polynomials)
-    return list(groebner(list(polynomials), polynomials[0].ring))
+    """A Groebner basis; of one polynomial it is that polynomial.
+
+    Of polynomials that share no symbol the bases together are one, since their leading monomials
+    have no common factor: attitudes of many bodies are looked at one by one.
+    """
+    basis = list[PolyElement]()
+    for part in _split_apart(polynomials):
+        basis += part if len(part) < 2 else groebner(part, part[0].ring)
+    return basis
+
+
+def _split_apart(polynomials: Sequence[PolyElement]) -> list[list[PolyElement]]:
+    """Polynomials in groups that share no symbol; constants are one group."""
+    groups: list[tuple[set[int], list[PolyElement]]] = []
+    for each in polynomials:
+        named = {n for exponents in each for n, e in enumerate(exponents) if e}
+        near = [group for group in groups if group[0] & named]
+        groups = [group for group in groups if group not in near]
+        symbols = named.union(*(group[0] for group in near))
+        groups.append((symbols, [*(p for group in near for p in group[1]), each]))
+    return [members for _, members in groups]

@@ -21,6 +21,7 @@ from coadjoint.spec.core.values import POISSON_PATTERN
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra
 from coadjoint.spec.sections.matrices import block_places
+from coadjoint.spec.sections.turning import TURNING, advect
 
 
 def write_out_file(source: Source, file: Any, index: Index, count: int) -> tuple[Source, Any]:
@@ -108,7 +109,7 @@ def _write_variables(
 
 
 class _Blocks:
-    """Which vectors of the basis the variables of a member span."""
+    """Which vectors of the basis the variables of a member span, or act on them."""
 
     def __init__(self, source: Source, file: Any, count: int) -> None:
         self.source, self.count, self.algebra = source, count, None
@@ -119,11 +120,12 @@ class _Blocks:
 
     def of(self, name: str, part: Any, member: int) -> Any:
         """Names of the basis, for the key ``block``."""
-        if self.algebra is None or part.role not in ("momentum", "velocity"):
+        if self.algebra is None or part.role not in ("momentum", "velocity", "advected", *TURNING):
             return part.block
+        block = advect(part, self.algebra).block if part.role in TURNING else part.block
         own = tuple(range(self.algebra.dimension))
-        if part.block is not None:
-            own = block_places(self.source, ("variables", name, "block"), part.block, self.algebra)
+        if block is not None:
+            own = block_places(self.source, ("variables", name, "block"), block, self.algebra)
         start = member * self.algebra.dimension
         return [self.basis[start + place] for place in own]
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from coadjoint.algebra import algebra_by_name, same_constants
+from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import are_rotations
 from coadjoint.algebra.matrices import without_zero_places
 from coadjoint.derive.setting import Setting
@@ -162,9 +162,8 @@ def _axes(variable: Variable) -> tuple[int, ...]:
     if variable.turning == "quaternion":
         return places
     if variable.turning == "pose":
-        moving = algebra_by_name("se(3)")
-        alike = len(places) == moving.dimension and same_constants(algebra, moving)
-        return places if alike and algebra.matrices == moving.matrices else ()
+        own = without_zero_places([algebra.matrices[i] for i in places])
+        return places if own == algebra_by_name("se(3)").matrices else ()
     return (
         places if are_rotations(without_zero_places([algebra.matrices[i] for i in places])) else ()
     )
