@@ -26,6 +26,7 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.families import Family, Sum, Total
@@ -97,6 +98,11 @@ class _Reader:
         family = self.equations.spec.family
         assert family is not None, self.equations.spec.name
         return family
+
+    @cached_property
+    def written(self) -> Written:
+        """What the spec says, not multiplied out."""
+        return Written(self.equations)
 
     @cached_property
     def members(self) -> Members:
@@ -217,12 +223,12 @@ class _Reader:
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
         """The rates of a member in generic symbols."""
-        reach = self.declared.reach
+        reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
         new = self.rename(member, reach, reach)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
-        return tuple(
-            self.see(by_name[name], new) for name in self.names_of(self.declared.variables, member)
-        )
+        plain = tuple(self.see(by_name[name], new) for name in names)
+        written = self.written.rates(names)
+        return choose(plain, [rate.xreplace(new) for rate in written])
 
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
@@ -281,7 +287,7 @@ class _Reader:
         ):
             yield Total(component, sympy.Add(*(each.symbol for each in parts)), tuple(parts))
 
-    def _terms(self, each: tree.Sum, term: tree.Node) -> list[sympy.Expr]:
+    def _terms(self, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
         """The components of the term of a sum, in generic symbols."""
         if len(each.indices) > 1:
             return [self._see_pair(value) for value in self.value(self._place_pair(each, term))]
@@ -289,7 +295,9 @@ class _Reader:
         at = 0 if self.members.periodic else before
         placed = place_at(term, {each.indices[0]: at}, self.members)
         new = self.rename(at, before, after)
-        return [self.see(self.write(value), new) for value in self.value(placed)]
+        plain = [self.see(self.write(value), new) for value in self.value(placed)]
+        written: list[Any] = [*entries(self.written.value(placed))]
+        return choose(plain, [value.xreplace(new) for value in written])
 
     # -- pairs --------------------------------------------------------------------------
 

@@ -30,6 +30,8 @@ from coadjoint.lower.program import Program
 LANES: Final = 8
 #: What the names of sums begin with; their number follows.
 SUM: Final = "_sum"
+#: Operations of a tree beyond which it is left as it is: to collect its terms takes seconds.
+COLLECTED: Final = 60
 #: Digits of constants that are no rational numbers, such as pi.
 _DIGITS: Final = 60
 
@@ -282,7 +284,9 @@ class _Lowering:
             keeps: Whether the trees are wanted, too: their derivatives follow them.
         """
         own, shared = self.family.states, self.family.shared
-        forms = ([form(tree, own, shared) for tree in trees] for form in (_factor_whole, _factor))
+        is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
+        ways = (_leave,) if is_long else (_factor_whole, _factor, _leave)
+        forms = ([form(tree, own, shared) for tree in trees] for form in ways)
         parts = [self._lower(name, form, sums, slopes, keeps=keeps) for form in forms]
         return min(parts, key=lambda part: sum(part.program.operation_counts().values()))
 
@@ -432,3 +436,8 @@ def _factor(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree
 def _factor_whole(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
     """The same with what all terms share before the sum."""
     return sympy.factor_terms(_factor(tree, own, shared))
+
+
+def _leave(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
+    """The same as it is written."""
+    return tree
