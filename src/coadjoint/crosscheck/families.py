@@ -44,6 +44,7 @@ from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import compare_steps, load
 from coadjoint.spec.core.members import member_name
+from coadjoint.spec.spatial import turning_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,6 +75,7 @@ class _Window:
         state: Names of its components in the order of a family: component after component.
         parameters: Likewise.
         totals: Names of the rows of the function ``observables``.
+        residuals: Those of the function ``constraint_residual``.
     """
 
     reference: Reference
@@ -81,6 +83,7 @@ class _Window:
     state: tuple[str, ...]
     parameters: tuple[str, ...]
     totals: tuple[str, ...]
+    residuals: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
@@ -106,6 +109,16 @@ class _Window:
             state=rows(declared.variables),
             parameters=(*shared, *rows(declared.indexed)),
             totals=tuple(each.name for each in family.totals),
+            residuals=tuple(
+                name
+                for each in declared.variables
+                if known[member_name(each, 0)].turning and spec.turns_back
+                for same in zip(
+                    *(turning_rows(spec, known[member_name(each, k)]) for k in range(size)),
+                    strict=True,
+                )
+                for name in same
+            ),
         )
 
     def evaluate(self, function: str, state: Array, parameters: Array) -> list[Any]:
@@ -118,13 +131,18 @@ class _Window:
             vector = state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
         values = oracle(self.reference, function, inputs)
-        if function in ("rhs", "jacobian_vector"):
+        if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
             values = [by_name[name] for name in self.state]
         if function == "observables":
             labels = [label for label, _ in self.reference.equations.exact.observables]
             by_name = dict(zip(labels, values, strict=True))
             values = [by_name[name] for name in self.totals]
+        if function == "constraint_residual":
+            back = self.reference.equations.turning_back
+            assert back is not None, function
+            by_name = dict(zip((name for name, _ in back.exact.residuals), values, strict=True))
+            values = [by_name[name] for name in self.residuals]
         return values
 
 

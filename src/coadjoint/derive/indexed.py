@@ -26,6 +26,7 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.turning import step_back
 from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -41,7 +42,8 @@ from coadjoint.spec.core.members import (
     reach,
     split_sums,
 )
-from coadjoint.spec.model import Windows
+from coadjoint.spec.model import Variable, Windows
+from coadjoint.spec.spatial import turning_rows
 
 
 def derive_family(equations: Equations) -> Family:
@@ -81,6 +83,8 @@ def derive_family(equations: Equations) -> Family:
         ends=reader.ends,
         totals=totals,
         small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
+        turned=reader.turned,
+        residuals=reader.residuals,
     )
 
 
@@ -238,6 +242,37 @@ class _Reader:
         reach, count = self.declared.reach, self.members.count
         starts = {k: self.rates_of(k) for k in range(reach)}
         return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+
+    # -- attitudes ----------------------------------------------------------------------
+
+    @cached_property
+    def turning(self) -> list[Variable]:
+        """The attitudes of the member in the middle."""
+        names = {member_name(name, self.middle) for name in self.declared.variables}
+        return [each for each in self.equations.spec.turning if each.name in names]
+
+    @property
+    def turned(self) -> tuple[sympy.Expr, ...]:
+        """The state of a member with its attitudes moved back; empty without attitudes."""
+        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
+        if back is None:
+            return ()
+        known = dict(zip(back.variables, back.rates, strict=True))
+        written = {name: sympy.Symbol(name) for name in back.variables}
+        for each in self.turning:
+            symbols = [written[name] for name in each.components]
+            written |= zip(each.components, step_back(each, symbols), strict=True)
+        names = self.names_of(self.declared.variables, self.middle)
+        plain = [self.see(known[name], new) for name in names]
+        return choose(plain, [written[name].xreplace(new) for name in names])
+
+    @property
+    def residuals(self) -> tuple[sympy.Expr, ...]:
+        """What is zero where the attitudes of a member are rotations."""
+        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
+        known = dict(() if back is None else back.exact.residuals)
+        rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
+        return tuple(self.see(self.write(known[name]), new) for name in rows if known)
 
     # -- sums ---------------------------------------------------------------------------
 

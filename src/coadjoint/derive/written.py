@@ -110,9 +110,7 @@ def are_equal(left: sympy.Expr, right: sympy.Expr) -> bool:
     return bool(sympy.expand(above) == 0)
 
 
-def choose(
-    plain: Sequence[sympy.Expr], written: Sequence[sympy.Expr]
-) -> tuple[sympy.Expr, ...]:
+def choose(plain: Sequence[sympy.Expr], written: Sequence[sympy.Expr]) -> tuple[sympy.Expr, ...]:
     """Expressions as they are written, where that is shorter and certainly the same."""
     if not written or not _is_shorter(written, plain):
         return tuple(plain)

@@ -153,6 +153,9 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.totals("energy", energies, ()))
     if family.totals:
         functions.append(lowering.totals("observables", family.totals, (len(family.totals),)))
+    if family.turned:
+        functions.append(lowering.of_members("constraint_residual", family.residuals))
+        functions.append(lowering.of_members("projection", family.turned))
     return {each.name: each for each in functions}
 
 
@@ -239,6 +242,16 @@ class _Lowering:
             partners=lower(terms, keeps=first > 0) if terms else None,
             member=lower(family.rates),
             ends=tuple((member, lower(trees)) for member, trees in family.ends.items()),
+        )
+
+    def of_members(self, name: str, trees: Sequence[Tree]) -> Loops:
+        """A function of each member alone."""
+        return Loops(
+            name=name,
+            is_periodic=self.family.index.periodic,
+            blocks=len(self.family.states),
+            shape=None,
+            member=self._part(name, trees, {}),
         )
 
     def totals(self, name: str, totals: Sequence[Total], shape: tuple[int, ...]) -> Loops:

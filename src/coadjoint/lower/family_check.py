@@ -102,6 +102,9 @@ def _list_parts(
         assert len(ordered) == len(known), loops.name
         yield loops.finish, [total.formula for total in totals], ordered
         return
+    if loops.name in ("constraint_residual", "projection"):
+        yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
+        return
     sums = [each.symbol for each in family.pair_sums]
     terms = [each.term for each in family.pair_sums]
     places = [(loops.member, family.rates)]

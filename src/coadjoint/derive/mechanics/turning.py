@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import Any
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import are_rotations
@@ -76,16 +77,20 @@ def turned_back(setting: Setting) -> dict[str, Element]:
     moved = dict[str, Element]()
     for variable in setting.spec.turning:
         elements = setting.elements(variable.components)
-        if variable.turning == "quaternion":
-            share = (3 - dot(elements, elements)) / 2
-            moved |= zip(variable.components, scale(share, elements), strict=True)
-            continue
-        R = _turning_part(setting, variable)
-        turned = product(product(R, transpose(R)), R)
-        columns = variable.shape[1]
-        for i, (row, cubed) in enumerate(zip(R, turned, strict=True)):
-            for j, (x, y) in enumerate(zip(row, cubed, strict=True)):
-                moved[variable.components[i * columns + j]] = (3 * x - y) / 2
+        moved |= zip(variable.components, step_back(variable, elements), strict=True)
+    return moved
+
+
+def step_back(variable: Variable, entries: Sequence[Any]) -> list[Any]:
+    """One of Newton's steps, of entries of any kind; the position of a pose stays."""
+    if variable.turning == "quaternion":
+        return list(scale((3 - dot(entries, entries)) / 2, tuple(entries)))
+    (rows, columns), moved = variable.shape, list(entries)
+    R: Matrix = tuple(tuple(entries[i * columns : i * columns + rows]) for i in range(rows))
+    turned = product(product(R, transpose(R)), R)
+    for i, (row, cubed) in enumerate(zip(R, turned, strict=True)):
+        for j, (x, y) in enumerate(zip(row, cubed, strict=True)):
+            moved[i * columns + j] = (3 * x - y) / 2
     return moved
 
 
