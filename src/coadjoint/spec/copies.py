@@ -63,8 +63,10 @@ def differs(file: Any, part: Any) -> bool:
     while isinstance(entry, list):
         depth, entry = depth + 1, entry[0] if entry else None
     whole = file.variables.get(getattr(part, "of", None), part)
-    along = getattr(whole, "role", "") in ("velocity", "momentum", "advected")
-    return depth > (1 if along else len(whole.shape or ()))
+    role = getattr(whole, "role", "")
+    matrix = role in ("attitude", "pose")
+    along = role in ("velocity", "momentum", "advected", "quaternion")
+    return depth > (2 if matrix else 1 if along else len(whole.shape or ()))
 
 
 class _Places:

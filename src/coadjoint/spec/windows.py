@@ -17,6 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from coadjoint import limits
@@ -35,6 +36,7 @@ from coadjoint.spec.core.values import read_default
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.lax import Lax
+from coadjoint.spec.sections.turning import TURNING, read_rotation
 
 #: Tables that a spec with an index may have.
 TABLES = (
@@ -317,7 +319,9 @@ def _read_defaults(
     source: Source, key: tuple[str, str], part: Any, shape: Shape
 ) -> tuple[tuple[Fraction, ...], ...]:
     """The defaults of each component, of all members."""
-    members = (read_default(source, (*key, "default"), x, shape) or () for x in part.default)
+    role = getattr(part, "role", "")
+    read = partial(read_rotation, role=role) if role in TURNING else read_default
+    members = (read(source, (*key, "default"), x, shape) or () for x in part.default)
     return tuple(zip(*members, strict=True))
 
 
