@@ -90,6 +90,7 @@ class _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
         known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        turning = {each.name: each for each in spec.turning if spec.turns_back}
         size = len(spec.state) // len(declared.variables)
 
         def rows(names: Sequence[str]) -> tuple[str, ...]:
@@ -112,9 +113,9 @@ class _Window:
             residuals=tuple(
                 name
                 for each in declared.variables
-                if known[member_name(each, 0)].turning and spec.turns_back
+                if member_name(each, 0) in turning
                 for same in zip(
-                    *(turning_rows(spec, known[member_name(each, k)]) for k in range(size)),
+                    *(turning_rows(spec, turning[member_name(each, k)]) for k in range(size)),
                     strict=True,
                 )
                 for name in same

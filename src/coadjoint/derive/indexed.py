@@ -16,7 +16,7 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -191,12 +191,29 @@ class _Reader:
                 new |= zip(old, seen, strict=True)
         return new
 
-    def see(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
-        """An expression of the window in generic symbols.
+    def see(
+        self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
+    ) -> tuple[sympy.Expr, ...]:
+        """Expressions of the window in generic symbols.
+
+        Args:
+            values: As the exact field has them.
+            new: The generic symbols.
+            written: The same as the spec writes them, if that is known.
 
         Raises:
-            DerivationError: It depends on members that are not seen.
+            DerivationError: They depend on members that are not seen.
         """
+        plain = [self._rename(value, new) for value in values]
+        seen = [value.xreplace(new) for value in written]
+        short = choose(plain, seen, most=0.5)  # to tidy up what is multiplied out takes long
+        if short:
+            return short
+        plain = [tidy(value, self.groups) for value in plain]
+        return choose(plain, seen) or tuple(plain)
+
+    def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
+        """An expression in generic symbols."""
         left = value.free_symbols - set(new) - set(map(sympy.Symbol, self.shared))
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
@@ -206,7 +223,7 @@ class _Reader:
                 "as sums over members.",
                 found=names,
             )
-        return tidy(value.xreplace(new), self.groups)
+        return value.xreplace(new)
 
     @cached_property
     def groups(self) -> list[list[sympy.Symbol]]:
@@ -230,9 +247,7 @@ class _Reader:
         reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
         new = self.rename(member, reach, reach)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
-        plain = tuple(self.see(by_name[name], new) for name in names)
-        written = self.written.rates(names)
-        return choose(plain, [rate.xreplace(new) for rate in written])
+        return self.see((by_name[name] for name in names), new, self.written.rates(names))
 
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
@@ -263,8 +278,7 @@ class _Reader:
             symbols = [written[name] for name in each.components]
             written |= zip(each.components, step_back(each, symbols), strict=True)
         names = self.names_of(self.declared.variables, self.middle)
-        plain = [self.see(known[name], new) for name in names]
-        return choose(plain, [written[name].xreplace(new) for name in names])
+        return self.see((known[name] for name in names), new, (written[name] for name in names))
 
     @property
     def residuals(self) -> tuple[sympy.Expr, ...]:
@@ -272,7 +286,7 @@ class _Reader:
         back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
         known = dict(() if back is None else back.exact.residuals)
         rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
-        return tuple(self.see(self.write(known[name]), new) for name in rows if known)
+        return self.see((self.write(known[name]) for name in rows if known), new)
 
     # -- sums ---------------------------------------------------------------------------
 
@@ -330,9 +344,8 @@ class _Reader:
         at = 0 if self.members.periodic else before
         placed = place_at(term, {each.indices[0]: at}, self.members)
         new = self.rename(at, before, after)
-        plain = [self.see(self.write(value), new) for value in self.value(placed)]
-        written: list[Any] = [*entries(self.written.value(placed))]
-        return choose(plain, [value.xreplace(new) for value in written])
+        written = entries(self.written.value(placed))
+        return self.see(map(self.write, self.value(placed)), new, written)
 
     # -- pairs --------------------------------------------------------------------------
 
@@ -348,7 +361,7 @@ class _Reader:
         new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
         others = [self.partners[each] for each in own]
         new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
-        return self.see(self.write(value), new)
+        return self.see([self.write(value)], new)[0]
 
     @cached_property
     def pair_energies(self) -> list[Element]:
@@ -416,7 +429,6 @@ class _Reader:
                 flow = self._flow(*self.value(placed))
                 own = [a + b for a, b in zip(own, flow, strict=True)]
         new = self.rename(0, 0, 0)
-        for state, value in zip(self.states, own, strict=True):
-            total = self.see(self.write(value), new)
+        for state, total in zip(self.states, self.see(map(self.write, own), new), strict=True):
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

@@ -110,14 +110,18 @@ def are_equal(left: sympy.Expr, right: sympy.Expr) -> bool:
     return bool(sympy.expand(above) == 0)
 
 
-def choose(plain: Sequence[sympy.Expr], written: Sequence[sympy.Expr]) -> tuple[sympy.Expr, ...]:
-    """Expressions as they are written, where that is shorter and certainly the same."""
-    if not written or not _is_shorter(written, plain):
-        return tuple(plain)
+def choose(
+    plain: Sequence[sympy.Expr], written: Sequence[sympy.Expr], most: float = 1.0
+) -> tuple[sympy.Expr, ...]:
+    """Expressions as they are written, where that is shorter and certainly the same; else none.
+
+    Args:
+        plain: As the exact field has them.
+        written: As the spec has them.
+        most: Which part of the operations of the others they may have.
+    """
+    lengths = [sum(map(sympy.count_ops, values)) for values in (plain, written)]
+    if not written or lengths[1] >= most * lengths[0]:
+        return ()
     same = all(are_equal(a, b) for a, b in zip(plain, written, strict=True))
-    return tuple(written if same else plain)
-
-
-def _is_shorter(one: Iterable[sympy.Expr], other: Iterable[sympy.Expr]) -> bool:
-    """Whether expressions have fewer operations."""
-    return sum(map(sympy.count_ops, one)) < sum(map(sympy.count_ops, other))
+    return tuple(written) if same else ()
