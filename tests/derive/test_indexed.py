@@ -15,6 +15,7 @@ from coadjoint.spec.reader import read_spec_text
 from tests.families import (
     CHAIN,
     RING,
+    TOPS,
     VORTICES,
     are_equal,
     check_rates,
@@ -25,6 +26,7 @@ from tests.families import (
     value_of,
     write_chain,
     write_ring,
+    write_tops,
     write_vortices,
 )
 from tests.specs import shipped
@@ -33,6 +35,7 @@ SYSTEMS = {
     "ring": (RING, write_ring, (2, 3, 4, 5)),
     "chain": (CHAIN, write_chain, (4, 5, 6)),
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
+    "tops": (TOPS, write_tops, (2, 3)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -79,6 +82,7 @@ def spoil_pairs(family):
         ("chain", 5, spoil_neighbour),
         ("chain", 5, spoil_end),
         ("vortices", 3, spoil_pairs),
+        ("tops", 3, spoil_end),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
@@ -87,7 +91,9 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
         check_rates(spoil(families[name]), SYSTEMS[name][1](n), n)
 
 
-@pytest.mark.parametrize(("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4)])
+@pytest.mark.parametrize(
+    ("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("tops", 3)]
+)
 def test_the_energy_is_that_of_all_members(families, name, n):
     """Sums begin and end where the energy that is written out has its terms."""
     energy = derive(read_spec_text(SYSTEMS[name][1](n), "whole.toml")).energy

@@ -11,6 +11,7 @@ from tests.conftest import FAMILIES
 from tests.families import (
     CHAIN,
     RING,
+    TOPS,
     VORTICES,
     are_equal,
     family_of,
@@ -48,6 +49,8 @@ FALSE = [
     (CHAIN, (CLAIM, 'conserved = ["sum(i, p[i]) - sum(i, p[i+1])", "energy"')),
     (CHAIN, ("sum(i, p[i]^2/2) +", "sum(i, p[i]^2/2) + sum(i, q[i]^2) +")),
     (VORTICES, (CLAIM, 'conserved = ["sum(i, c[i]*x[i])", "Y"')),
+    (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
+    (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
 ]
 
@@ -59,6 +62,20 @@ def test_a_false_claim_is_refuted(number):
     with pytest.raises(ClaimError, match=r"for every N >= \d") as caught:
         prove(read(text, *changes)).require()
     assert "refuted" in str(caught.value)
+
+
+def test_attitudes_of_members_stay_rotations_and_need_to_be_some():
+    """Each claim is about every member, and no name of a written-out one is left in it."""
+    said = [each.statement for each in prove(read(TOPS)).require().claims]
+    where = "where R[i]*transpose(R[i]) = 1, det(R[i]) = 1"
+    assert f"J is conserved {where}, for every N >= 2" in said
+    assert "R[i]*transpose(R[i]) is conserved, for every N >= 2" in said
+    law = "dR[i]/dt = R[i]*hat((dh/dPi1[i], dh/dPi2[i], dh/dPi3[i])), for every N >= 2"
+    assert law in said
+    moved = "the solvers move R[i] back: R[i]*transpose(R[i]) = 1 + D becomes 1 + D^2 (D - 3)/4"
+    assert f"{moved}, for every N >= 2" in said
+    assert not any("_0" in each or "_1" in each for each in said)
+    assert len(said) == len(set(said))
 
 
 def test_a_false_casimir_is_refuted():
