@@ -14,6 +14,7 @@ from coadjoint.errors import DerivationError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
     CHAIN,
+    DRAG,
     RING,
     TOPS,
     VORTICES,
@@ -25,6 +26,7 @@ from tests.families import (
     read,
     value_of,
     write_chain,
+    write_drag,
     write_ring,
     write_tops,
     write_vortices,
@@ -36,6 +38,7 @@ SYSTEMS = {
     "chain": (CHAIN, write_chain, (4, 5, 6)),
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
     "tops": (TOPS, write_tops, (2, 3)),
+    "drag": (DRAG, write_drag, (2, 3)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -69,6 +72,12 @@ def spoil_end(family):
     return replace(family, ends={k: family.ends[-k - 1] for k in family.ends})
 
 
+def spoil_drag(family):
+    """No force acts."""
+    (c,) = family.indexed
+    return replace(family, rates=tuple(rate.subs(c, 0) for rate in family.rates))
+
+
 def spoil_pairs(family):
     """A partner pushes instead of pulling."""
     sums = tuple(replace(each, term=-each.term) for each in family.pair_sums)
@@ -83,6 +92,7 @@ def spoil_pairs(family):
         ("chain", 5, spoil_end),
         ("vortices", 3, spoil_pairs),
         ("tops", 3, spoil_end),
+        ("drag", 2, spoil_drag),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
@@ -177,6 +187,12 @@ def test_three_bodies_on_an_equilateral_triangle_turn_together():
         force = [float(each.subs(point)) for each in rates[3:]]
         expected = [-omega2 * masses[k] * (places[k][c] - centre[c]) for c in range(3)]
         assert force == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_number_of_the_first_member_is_that_of_formulas_alone():
+    """The generic member is the same, whether members are counted from 0 or from 1."""
+    one = family_of(read(RING, ("size = 6,", "size = 6, first = 1,")))
+    assert one.rates == family_of(read(RING)).rates
 
 
 def test_a_pair_counts_the_same_in_both_orders():

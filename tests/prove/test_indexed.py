@@ -10,6 +10,8 @@ from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES
 from tests.families import (
     CHAIN,
+    DRAG,
+    PEAKONS,
     RING,
     TOPS,
     VORTICES,
@@ -40,6 +42,15 @@ def test_every_claim_is_proved_for_every_number_of_members(name):
         assert f"{'the ' if text == 'energy' else ''}{text} is" in said
 
 
+def test_what_a_proof_leaves_out_is_said_of_all_members():
+    """Not of those that were written out: peakons pass each other where their distance is 0."""
+    claims = prove(read(PEAKONS)).require().claims
+    jumps = [claim.method for claim in claims if "jumps" in claim.method]
+    assert len(jumps) == 4
+    assert all("where and while no function of any members jumps" in method for method in jumps)
+    assert not any("q_0" in claim.method for claim in claims)
+
+
 CLAIM = 'conserved = ["energy"'
 #: False claims, of a sum with a wrong sign, a wrong neighbour and a wrong end.
 FALSE = [
@@ -49,6 +60,8 @@ FALSE = [
     (CHAIN, (CLAIM, 'conserved = ["sum(i, p[i]) - sum(i, p[i+1])", "energy"')),
     (CHAIN, ("sum(i, p[i]^2/2) +", "sum(i, p[i]^2/2) + sum(i, q[i]^2) +")),
     (VORTICES, (CLAIM, 'conserved = ["sum(i, c[i]*x[i])", "Y"')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["energy"]\n[observables]')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["sum(i, p[i])"]\n[observables]')),
     (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
     (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
@@ -62,6 +75,27 @@ def test_a_false_claim_is_refuted(number):
     with pytest.raises(ClaimError, match=r"for every N >= \d") as caught:
         prove(read(text, *changes)).require()
     assert "refuted" in str(caught.value)
+
+
+#: Friction between neighbours in a ring; what one loses the other gains.
+FRICTION = '[forces]\np = "c*(p[i+1] - p[i]) - c*(p[i] - p[i-1])"\n[observables]'
+
+
+def test_forces_of_members_are_part_of_what_is_proved():
+    """Friction between neighbours keeps the momentum and changes the energy by its power."""
+    ring = ("size = 6", "size = 6, periodic = true"), ("[parameters]", "[parameters]\nc = {}")
+    claims = prove(
+        read(CHAIN, *ring, (CLAIM + ", ", "conserved = ["), ("[observables]", FRICTION))
+    ).require()
+    said = {each.statement: each.method for each in claims.claims}
+    assert "the motion by canonical is {x, h} and the forces, for every N >= 1" in said
+    power = said["the energy changes by the power of the forces, for every N >= 1"]
+    assert "antisymmetric" not in power
+    assert "P is conserved, for every N >= 1" in said
+    wrong = FRICTION.replace("- p[i-1]", "+ p[i-1]")
+    changes = (*ring, (CLAIM + ", ", "conserved = ["), ("[observables]", wrong))
+    with pytest.raises(ClaimError, match="refuted"):
+        prove(read(CHAIN, *changes)).require()
 
 
 def test_attitudes_of_members_stay_rotations_and_need_to_be_some():

@@ -34,14 +34,8 @@ from coadjoint.families import Family, Sum, Total
 from coadjoint.spec import Formula
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import (
-    Members,
-    member_name,
-    place_at,
-    put_term,
-    reach,
-    split_sums,
-)
+from coadjoint.spec.core.members import Members, member_name, place_at, reach
+from coadjoint.spec.core.totals import put_term, split_sums
 from coadjoint.spec.model import Variable, Windows
 from coadjoint.spec.spatial import turning_rows
 
@@ -415,6 +409,13 @@ class _Reader:
         return sums
 
     @property
+    def _forces(self) -> list[Element]:
+        """What forces add to the rates of the first member."""
+        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
+        zero = self.equations.setting.field.zero
+        return [known.get(name, zero) for name in self.names_of(self.declared.variables, 0)]
+
+    @property
     def rates_with_pairs(self) -> Iterator[sympy.Expr]:
         """The rates of a member with sums over its partners.
 
@@ -422,7 +423,7 @@ class _Reader:
         """
         spec, field = self.equations.spec, self.equations.setting.field
         assert spec.hamiltonian is not None, spec.name
-        own = [field.zero for _ in self.states]
+        own = self._forces
         for each, term in self.sums_of(spec.hamiltonian):
             if len(each.indices) == 1:
                 placed = place_at(term, {each.indices[0]: 0}, self.members)

@@ -159,5 +159,5 @@ def _place(array: NDArray[Any]) -> int:
     """Where an array begins; `ctypes.data` takes three times as long."""
     assert array.flags.c_contiguous
     if array.size and array.flags.writeable:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))
     return array.ctypes.data
