@@ -10,7 +10,7 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.document import document
-from coadjoint.errors import DerivationError
+from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
     CHAIN,
@@ -187,6 +187,36 @@ def test_three_bodies_on_an_equilateral_triangle_turn_together():
         force = [float(each.subs(point)) for each in rates[3:]]
         expected = [-omega2 * masses[k] * (places[k][c] - centre[c]) for c in range(3)]
         assert force == pytest.approx(expected, abs=1e-12)
+
+
+ARROWS = """
+title = "Arrows"
+routes = ["lie-poisson"]
+[index]
+i = { size = 5, periodic = true }
+[algebra]
+name = "so(3)"
+[representations.turned]
+matrices.J1 = [[0, 0, 0], [0, 0, -1], [0, 1, 0]]
+matrices.J2 = [[0, 0, 1], [0, 0, 0], [-1, 0, 0]]
+matrices.J3 = [[0, -1, 0], [1, 0, 0], [0, 0, 0]]
+[variables]
+G = { role = "advected", representation = "turned", index = "i" }
+Pi = { role = "momentum", index = "i" }
+[hamiltonian]
+h = "sum(i, Pi[i, 1]^2/2 + Pi[i, 2]^2 + Pi[i, 3]^2/4) - sum(i, dot(G[i], G[i+1]))"
+"""
+
+
+def test_a_declared_representation_is_that_of_each_member():
+    """Vectors turn as those of space do; matrices that do not commute so are refused."""
+    known = 'representation = "turned"', 'representation = "vector"'
+    assert family_of(read(ARROWS)).rates == family_of(read(ARROWS, known)).rates
+    wrong = "matrices.J3 = [[0, -1, 0]", "matrices.J3 = [[0, 1, 0]"
+    with pytest.raises(AlgebraError, match="do not commute"):
+        read(ARROWS, wrong)
+    with pytest.raises(SpecError, match="'J4' is not in the basis"):
+        read(ARROWS, ("matrices.J3", "matrices.J4"))
 
 
 def test_the_number_of_the_first_member_is_that_of_formulas_alone():

@@ -421,7 +421,7 @@ class _Reader:
 
         What the energy of one member gives is the member's own share.
         """
-        spec, field = self.equations.spec, self.equations.setting.field
+        spec = self.equations.spec
         assert spec.hamiltonian is not None, spec.name
         own = self._forces
         for each, term in self.sums_of(spec.hamiltonian):

@@ -25,6 +25,7 @@ from coadjoint.spec.core.tree import Index as Subscript
 TABLES = (
     "index",
     "algebra",
+    "representations",
     "poisson",
     "variables",
     "parameters",
