@@ -14,9 +14,11 @@ from tests.conftest import FAMILIES
 from tests.families import (
     BEADS,
     CHAIN,
+    DRAG,
     NECKLACE,
     PEAKONS,
     RING,
+    TOPS,
     VORTICES,
     are_equal,
     family_of,
@@ -70,6 +72,10 @@ FALSE = [
     (BEADS, ("c[i]*c[j]/(1 + (q[i] - q[j])^2)", "c[i]*c[j]/(1 + q[i]^2*q[j]^2)")),
     (NECKLACE, ("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + sum(i, q[i]*q[i+1])")),
     (LONG, (CLAIM, 'conserved = ["sum(i, p[i]*p[i+1])", "energy"')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["energy"]\n[observables]')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["sum(i, p[i])"]\n[observables]')),
+    (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
+    (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
 ]
 
@@ -81,6 +87,41 @@ def test_a_false_claim_is_refuted(number):
     with pytest.raises(ClaimError, match=r"for every N >= \d") as caught:
         prove(read(text, *changes)).require()
     assert "refuted" in str(caught.value)
+
+
+#: Friction between neighbours in a ring; what one loses the other gains.
+FRICTION = '[forces]\np = "c*(p[i+1] - p[i]) - c*(p[i] - p[i-1])"\n[observables]'
+
+
+def test_forces_of_members_are_part_of_what_is_proved():
+    """Friction between neighbours keeps the momentum and changes the energy by its power."""
+    ring = ("size = 6", "size = 6, periodic = true"), ("[parameters]", "[parameters]\nc = {}")
+    claims = prove(
+        read(CHAIN, *ring, (CLAIM + ", ", "conserved = ["), ("[observables]", FRICTION))
+    ).require()
+    said = {each.statement: each.method for each in claims.claims}
+    assert "the motion by canonical is {x, h} and the forces, for every N >= 1" in said
+    power = said["the energy changes by the power of the forces, for every N >= 1"]
+    assert "antisymmetric" not in power
+    assert "P is conserved, for every N >= 1" in said
+    wrong = FRICTION.replace("- p[i-1]", "+ p[i-1]")
+    changes = (*ring, (CLAIM + ", ", "conserved = ["), ("[observables]", wrong))
+    with pytest.raises(ClaimError, match="refuted"):
+        prove(read(CHAIN, *changes)).require()
+
+
+def test_attitudes_of_members_stay_rotations_and_need_to_be_some():
+    """Each claim is about every member, and no name of a written-out one is left in it."""
+    said = [each.statement for each in prove(read(TOPS)).require().claims]
+    where = "where R[i]*transpose(R[i]) = 1, det(R[i]) = 1"
+    assert f"J is conserved {where}, for every N >= 2" in said
+    assert "R[i]*transpose(R[i]) is conserved, for every N >= 2" in said
+    law = "dR[i]/dt = R[i]*hat((dh/dPi1[i], dh/dPi2[i], dh/dPi3[i])), for every N >= 2"
+    assert law in said
+    moved = "the solvers move R[i] back: R[i]*transpose(R[i]) = 1 + D becomes 1 + D^2 (D - 3)/4"
+    assert f"{moved}, for every N >= 2" in said
+    assert not any("_0" in each or "_1" in each for each in said)
+    assert len(said) == len(set(said))
 
 
 def test_a_false_casimir_is_refuted():

@@ -13,7 +13,7 @@ from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import NECKLACE, RING, VORTICES
+from tests.families import NECKLACE, RING, TOPS, VORTICES
 from tests.specs import shipped
 
 
@@ -232,6 +232,58 @@ def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):
     state = np.array([0.0, 0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 1.0, 0.0])
     run = system.simulate(state, (0, 1), step=0.01, method="rk4", progress=False)
     assert run.status == "NONFINITE"
+
+
+@pytest.fixture(scope="module")
+def tops():
+    """Texts of tops in a row, whose attitudes are part of the state."""
+    return pipeline.render(read_spec_text(TOPS, "tops.toml")).texts
+
+
+@pytest.mark.parametrize(("method", "step"), [("rk4", 0.05), ("dop853", 0.05), ("dop853", None)])
+def test_attitudes_of_members_stay_rotations(tops, method, step):
+    """All steps move them back, in C, fixed ones among it, with the bits of the twin."""
+    with load_texts(tops) as system:
+        start = np.array([system.STATE.defaults[name] for name in system.STATE.components])
+        start[system.STATE.rows("Pi")] += np.linspace(0, 1, 9)
+        named = {"method": method, "step": step, "progress": False, "samples": 5}
+        runs = [system.simulate(start, (0, 20), target=t, **named) for t in ("c", "numpy")]
+        assert np.array_equal(*(np.asarray(run.state) for run in runs))
+        end = np.asarray(runs[0].state)[:, -1]
+        assert np.abs(system.constraint_residual(end)).max() < 1e-14
+        assert not np.allclose(end[:27], start[:27])
+        R = end[:27].reshape(3, 3, 3).transpose(2, 0, 1)
+        np.testing.assert_allclose(R @ R.transpose(0, 2, 1), [np.eye(3)] * 3, atol=1e-14)
+
+
+def test_a_start_that_is_no_rotation_is_refused_by_member(tops):
+    """The message names the member; roundings are moved back."""
+    with load_texts(tops) as system:
+        start = np.array([system.STATE.defaults[name] for name in system.STATE.components])
+        off = start.copy()
+        off[system.STATE.components.index("R11[2]")] = 1.1
+        with pytest.raises(KernelArgumentError, match=r"of member 2, does not hold") as caught:
+            system.simulate(off, (0, 1), target="numpy", progress=False)
+        assert "R[i]*transpose(R[i]) == 1" in str(caught.value)
+        assert "R11[2] = 1:" in str(caught.value)
+        near = start + 1e-12
+        run = system.simulate(near, (0, 0.1), target="numpy", progress=False)
+        first = np.asarray(run.state)[:, 0]
+        assert np.abs(system.constraint_residual(first, target="numpy")).max() < 1e-15
+
+
+@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dop853", 8)])
+def test_steps_that_leave_attitudes_are_not_taken(tops, tmp_path, method, order):
+    """An object that forgets to move them back is refused."""
+    kept = "memcpy(moved, state, run->rows * run->count * sizeof *moved);"
+    spoiled = tops["solver.c"].replace(
+        "    run->projection(", f"    {kept}\n    if (0) run->projection("
+    )
+    assert spoiled != tops["solver.c"]
+    for file, text in (tops | {"solver.c": spoiled}).items():
+        (tmp_path / file).write_text(text)
+    with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
+        load_steps(load_folder(tmp_path), Choice(method, order), "c")
 
 
 FIELDS = [[0, 0, k] for k in range(6)]

@@ -21,7 +21,8 @@ Read next: `coadjoint.spec.windows`, which chooses the windows.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter
 
@@ -30,8 +31,10 @@ from coadjoint.exact.dense import commutator
 from coadjoint.exact.text import WHILE
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import Decision, decide_zero, make_entry
+from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.model import Lax, Spec, Windows
+from coadjoint.spec.spatial import describe_gram, gram_name
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
@@ -53,7 +56,8 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     """
     family = spec.family
     assert family is not None, spec.name
-    kept = [list(_keep_general(spec, each)) for each in certificates]
+    general = zip(list_windows(spec), certificates, strict=True)
+    kept = [_merge(_keep_general(family, *each)) for each in general]
     windows, rest = kept[: len(family.windows)], kept[len(family.windows) :]
     assert len({tuple(c.statement for c in each) for each in windows}) == 1, spec.name
     claims = [_join(family, same) for same in zip(*windows, strict=True)]
@@ -119,14 +123,54 @@ def _decide_lax(spec: Spec, pair: Lax) -> Decision:
     return decide_zero(defects, field)
 
 
-def _keep_general(spec: Spec, certificate: Certificate) -> Iterator[Claim]:
+def _keep_general(family: Windows, window: Spec, certificate: Certificate) -> Iterator[Claim]:
     """The claims of a window that do not depend on its number of members, in general words."""
-    casimirs = {f"{each.in_one_line} is a Casimir" for each in spec.casimirs}
+    casimirs = {f"{each.in_one_line} is a Casimir" for each in window.casimirs}
+    words = _list_words(family, window)
     for claim in certificate.claims:
         if claim.kind == "algebra":
             yield replace(claim, statement=_ALGEBRA)
-        elif claim.kind in ("jacobi", "equivalence", "conserved") or claim.statement in casimirs:
+        elif claim.kind in ("conserved", "attitude"):
+            yield replace(claim, statement=_say_of_member(claim.statement, words))
+        elif claim.kind in ("jacobi", "equivalence") or claim.statement in casimirs:
             yield claim
+
+
+def _list_words(family: Windows, window: Spec) -> dict[str, str]:
+    """The names that texts have of what each member has, with those of member i for them."""
+    words, i = dict[str, str](), family.index.name
+    for each in window.variables:
+        generic = each.name.rpartition("_")[0]
+        own = component_names(generic, each.shape, each.form)
+        named = [(each.name, generic), *zip(each.components, own, strict=True)]
+        words |= {f"{d}{old}": f"{d}{new}[{i}]" for old, new in named for d in ("", "d")}
+        if each.turning:
+            words[gram_name(each)] = describe_gram(window, each).replace(
+                each.name, f"{generic}[{i}]"
+            )
+    return words
+
+
+def _say_of_member(statement: str, words: Mapping[str, str]) -> str:
+    """A statement about certain members, as one about each: ``... where R[i]*... = 1``."""
+    text = re.sub(r"[A-Za-z]\w*", lambda found: words.get(found[0], found[0]), statement)
+    claim, where, level = text.partition(" where ")
+    same, *rest = claim.split(" = ", 1)  # the product that stays has no name of its own
+    claim = rest[0] if rest and rest[0].startswith(f"{same} is") else claim
+    parts = re.split(r", (?![^()]*\))", level)
+    return f"{claim}{where}{', '.join(dict.fromkeys(parts))}"
+
+
+def _merge(claims: Iterable[Claim]) -> list[Claim]:
+    """Claims about one member each as one claim about every member: the weakest of them."""
+    merged = dict[str, Claim]()
+    for claim in claims:
+        known = merged.setdefault(claim.statement, claim)
+        worst = min(known, claim, key=lambda each: _ORDER.index(each.verdict))
+        if claim is not known:
+            worst = replace(worst, seconds=known.seconds + claim.seconds)
+        merged[claim.statement] = worst
+    return list(merged.values())
 
 
 def _join(family: Windows, same: Sequence[Claim]) -> Claim:
@@ -153,7 +197,7 @@ def _generalise(method: str) -> str:
 
 def _reason(family: Windows, claim: Claim) -> str:
     """Why so many numbers of members are enough."""
-    if claim.statement.startswith("the energy"):
+    if claim.statement.startswith("the energy") and not family.windows[0].forces:
         return "the bracket of each member is antisymmetric"
     if claim.kind != "conserved" or claim.statement in family.of_members:
         if family.pairs:

@@ -320,6 +320,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "licence": tell_licence(context.license),
         "id": identity,
         "lanes": LANES,
+        "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
@@ -338,7 +339,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
         },
-        "shapes": [f"{quote(name)}: {loops.shape}" for name, loops in context.loops.items()],
+        "shapes": [
+            f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
+        ],
         "system": [
             quote(context.name),
             "__file__",
@@ -361,13 +364,22 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     ]
 
 
+def tell_shape(loops: Loops, context: FamilyContext) -> str:
+    """The shape of a result: None of one like the state, or rows for each member."""
+    if loops.member is None:
+        return str(loops.shape)
+    rows = len(loops.member.program.outputs)
+    return str(None if rows == sum(len(each.components) for each in context.state) else rows)
+
+
 def tell_summary(loops: Loops) -> str:
     """One sentence on a function."""
     rows = "rows * N" if loops.shape is None else ", ".join(map(str, loops.shape))
     if loops.member:
         rows = f"{len(loops.member.program.outputs)} * N"
     shape = ", ".join([rows, "..."] if rows else ["..."])
-    return f"{KERNEL_FUNCTIONS[loops.name].summary}, shape ({shape})."
+    function = KERNEL_FUNCTIONS[loops.name]
+    return f"{function.turning or function.summary}, shape ({shape})."
 
 
 def count_costs(loops: Loops) -> list[str]:

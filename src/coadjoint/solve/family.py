@@ -55,7 +55,7 @@ class FamilySystem(System):
         shared: Quantities,
         indexed: Quantities,
         observables: Quantities,
-        functions: Mapping[str, tuple[int, ...] | None],
+        functions: Mapping[str, tuple[int, ...] | int | None],
         elementary: Sequence[str],
         identity: str,
         unit_of_time: str = "s",
@@ -67,6 +67,7 @@ class FamilySystem(System):
         self._defaults, self._repeating = defaults, repeating
         size = self.index.size or self.small
         check_memory(name, self.index, size * (state.size + indexed.size))
+        self.members = size
         super().__init__(
             name,
             file,
@@ -74,7 +75,9 @@ class FamilySystem(System):
             Quantities(*shared.values(), *(self._repeat(each, size) for each in indexed.values())),
             observables,
             {
-                function: (state.size * size,) if shape is None else shape
+                function: shape
+                if isinstance(shape, tuple)
+                else ((state.size if shape is None else shape) * size,)
                 for function, shape in functions.items()
             },
             elementary,

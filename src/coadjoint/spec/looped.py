@@ -25,11 +25,13 @@ from coadjoint.spec.core.tree import Index as Subscript
 TABLES = (
     "index",
     "algebra",
+    "representations",
     "poisson",
     "variables",
     "parameters",
     "definitions",
     "hamiltonian",
+    "forces",
     "lax",
     "observables",
     "claims",
@@ -60,12 +62,16 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
 
     energy = read(file.hamiltonian)
     observables = [tree for part in file.observables.values() for tree in read(part.expression)]
+    forces = read(file.forces)
     others = [tree for each in (file.poisson, file.lax, file.claims) for tree in read(each)]
+    others += forces
     for tree in (*energy, *observables, *others):
         yield from _examine(tree, members)
     for tree in (*energy, *observables):
         if not _is_total(tree):
             yield "the energy or an observable is not linear in sums over members"
+    if any(map(has_sum, forces)):
+        yield "a force has a sum over members"
     for tree in observables:
         if find_free(tree, members):
             yield "an observable has a value for each member"

@@ -20,6 +20,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from coadjoint import limits
@@ -41,6 +42,7 @@ from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.indices import make_index
 from coadjoint.spec.sections.lax import Lax
+from coadjoint.spec.sections.turning import TURNING, read_rotation
 
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
 
@@ -80,6 +82,7 @@ def read_windows(
         if pairs:
             few = f"with pairs and neighbours claims are proved for all from {least} members on"
         return _write_all(source, file, read, index, few)
+    index = replace(index, first=0)  # no formula names a member by its number
     bare = file.model_copy(update={"lax": None})
     count = 3 if pairs and (reach or width) else 2
     windows = tuple(read(*write_out_file(source, bare, index, first + n)) for n in range(count))
@@ -332,7 +335,9 @@ def _read_defaults(
     source: Source, key: tuple[str, str], part: Any, shape: Shape
 ) -> tuple[tuple[Fraction, ...], ...]:
     """The defaults of each component, of all members."""
-    members = (read_default(source, (*key, "default"), x, shape) or () for x in part.default)
+    role = getattr(part, "role", "")
+    read = partial(read_rotation, role=role) if role in TURNING else read_default
+    members = (read(source, (*key, "default"), x, shape) or () for x in part.default)
     return tuple(zip(*members, strict=True))
 
 
@@ -349,7 +354,7 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
 
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
-    reach = span(energy)
+    reach = span([*energy, *list_texts(file.forces)])
     width = span(
         [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
     )
