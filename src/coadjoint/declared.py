@@ -135,6 +135,7 @@ class KernelContext:
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
         turning: Names of the attitudes that the projection moves back to rotations.
+        members: The index of members that are all written out, and their number; else None.
     """
 
     name: str
@@ -152,4 +153,5 @@ class KernelContext:
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"
+    members: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()

@@ -5,7 +5,8 @@ import pytest
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.members import Members, reach, write_out
-from tests.conftest import FAMILIES
+from coadjoint.spec.reader import read_spec
+from tests.conftest import FAMILIES, WRITTEN
 from tests.families import BEADS, CHAIN, NECKLACE, RING, VORTICES, read
 from tests.specs import RIGID_BODY, shipped
 
@@ -192,6 +193,22 @@ def test_shipped_families_have_units_docs_and_defaults(name):
     assert all(each.doc for each in (*spec.variables, *spec.parameters))
     assert all(each.default is not None for each in spec.parameters)
     assert "energy" in [each.everywhere for each in spec.conserved]
+
+
+def test_systems_whose_members_are_written_out():
+    """They have an index, all their members, and the size in each statement."""
+    for name in WRITTEN:
+        found = shipped(name)
+        assert found.written
+        assert found.family is None
+        assert found.index[0].size in (4, 8)
+
+
+def test_what_counts_components_has_the_size_of_the_spec():
+    """Another one would leave out entries of the matrix."""
+    path = shipped("so8_body").path
+    with pytest.raises(SpecError, match="which counts components"):
+        read_spec(path, {"i": 5})
 
 
 def names_in(text, count, *, periodic):

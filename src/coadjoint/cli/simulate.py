@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.arguments import load_system, seconds_option, system_argument
+from coadjoint.cli.arguments import load_system, seconds_option, size_option, system_argument
 from coadjoint.cli.events import describe_events, events_options, print_events, take_events
 from coadjoint.cli.members import (
     Members,
@@ -132,6 +132,7 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     help="Table of the trajectory to write, e.g. top.csv.",
 )
 @events_options
+@size_option
 @seconds_option
 @json_option
 def command(
@@ -144,6 +145,7 @@ def command(
     plot: Path | None,
     trace: Path | None,
     table: Path | None,
+    sizes: dict[str, int],
     seconds: int | None,
     as_json: bool,
     time: float,
@@ -155,7 +157,7 @@ def command(
     asked.check()
     if members is not None and (plot or trace):
         raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
-    loaded = load_system(system, seconds)
+    loaded = load_system(system, seconds, sizes)
     asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy

@@ -155,22 +155,6 @@ class FamilySystem(System):
         return f"<System {self.name}: {members}; state {state}; parameters {parameters or 'none'}>"
 
 
-def resize(system: System, sizes: Mapping[str, int]) -> FamilySystem:
-    """A system with other numbers of members, by the name of their index.
-
-    Raises:
-        KernelArgumentError: It has no such index, or too few members are asked for.
-        ResourceError: So many members do not fit into memory.
-    """
-    if isinstance(system, FamilySystem):
-        return system.resize(sizes)
-    raise KernelArgumentError(
-        f"sizes of {system.name} are {dict(sizes)!r}, and it has no index; expected none. Leave "
-        "sizes out, or declare [index] in the spec.",
-        found=list(sizes),
-    )
-
-
 def lacks_size(system: System) -> bool:
     """Whether nobody has said yet how many members it has."""
     return isinstance(system, FamilySystem) and system.index.size is None

@@ -281,7 +281,12 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
         if isinstance(size, bool) or not isinstance(size, int) or size < 1:
             problem = f"the size {size!r} is chosen for {name!r}"
             raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
-    return make_index(name, part, sizes.get(name, part.size))
+    size = sizes.get(name, part.size)
+    if size != part.size and not any(each.index for _, _, each in _list_quantities(file)):
+        problem = f"a size is chosen for {name!r}, which counts components"
+        expected = f"the size {part.size} of the spec"
+        raise source.fault(("index", name), problem, size, expected)
+    return make_index(name, part, size)
 
 
 def _check(source: Source, file: Any, index: Index) -> None:
