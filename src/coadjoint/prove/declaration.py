@@ -61,7 +61,8 @@ def kernel_context(
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         unit_of_time=spec.units.time,
         domain=tuple(bound for bound, _ in bounds(equations)),
-        turning=tuple(v.name for v in spec.turning if equations.turning_back is not None),
+        turning=tuple(v.name for v in spec.turning),
+        is_bound=bool(equations.exact.residuals),
     )
 
 
