@@ -26,7 +26,7 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
-from coadjoint.derive.mechanics.turning import step_back
+from coadjoint.derive.mechanics.turning import step_back, turning_residuals
 from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -264,7 +264,7 @@ class _Reader:
     @property
     def turned(self) -> tuple[sympy.Expr, ...]:
         """The state of a member with its attitudes moved back; empty without attitudes."""
-        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
+        back, new = self.equations.projection, self.rename(self.middle, 0, 0)
         if back is None:
             return ()
         known = dict(zip(back.variables, back.rates, strict=True))
@@ -278,8 +278,8 @@ class _Reader:
     @property
     def residuals(self) -> tuple[sympy.Expr, ...]:
         """What is zero where the attitudes of a member are rotations."""
-        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
-        known = dict(() if back is None else back.exact.residuals)
+        known = dict(turning_residuals(self.equations.setting))
+        new = self.rename(self.middle, 0, 0)
         rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
         return self.see((self.write(known[name]) for name in rows if known), new)
 

@@ -35,6 +35,23 @@ SETTLING = 20
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
 
+def describe_projection(system: System, method: str) -> str:
+    """Onto what states are moved, and when; "" for a System whose states are not.
+
+    Args:
+        system: The System.
+        method: As `Course.method` has it.
+    """
+    if "projection" not in system.functions:
+        return ""
+    kept = dict.fromkeys(system.certificate.get("constraints", {}).values())
+    name = method.removeprefix("scipy:")
+    when = "at each sample"
+    if name == method or name in ONE_STEP:
+        when = f"after each step and {when}"
+    return f"{when}, onto {', '.join(kept) or 'the constraints'}"
+
+
 def find_excess(
     system: System, state: Array, residuals: Callable[[Array], Array], atol: float
 ) -> Array:

@@ -297,11 +297,6 @@ class Spec:
         return tuple(each for each in self.variables if each.turning)
 
     @property
-    def turns_back(self) -> bool:
-        """Whether solvers move attitudes back to rotations."""
-        return bool(self.turning) and not (self.constraints or self.noise)
-
-    @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:
         """The momenta of the independent velocities; empty where momenta are the state."""
         moving = [each for each in self.state if each.role == "velocity"]
