@@ -97,8 +97,7 @@ def test_every_system_and_route_is_visited():
         assert sorted(table) == sorted(SYSTEMS) == sorted(textbook.PARAMETERS)
     without = {name for name in SYSTEMS if emitted(name).poisson_tensor is None}
     assert set(textbook.TENSORS) == set(SYSTEMS) - without
-    # no shipped system is singular: tests.derive.test_first_order has Helmholtz and Littlejohn
-    assert {route for _, route in BY_ROUTE} == set(ROUTES) - {"first-order"}
+    assert {route for _, route in BY_ROUTE} == set(ROUTES)
 
 
 @pytest.mark.parametrize(("name", "route"), BY_ROUTE)
