@@ -139,8 +139,8 @@ class FamilyStepper(FamilyTwin):
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
-        """As `Stepper.advance`; the twin makes steps that are recorded."""
-        if record is not None:
+        """As `Stepper.advance`; the twin leads steps that are recorded or moved back."""
+        if record is not None or "projection" in self._system.functions:
             return super().advance(ensemble, first, last, work, record)
         given = self._describe(ensemble, first, last)
         given.work = work
@@ -297,8 +297,15 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     """A few trajectories at the start of twelve steps, with two samples on the way."""
     source = np.random.default_rng(0)
     end = 12 * (step or 2.0**-7)
+    state = source.uniform(0.5, 2.0, (system.STATE.size, members))
+    if "projection" in system.functions:  # far from rotations it leads away
+        near = [
+            quantity.default or (0.0,) * len(quantity.components)
+            for quantity in system.STATE.values()
+        ]
+        state = np.concatenate(near)[:, None] + 0.01 * state
     run = Ensemble(
-        state=source.uniform(0.5, 2.0, (system.STATE.size, members)),
+        state=state,
         parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
         inputs=Inputs(np.zeros(1), np.zeros((0, 1)), np.zeros((0, 1))),
         has_time=False,
