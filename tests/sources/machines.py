@@ -10,6 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from tests.sources import planes
 from tests.sources.components import Vector, cross, dot, hat, minus, plus, times
 from tests.sources.points import circular, named
 
@@ -416,6 +417,7 @@ RATES = {
     "n_link_chain": links_rates,
     "ball_on_turntable": turntable_rates,
     "ball_in_sphere": sphere_rates,
+    "veselova_so4": planes.planes_rates,
 }
 OBSERVABLES = {
     "suslov_so5": suslov_5_observables,
@@ -425,6 +427,7 @@ OBSERVABLES = {
     "n_link_chain": links_observables,
     "ball_on_turntable": turntable_observables,
     "ball_in_sphere": sphere_observables,
+    "veselova_so4": planes.planes_observables,
 }
 #: Brackets of the state, velocities standing for their momenta.
 TENSORS = {
@@ -433,6 +436,7 @@ TENSORS = {
     "appell_machine": appell_tensor,
     "n_link_chain": links_tensor,
     "ball_in_sphere": sphere_tensor,
+    "veselova_so4": planes.planes_tensor,
 }
 TURNING = ("omega1", "omega2", "omega3")
 STATES = {
@@ -445,6 +449,7 @@ STATES = {
     "n_link_chain": tuple(f"{name}_{n}" for name in ("theta", "omega") for n in (1, 2, 3, 4)),
     "ball_on_turntable": (*TURNING, "x1", "x2"),
     "ball_in_sphere": (*TURNING, "n1", "n2", "n3"),
+    "veselova_so4": planes.STATE,
 }
 PARAMETERS = {
     "suslov_so5": ("K1", "K2", "K3", "K4", "k1", "k2", "k3", "k4", "j"),
@@ -454,8 +459,9 @@ PARAMETERS = {
     "n_link_chain": ("m", "l", "g"),
     "ball_on_turntable": ("I", "m", "r", "W"),
     "ball_in_sphere": ("I", "m", "r", "a", "g"),
+    "veselova_so4": planes.PARAMETERS,
 }
 #: With sines and cosines of the state, typed to 80 digits.
 CONFIGURATIONS = ("roller_racer", "n_link_chain")
 #: Whose rates are quotients in the state.
-QUOTIENTS = ("double_spherical_pendulum", "ball_in_sphere")
+QUOTIENTS = ("double_spherical_pendulum", "ball_in_sphere", "veselova_so4")
