@@ -55,11 +55,13 @@ class Row:
         proved: Claims proved.
         supported: Claims that are numerically supported and not proved, as the spec accepts.
         claims: Claims in all.
-        operations: Floating-point operations of ``rhs`` for one member.
+        operations: Floating-point operations of ``rhs`` for one member; of equal members without
+            those of its pairs.
         k: Largest error against 50 digits, in units of 2^-53 times the envelope.
         targets: Targets that were checked.
         seconds: How long it took; 0 if nothing was to do.
         fresh: Whether the system was derived in this run.
+        pair_operations: Of equal members, those of a pair for both of them; 0 without pairs.
     """
 
     system: str
@@ -73,6 +75,7 @@ class Row:
     targets: tuple[str, ...]
     seconds: float
     fresh: bool
+    pair_operations: int = 0
 
 
 @dataclass(frozen=True)
@@ -415,6 +418,7 @@ def build_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         targets=report.targets,
         seconds=perf_counter() - start,
         fresh=True,
+        pair_operations=rendered.pair_operations,
     )
     return {
         "row": asdict(row),

@@ -63,7 +63,7 @@ class System(Functions):
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
         unit_of_time: The unit of the time, also where the system does not depend on it.
-        members: The index of members that are all written out, and their number; else None.
+        written: The index of members that are all written out, and their number; else None.
     """
 
     def __init__(
@@ -81,10 +81,10 @@ class System(Functions):
         inputs: Quantities | None = None,
         time: Quantities | None = None,
         unit_of_time: str = "s",
-        members: tuple[str, int] | None = None,
+        written: tuple[str, int] | None = None,
     ) -> None:
         self.name = name
-        self.members = members
+        self.written = written
         self.folder = Path(file).parent
         self.STATE = state
         self.PARAMETERS = parameters
@@ -106,8 +106,8 @@ class System(Functions):
         """
         expected, way = "none", "Leave sizes out, or declare [index] in the spec."
         problem = "it has no index"
-        if self.members is not None:
-            index, size = self.members
+        if self.written is not None:
+            index, size = self.written
             if dict(sizes) == {index: size}:
                 return self
             problem, expected = "its members are all written out", f"{{{index!r}: {size}}}"
