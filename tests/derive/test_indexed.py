@@ -16,6 +16,7 @@ from tests.families import (
     CHAIN,
     DRAG,
     RING,
+    SPRINGS,
     TOPS,
     VORTICES,
     are_equal,
@@ -28,6 +29,7 @@ from tests.families import (
     write_chain,
     write_drag,
     write_ring,
+    write_springs,
     write_tops,
     write_vortices,
 )
@@ -39,6 +41,7 @@ SYSTEMS = {
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
     "tops": (TOPS, write_tops, (2, 3)),
     "drag": (DRAG, write_drag, (2, 3)),
+    "springs": (SPRINGS, write_springs, (2, 3, 5)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -93,6 +96,7 @@ def spoil_pairs(family):
         ("vortices", 3, spoil_pairs),
         ("tops", 3, spoil_end),
         ("drag", 2, spoil_drag),
+        ("springs", 3, spoil_neighbour),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
