@@ -333,7 +333,6 @@ MUTANTS = (
         "ideals",
         "remainder: bare _basis",
         "_solve: flip slope",
-        "_groebner_basis: use 3 for 2",
         "_split_branches: rewrite self.field.normal(self._on(_1, _2)) -> self.field.normal(_2)",
     ),
     *of("prove/points", "_step: flip by", tests=("tests/prove/test_points.py",)),
