@@ -10,6 +10,7 @@ import coadjoint.spec
 from coadjoint.cli import main
 from coadjoint.errors import CoadjointError, SpecError
 from tests.constrained import PARTICLE, SLEIGH
+from tests.derive import test_bound_momenta
 from tests.derive.test_configuration import LAW
 from tests.rolling import BALL
 from tests.spec.test_charts import CHART, RATES
@@ -23,6 +24,7 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
+FAST = test_bound_momenta.TOP.split(END)[0]
 BARE = """
 title = "A Lax pair alone"
 routes = ["lax"]
@@ -411,6 +413,23 @@ ADVICE = [
         write('x = { role = "coordinate"', 'x = { role = "coordinate", follows = true'),
         "Remove follows.",
         write(", follows = true", ""),
+    ),
+    *(
+        (FAST, write('["Pi1", "Pi2"], default = [0, 0, 2]', wrong), said, write(wrong, right))
+        for wrong, said, right in (
+            ('["Pi3"], default = [0, 0, 2]', "Write 0 in the place of Pi3.", '["Pi1", "Pi2"]'),
+            ('["Pi1", "Pi4"]', "Did you mean", '["Pi1", "Pi2"]'),
+            ('["Pi1", "Pi2", "Pi3"]', "Write follows = true.", "true"),
+        )
+    ),
+    (
+        FAST,
+        write(
+            "Gamma = {",
+            'x = { role = "advected", representation = "trivial", follows = ["x"] }\nGamma = {',
+        ),
+        "Write follows = true.",
+        write('follows = ["x"]', "follows = true"),
     ),
     (
         TOP,
