@@ -56,8 +56,8 @@ def test_every_function_that_applies_is_lowered(system):
         "energy": equations.energy is None,
         "poisson_tensor": not equations.poisson_tensor,
         "noise": not equations.spec.noise,
-        "constraint_residual": equations.distribution is None and not equations.turning_back,
-        "projection": equations.projection is None and not equations.turning_back,
+        "constraint_residual": equations.distribution is None and not equations.spec.turning,
+        "projection": equations.projection is None,
         "reconstruction": not equations.followed,
         "domain": equations.distribution is None and not equations.spec.domain,
     }
