@@ -137,6 +137,7 @@ class KernelContext:
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
         turning: Names of the attitudes that the projection moves back to rotations.
+        written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
     """
 
@@ -155,5 +156,6 @@ class KernelContext:
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"
+    written: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()
     is_bound: bool = False

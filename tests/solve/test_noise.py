@@ -311,11 +311,10 @@ SOUGHT = ["Pi1 == 0", "Pi1^2 + Pi2^2 == 0.5"]
 def test_events_lie_on_the_straight_lines_between_ends_of_steps(method):
     """Where these meet the level, and with the same bits for any target and threads."""
     start = np.repeat(START[:, None], 20, axis=1)
-    again = {"method": method, "step": 0.02, "seed": 1, "samples": 201, "events": SOUGHT}
+    again = {"method": method, "step": 0.05, "seed": 1, "samples": 81, "events": SOUGHT}
     runs = [
         body.simulate(start, (0, 4), target=target, threads=threads, **again)
-        for target in TARGETS
-        for threads in (1, 3)
+        for threads, target in enumerate(["numpy", *TARGETS], 1)
     ]
     run, *others = runs
     for name in SOUGHT:

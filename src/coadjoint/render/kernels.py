@@ -234,6 +234,9 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     present = [f"{name}={name.upper()}" for name in _optional(context)]
     if context.unit_of_time != "s":
         present.append(f"unit_of_time={quote(context.unit_of_time)}")
+    if context.written is not None:
+        index, size = context.written
+        present.append(f"written=({quote(index)}, {size})")
     return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 
