@@ -228,6 +228,10 @@ BY_HAND = {
     # the columns of L that both constraints have; pivots and the entry between, known sides; both
     # multipliers; accelerations
     "double_spherical_pendulum": 15 + 10 + 6 + 8 + 3 + 8 + 8 + 3 + 12 + 12 + 2,
+    # products of Gamma, doubled, sums, entries, over its length; V; x, y, their momenta, those of U
+    # and V; p x U, q x V; R^T of it and sums; B^T M B of sums and differences of moments; L D L^T,
+    # solves; the rates of two directions by x and y, halved
+    "veselova_so4": 13 + 13 + 12 + 15 + 6 + 12 + 18 + 18 + 60 + 30 + 2 * 20 + 6,
     "appell_machine": 2 + 3 + 3 + 2 + 3,  # the weight; K rho w^2, K b w phi'; both accelerations
 }
 

@@ -177,6 +177,11 @@ SHIPPED = {
         ("euler-lagrange", "canonical", "newton"),
     ),
     "guiding_centre": ("X1 X2 X3 u", "m q mu B0 L", ("poisson", "first-order")),
+    "veselova_so4": (
+        "U1 U2 U3 Gamma1 Gamma2 Gamma3 Gamma4 a1 a2 a3 a4",
+        "Jx1 Jx2 Jx3 Jy1 Jy2 Jy3",
+        CONSTRAINED,
+    ),
     "suslov_so5": ("w1 w2 w3 w4", "K1 K2 K3 K4 k1 k2 k3 k4 j", CONSTRAINED),
     "roller_racer": ("v omega phi", "m1 m2 I1 I2 d1 d2", CONSTRAINED),
     "appell_machine": ("omega z phi vphi", "M m A C a b rho g", CONSTRAINED),

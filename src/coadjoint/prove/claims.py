@@ -242,7 +242,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         UndecidedError: No point is found at which a claim has a value.
     """
     if spec.family is None:
-        return _certify(spec, routes)
+        return indexed.bind_size(spec, _certify(spec, routes))
     windows = indexed.list_windows(spec)
     return indexed.extend(spec, [_certify(each, searched=False) for each in windows])
 

@@ -62,6 +62,19 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     return Certificate(spec.name, tuple(claims))
 
 
+def bind_size(spec: Spec, certificate: Certificate) -> Certificate:
+    """A certificate of members that are all written out: each statement names their number."""
+    if not spec.written:
+        return certificate
+    (index,) = spec.index
+    scope = f", for {index.count or 'N'} = {index.size}"
+    return replace(
+        certificate,
+        claims=tuple(replace(c, statement=c.statement + scope) for c in certificate.claims),
+        findings=tuple(replace(f, statement=f.statement + scope) for f in certificate.findings),
+    )
+
+
 def _examine_lax(family: Windows) -> Claim:
     """The Lax equation of matrices with a row for each member.
 
