@@ -188,6 +188,16 @@ def test_memory_is_looked_at_before_work(ring, monkeypatch):
         ring.resize({"i": 1_000_000})
 
 
+def test_an_error_of_a_generated_folder_is_told_as_it_is(tmp_path):
+    """The advice is its own: to generate the folder again would not make room for members."""
+    text = (
+        "from coadjoint.errors import ResourceError\nraise ResourceError('Take fewer members.')\n"
+    )
+    (tmp_path / "__init__.py").write_text(text)
+    with pytest.raises(ResourceError, match=r"^Take fewer members\.$"):
+        load_folder(tmp_path)
+
+
 def test_a_system_without_an_index_has_no_size(ring):
     """`load` says so."""
     from coadjoint.systems.rigid_body import system
