@@ -191,7 +191,7 @@ def test_a_system_without_an_index_has_no_size(ring):
     from coadjoint.systems.rigid_body import system
 
     with pytest.raises(KernelArgumentError, match="no index"):
-        families.resize(system, {"i": 3})
+        system.resize({"i": 3})
 
 
 def test_loading_takes_sizes(tmp_path):
