@@ -87,6 +87,30 @@ p = "-c[i]*p[i]^3"
 [observables]
 P = "sum(i, p[i])"
 """
+SPRINGS = """
+title = "Masses with friction between neighbours"
+routes = ["euler-lagrange", "canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+v = { role = "velocity", of = "q", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+m = { index = "i", positive = true, default = 1 }
+c = { default = 1 }
+[lagrangian]
+l = "sum(i, m[i]*v[i]^2/2) - sum(i, exp(q[i] - q[i+1]))"
+[hamiltonian]
+h = "sum(i, p[i]^2/(2*m[i])) + sum(i, exp(q[i] - q[i+1]))"
+[dissipation]
+R = "c*sum(i, (v[i] - v[i+1])^2)/2"
+[observables]
+P = "sum(i, p[i])"
+K = "sum(i, m[i]*v[i]^2/2)"
+[claims]
+conserved = ["P"]
+"""
 TOPS = """
 title = "Tops in a row"
 routes = ["lie-poisson"]
@@ -127,6 +151,31 @@ def write_drag(n):
             *(f"c_{k} = {{ default = 1 }}" for k in range(n)),
             f'[hamiltonian]\nh = "{" + ".join(terms)}"\n[forces]',
             *(f'p_{k} = "-c_{k}*p_{k}^3"' for k in range(n)),
+        ]
+    )
+
+
+def write_springs(n):
+    """So many masses, each of which rubs against the next one."""
+    bonds = range(n - 1)
+    kinetic = " + ".join(f"p_{k}^2/(2*m_{k})" for k in range(n))
+    walls = "".join(f" + exp(q_{k} - q_{k + 1})" for k in bonds)
+    pulls = [
+        "".join(
+            f" + c*(p_{j}/m_{j} - p_{k}/m_{k})" for j in (k - 1, k + 1) if 0 <= j < n
+        ).removeprefix(" + ")
+        for k in range(n)
+    ]
+    return "\n".join(
+        [
+            'title = "S"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"m_{k} = {{ positive = true, default = 1 }}" for k in range(n)),
+            "c = { default = 1 }",
+            f'[hamiltonian]\nh = "{kinetic}{walls}"\n[forces]',
+            *(f'p_{k} = "{pull}"' for k, pull in enumerate(pulls)),
         ]
     )
 

@@ -18,6 +18,7 @@ from tests.families import (
     DRAG,
     NECKLACE,
     RING,
+    SPRINGS,
     TOPS,
     VORTICES,
     are_equal,
@@ -32,6 +33,7 @@ from tests.families import (
     write_drag,
     write_necklace,
     write_ring,
+    write_springs,
     write_tops,
     write_vortices,
 )
@@ -45,6 +47,7 @@ SYSTEMS = {
     "necklace": (NECKLACE, write_necklace, (2, 4, 7)),
     "tops": (TOPS, write_tops, (2, 3)),
     "drag": (DRAG, write_drag, (2, 3)),
+    "springs": (SPRINGS, write_springs, (2, 3, 5)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -102,6 +105,7 @@ def spoil_pairs(family):
         ("necklace", 5, spoil_neighbour),
         ("tops", 3, spoil_end),
         ("drag", 2, spoil_drag),
+        ("springs", 3, spoil_neighbour),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):

@@ -215,8 +215,13 @@ BY_HAND = {
     # drifts u, mu/(q |B|) and m u^2/(q |B|) along three vectors; du/dt
     # with B_x and B_y as multiples of x and y, so that each vector is two numbers: a third less
     "guiding_centre": 2 * (10 + 6 + 3 + 14 + 8 + 5 + 9 + 18 + 5 + 15 + 12) // 3,
-    # k . w, w . w; both products of each, their difference over K_i + j
-    "suslov_so5": 7 + 7 + 4 * (2 + 1 + 1),
+    # r^2, s; b, B0 s b and m u curl b/q with k and its square known, B*; its part P along b; the
+    # gradient of mu |B|/q; b x that; u B*, their sum over P; u' = 0
+    "guiding_centre_twisted": 3 + 3 + 4 + 2 + 4 + 4 + 3 + 5 + 3 + 6 + 3 + 3 + 3,
+    # k_j w_j, squares; row by row the sums of the others, less two that recur; both products, their
+    # difference over K_i + j. With k . w and w . w in each row it is 30, and k_i w_i^2 cancels: see
+    # docs/decisions/lowering.md
+    "suslov_so5": 4 + 4 + 4 * (2 + 2) - 2 + 4 * (2 + 1 + 1),
     # functions, B, the rate of phi; entries of B^T M B; rates of momenta at fixed velocities, ad*,
     # the slope by phi; dB/dt, M dB/dt and B^T; L D L^T of 2 x 2 and solves
     "roller_racer": 2 + 3 + 3 + 2 + 22 + 14 + 8 + 6 + 6 + 5 + 4 + 11,

@@ -18,6 +18,7 @@ from tests.families import (
     NECKLACE,
     PEAKONS,
     RING,
+    SPRINGS,
     TOPS,
     VORTICES,
     are_equal,
@@ -74,6 +75,9 @@ FALSE = [
     (LONG, (CLAIM, 'conserved = ["sum(i, p[i]*p[i+1])", "energy"')),
     (DRAG, ("[observables]", '[claims]\nconserved = ["energy"]\n[observables]')),
     (DRAG, ("[observables]", '[claims]\nconserved = ["sum(i, p[i])"]\n[observables]')),
+    (SPRINGS, ('conserved = ["P"]', 'conserved = ["energy"]')),
+    (SPRINGS, ('conserved = ["P"]', 'conserved = ["K"]')),
+    (SPRINGS, ('h = "sum(i, p[i]^2/(2*m[i]))', 'h = "sum(i, p[i]^2/m[i])')),
     (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
     (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
@@ -108,6 +112,15 @@ def test_forces_of_members_are_part_of_what_is_proved():
     changes = (*ring, (CLAIM + ", ", "conserved = ["), ("[observables]", wrong))
     with pytest.raises(ClaimError, match="refuted"):
         prove(read(CHAIN, *changes)).require()
+
+
+def test_routes_of_members_are_compared_and_friction_has_a_power():
+    """Each member has a Legendre transform of its own; Rayleigh's function couples neighbours."""
+    said = [each.statement for each in prove(read(SPRINGS)).require().claims]
+    same = "euler-lagrange and canonical give the same motion, through the Legendre transform"
+    assert f"{same}, for every N >= 2" in said
+    assert "the energy changes by -2 R, for every N >= 2" in said
+    assert "P is conserved, for every N >= 2" in said
 
 
 def test_attitudes_of_members_stay_rotations_and_need_to_be_some():

@@ -3,11 +3,16 @@
 import pytest
 
 from coadjoint.errors import LimitError, SpecError
+from coadjoint.families import Index
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.members import Members, reach, write_out
+from coadjoint.spec.core.positions import scan
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.looped import find_misfit
 from coadjoint.spec.reader import read_spec
+from coadjoint.spec.validate import validate
 from tests.conftest import FAMILIES, WRITTEN
-from tests.families import BEADS, CHAIN, NECKLACE, RING, VORTICES, read
+from tests.families import BEADS, CHAIN, NECKLACE, RING, SPRINGS, VORTICES, read
 from tests.specs import RIGID_BODY, shipped
 
 MOMENTA = 'S = { role = "momentum", index = "i" }'
@@ -134,6 +139,38 @@ def test_bad_input_is_refused_at_its_place(text, change, said):
         read(text, change)
     assert said in str(caught.value)
     assert caught.value.line > 1
+
+
+HAMILTONIAN = '[hamiltonian]\nh = "sum(i, p[i]^2/(2*m[i])) + sum(i, exp(q[i] - q[i+1]))"\n'
+#: What keeps members from being looped over, and the clause that says so.
+MISFITS = [
+    (("m[i]*v[i]^2/2) -", "m[i]*v[i]*v[i+1]/2) -"), "the kinetic energy couples members"),
+    (
+        ("- sum(i, exp(q[i] - q[i+1]))", "- sum(i, j, i < j, (q[i] - q[j])^2)"),
+        "the Lagrangian has a sum over pairs",
+    ),
+    ((HAMILTONIAN, ""), "the energy follows from a Lagrangian"),
+    (("c*sum(i, (v[i] - v[i+1])^2)/2", "c*sum(i, v[i])^2/2"), "Rayleigh's function is not linear"),
+    (
+        ("c*sum(i, (v[i] - v[i+1])^2)/2", "c*sum(i, j, i < j, (v[i] - v[j])^2)/2"),
+        "Rayleigh's function has a sum over pairs",
+    ),
+    (("[dissipation]\nR =", "[forces]\nv ="), "a force has a sum over members"),
+]
+
+
+@pytest.mark.parametrize(("change", "why"), MISFITS)
+def test_what_no_generic_member_tells_is_written_out(change, why):
+    """Only what the file says decides."""
+    assert change[0] in SPRINGS
+    assert not read_file_misfit(SPRINGS)
+    assert read_file_misfit(SPRINGS.replace(*change)).startswith(why)
+
+
+def read_file_misfit(text):
+    """Why the members of a text are not looped over; "" if they are."""
+    source = Source(path="sample.toml", text=text, positions=scan(text))
+    return find_misfit(validate(source), Index("i", 6))
 
 
 def test_limits_of_neighbours_and_members():

@@ -105,12 +105,14 @@ class _Reader:
     def members(self) -> Members:
         """The members that are written out."""
         declared = self.declared
-        count = len(self.equations.spec.state) // len(declared.variables)
+        spec = self.equations.spec
+        count = len(spec.state) // len(declared.variables)
+        moving = (each.name.rpartition("_")[0] for each in spec.variables)  # velocities among them
         return Members(
             index=declared.index.name,
             count=count,
             periodic=declared.index.periodic,
-            names=frozenset((*declared.variables, *declared.indexed)),
+            names=frozenset((*moving, *declared.indexed)),
         )
 
     @cached_property

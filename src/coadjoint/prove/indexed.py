@@ -197,7 +197,7 @@ def _generalise(method: str) -> str:
 
 def _reason(family: Windows, claim: Claim) -> str:
     """Why so many numbers of members are enough."""
-    if claim.statement.startswith("the energy") and not family.windows[0].forces:
+    if claim.statement.startswith("the energy") and not family.windows[0].is_forced:
         return "the bracket of each member is antisymmetric"
     if claim.kind != "conserved" or claim.statement in family.of_members:
         if family.pairs:

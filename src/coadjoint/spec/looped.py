@@ -30,8 +30,10 @@ TABLES = (
     "variables",
     "parameters",
     "definitions",
+    "lagrangian",
     "hamiltonian",
     "forces",
+    "dissipation",
     "lax",
     "observables",
     "claims",
@@ -64,17 +66,41 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     observables = [tree for part in file.observables.values() for tree in read(part.expression)]
     forces = read(file.forces)
     others = [tree for each in (file.poisson, file.lax, file.claims) for tree in read(each)]
-    others += forces
+    friction = read(file.dissipation)
+    others += [*forces, *friction]
     for tree in (*energy, *observables, *others):
         yield from _examine(tree, members)
     for tree in (*energy, *observables):
         if not _is_total(tree):
             yield "the energy or an observable is not linear in sums over members"
+    if not all(map(_is_total, friction)):
+        yield "Rayleigh's function is not linear in sums over members"
+    if any(isinstance(n, Sum) and len(n.indices) > 1 for t in friction for n in walk(t)):
+        yield "Rayleigh's function has a sum over pairs"
     if any(map(has_sum, forces)):
         yield "a force has a sum over members"
     for tree in observables:
         if find_free(tree, members):
             yield "an observable has a value for each member"
+    if file.lagrangian is not None:
+        yield from _examine_lagrangian(file, read(file.lagrangian), members)
+
+
+def _examine_lagrangian(file: Any, trees: list[Node], members: Members) -> Iterator[str]:
+    """Why a Lagrangian does not tell the momenta of each member by its own velocities."""
+    if file.hamiltonian is None:
+        yield "the energy follows from a Lagrangian"
+    moving = {name for name, part in file.variables.items() if part.role == "velocity"}
+    for tree in trees:
+        yield from _examine(tree, members)
+        if not _is_total(tree):
+            yield "the Lagrangian is not linear in sums over members"
+        for each in (node for node in walk(tree) if isinstance(node, Sum)):
+            named = {node.name for node in walk(each.term) if isinstance(node, Member)}
+            if len(each.indices) > 1:
+                yield "the Lagrangian has a sum over pairs"
+            elif named & moving and reach(each.term) != (0, 0):
+                yield "the kinetic energy couples members"
 
 
 def _is_total(tree: Node) -> bool:

@@ -126,7 +126,7 @@ class Windows:
 
     Attributes:
         index: The index, with its size if that is known.
-        variables: Names of the variables that each member has, in declared order.
+        variables: Names of the variables of the state that each member has, in declared order.
         shared: Names of the parameters that all members share.
         indexed: Names of the parameters that each member has.
         defaults: Defaults of quantities that differ from member to member: of each

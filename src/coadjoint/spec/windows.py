@@ -93,11 +93,12 @@ def read_windows(
         for count in range(first, last + 1)
         if file.lax is not None
     )
+    state = {each.name for each in small.state}
     parameters = {name: part.index is not None for name, part in file.parameters.items()}
     shapes = {each.name: each.shape for each in (*small.variables, *small.parameters)}
     family = Windows(
         index=index,
-        variables=tuple(file.variables),
+        variables=tuple(name for name in file.variables if member_name(name, 0) in state),
         shared=tuple(name for name, own in parameters.items() if not own),
         indexed=tuple(name for name, own in parameters.items() if own),
         defaults={
@@ -359,7 +360,8 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
 
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
-    reach = span([*energy, *list_texts(file.forces)])
+    acting = [text for each in (file.forces, file.dissipation) for text in list_texts(each)]
+    reach = span([*energy, *list_texts(file.lagrangian), *acting])
     width = span(
         [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
     )
