@@ -215,6 +215,26 @@ P = "sum(i, p[i])"
 [claims]
 conserved = ["energy", "P"]
 """
+BEADS = """
+title = "Beads with springs between neighbours, of which all repel each other"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+c = { index = "i", default = 1 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2) + sum(i, k[i]*(q[i+1] - q[i])^2/2)
+    + sum(i, j, i < j, c[i]*c[j]/(1 + (q[i] - q[j])^2))'''
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+NECKLACE = BEADS.replace("size = 6", "size = 6, periodic = true")
 
 
 def write_ring(n):
@@ -254,6 +274,28 @@ def write_chain(n):
             f'[hamiltonian]\nh = "{" + ".join(terms)}"',
         ]
     )
+
+
+def write_beads(n, *, periodic=False):
+    """So many beads in a row, or in a ring."""
+    terms = [f"p_{i}^2/2" for i in range(n)]
+    terms += [f"k_{i}*(q_{(i + 1) % n} - q_{i})^2/2" for i in range(n if periodic else n - 1)]
+    terms += [f"c_{i}*c_{j}/(1 + (q_{i} - q_{j})^2)" for i, j in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "B"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{i} = {{ role = "coordinate" }}' for i in range(n)),
+            *(f'p_{i} = {{ role = "momentum", of = "q_{i}" }}' for i in range(n)),
+            "[parameters]",
+            *(f"{c}_{i} = {{ default = 1 }}" for c in "kc" for i in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def write_necklace(n):
+    """So many beads in a ring."""
+    return write_beads(n, periodic=True)
 
 
 def write_vortices(n):

@@ -13,8 +13,10 @@ from coadjoint.derive.document import document
 from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
+    BEADS,
     CHAIN,
     DRAG,
+    NECKLACE,
     RING,
     SPRINGS,
     TOPS,
@@ -26,8 +28,10 @@ from tests.families import (
     rates_of_members,
     read,
     value_of,
+    write_beads,
     write_chain,
     write_drag,
+    write_necklace,
     write_ring,
     write_springs,
     write_tops,
@@ -39,6 +43,8 @@ SYSTEMS = {
     "ring": (RING, write_ring, (2, 3, 4, 5)),
     "chain": (CHAIN, write_chain, (4, 5, 6)),
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
+    "beads": (BEADS, write_beads, (2, 3, 5)),
+    "necklace": (NECKLACE, write_necklace, (2, 4, 7)),
     "tops": (TOPS, write_tops, (2, 3)),
     "drag": (DRAG, write_drag, (2, 3)),
     "springs": (SPRINGS, write_springs, (2, 3, 5)),
@@ -94,6 +100,9 @@ def spoil_pairs(family):
         ("chain", 5, spoil_neighbour),
         ("chain", 5, spoil_end),
         ("vortices", 3, spoil_pairs),
+        ("beads", 4, spoil_end),
+        ("beads", 4, spoil_pairs),
+        ("necklace", 5, spoil_neighbour),
         ("tops", 3, spoil_end),
         ("drag", 2, spoil_drag),
         ("springs", 3, spoil_neighbour),
@@ -106,7 +115,8 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
 
 
 @pytest.mark.parametrize(
-    ("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("tops", 3)]
+    ("name", "n"),
+    [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("beads", 4), ("tops", 3)],
 )
 def test_the_energy_is_that_of_all_members(families, name, n):
     """Sums begin and end where the energy that is written out has its terms."""

@@ -214,7 +214,7 @@ MUTANTS = (
     *of(
         "exact/dense",
         "_expand: omit 1 j",
-        "inverse: omit 1 i j",
+        "_adjugate: omit 1 i j",
         "subtract: use add for sub",
         "hat: flip a3",
         "cross: rewrite a3 * b1 - a1 * b3 -> a1 * b3 - a3 * b1",

@@ -6,7 +6,9 @@ list, or values by name; `tests.sources.textbook` has them by system.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from tests.sources.bodies import se3_tensor
@@ -14,6 +16,9 @@ from tests.sources.classical import inverse_on
 from tests.sources.components import Vector, cross, dot, hat, minus, plus, times
 from tests.sources.phase_spaces import paired
 from tests.sources.points import length, named
+
+#: A magnetic field by the place and its own parameters.
+Field = Callable[..., list[Any]]
 
 # -- three waves: Alber, Luther, Marsden and Robbins (1998) ----------------------------------------
 
@@ -156,7 +161,7 @@ def bottle_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
     B = bottle_field(x, B0, L)
     strength = length(dot(B, B))
     along = dot(v, B) / strength
-    flux = q * B0 * (x[0] ** 2 + x[1] ** 2) * (1 + x[2] ** 2 / L**2) / 2
+    flux = q * bottle_flux(x, B0, L)
     return {
         "energy": m * dot(v, v) / 2,
         "along": along,
@@ -183,49 +188,67 @@ def slopes(function: Any, x: Vector) -> list[list[Any]]:
     return found
 
 
-def centre_parts(state: Vector, parameters: Vector) -> tuple[list[Any], Any, list[Any], Any]:
+def screw_field(x: Vector, B0: Any, k: Any) -> list[Any]:
+    """``B0 (-k y, k x, 1)``: of an even current and of a coil."""
+    return times(B0, [-k * x[1], k * x[0], 1])
+
+
+def centre_parts(
+    field: Field, state: Vector, parameters: Vector
+) -> tuple[list[Any], Any, list[Any], Any]:
     """``b``, ``|B|``, its gradient, and ``B* = B + (m u/q) curl b``; all from B by differences."""
     m, q, _, *shape = parameters
 
     def strength(x: Vector) -> list[Any]:
-        B = bottle_field(x, *shape)
+        B = field(x, *shape)
         return [length(dot(B, B))]
 
     def direction(x: Vector) -> list[Any]:
-        return times(1 / strength(x)[0], bottle_field(x, *shape))
+        return times(1 / strength(x)[0], field(x, *shape))
 
     dx, dy, dz = slopes(direction, state[:3])
     curl = [dy[2] - dz[1], dz[0] - dx[2], dx[1] - dy[0]]
-    starred = plus(bottle_field(state[:3], *shape), times(m * state[3] / q, curl))
+    starred = plus(field(state[:3], *shape), times(m * state[3] / q, curl))
     gradient = [slope for (slope,) in slopes(strength, state[:3])]
     return direction(state[:3]), strength(state[:3])[0], gradient, starred
 
 
-def centre_rates(state: Vector, parameters: Vector) -> list[Any]:
+def centre_rates(field: Field, state: Vector, parameters: Vector) -> list[Any]:
     """``X' = (u B* + b x mu grad B/q)/(b . B*)``, ``u' = -B* . mu grad B/(m b . B*)``."""
     m, q, mu, *_ = parameters
-    b, _, gradient, starred = centre_parts(state, parameters)
+    b, _, gradient, starred = centre_parts(field, state, parameters)
     parallel = dot(b, starred)
     moved = plus(times(state[3], starred), times(mu / q, cross(b, gradient)))
     return [*times(1 / parallel, moved), -mu * dot(starred, gradient) / (m * parallel)]
 
 
-def centre_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """``m u^2/2 + mu |B|``, the rates by the names of velocities, and ``q A_phi rho``."""
-    m, q, mu, B0, L = parameters
-    x, y, z, u = state
-    flux = B0 * (x**2 + y**2) * (1 + z**2 / L**2) / 2
+def centre_observables(
+    field: Field, flux: Callable[..., Any], state: Vector, parameters: Vector
+) -> dict[str, Any]:
+    """``m u^2/2 + mu |B|``, the rates by the names of velocities, and ``(q A + m u b)_phi rho``."""
+    m, q, mu, *shape = parameters
+    (x, y, _, u), (b, strength, *_) = state, centre_parts(field, state, parameters)
     return {
-        "energy": m * u**2 / 2 + mu * centre_parts(state, parameters)[1],
-        **dict(zip(("V1", "V2", "V3", "a"), centre_rates(state, parameters), strict=True)),
-        "J": q * flux,
+        "energy": m * u**2 / 2 + mu * strength,
+        **dict(zip(("V1", "V2", "V3", "a"), centre_rates(field, state, parameters), strict=True)),
+        "J": q * flux(state[:3], *shape) + m * u * (x * b[1] - y * b[0]),
     }
 
 
-def centre_tensor(state: Vector, parameters: Vector) -> list[list[Any]]:
+def bottle_flux(x: Vector, B0: Any, L: Any) -> Any:
+    """``A_phi rho`` of the bottle."""
+    return B0 * (x[0] ** 2 + x[1] ** 2) * (1 + x[2] ** 2 / L**2) / 2
+
+
+def screw_flux(x: Vector, B0: Any, k: Any) -> Any:
+    """``A_phi rho`` of the screw lines: half of ``B0 rho^2``, whatever k is."""
+    return B0 * (x[0] ** 2 + x[1] ** 2) / 2
+
+
+def centre_tensor(field: Field, state: Vector, parameters: Vector) -> list[list[Any]]:
     """``{F, G} = B* . (grad F G_u - F_u grad G)/(m B*_b) - b . grad F x grad G/(q B*_b)``."""
     m, q, *_ = parameters
-    b, _, _, starred = centre_parts(state, parameters)
+    b, _, _, starred = centre_parts(field, state, parameters)
     parallel = dot(b, starred)
     across = hat(times(1 / (q * parallel), b))  # minus b . e_i x e_j is the entry of hat(b)
     along = times(1 / (m * parallel), starred)
@@ -284,7 +307,8 @@ RATES = {
     "hess_appelrot": hess_rates,
     "maxwell_bloch": maxwell_rates,
     "magnetic_bottle": bottle_rates,
-    "guiding_centre": centre_rates,
+    "guiding_centre": partial(centre_rates, bottle_field),
+    "guiding_centre_twisted": partial(centre_rates, screw_field),
 }
 OBSERVABLES = {
     "two_field_top": top_observables,
@@ -293,7 +317,8 @@ OBSERVABLES = {
     "hess_appelrot": hess_observables,
     "maxwell_bloch": maxwell_observables,
     "magnetic_bottle": bottle_observables,
-    "guiding_centre": centre_observables,
+    "guiding_centre": partial(centre_observables, bottle_field, bottle_flux),
+    "guiding_centre_twisted": partial(centre_observables, screw_field, screw_flux),
 }
 TENSORS = {
     "two_field_top": lambda x, p: top_tensor(x),
@@ -302,7 +327,8 @@ TENSORS = {
     "hess_appelrot": lambda x, p: se3_tensor(x),
     "maxwell_bloch": lambda x, p: hat([0, x[1], x[2]]),
     "magnetic_bottle": bottle_tensor,
-    "guiding_centre": centre_tensor,
+    "guiding_centre": partial(centre_tensor, bottle_field),
+    "guiding_centre_twisted": partial(centre_tensor, screw_field),
 }
 STATES = {
     "two_field_top": (
@@ -315,6 +341,7 @@ STATES = {
     "maxwell_bloch": ("x1", "x2", "x3"),
     "magnetic_bottle": ("x1", "x2", "x3", "v1", "v2", "v3"),
     "guiding_centre": ("X1", "X2", "X3", "u"),
+    "guiding_centre_twisted": ("X1", "X2", "X3", "u"),
 }
 PARAMETERS = {
     "two_field_top": ("I", "a", "b"),
@@ -324,6 +351,7 @@ PARAMETERS = {
     "maxwell_bloch": (),
     "magnetic_bottle": ("m", "q", "B0", "L"),
     "guiding_centre": ("m", "q", "mu", "B0", "L"),
+    "guiding_centre_twisted": ("m", "q", "mu", "B0", "k"),
 }
 #: With lengths of the state, typed to 80 digits.
-CONFIGURATIONS = ("magnetic_bottle", "guiding_centre")
+CONFIGURATIONS = ("magnetic_bottle", "guiding_centre", "guiding_centre_twisted")

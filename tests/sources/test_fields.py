@@ -155,11 +155,19 @@ def test_a_guiding_centre_follows_the_charge():
     assert np.ptp(whole["moment"]) < 0.02 * mu
 
 
-@pytest.mark.parametrize(("curl", "right"), [("m*u/q*kappa", True), ("0*u", False)])
-def test_a_bracket_without_the_curl_of_b_is_none(curl, right):
-    """B in the place of ``B* = B + (m u/q) curl b`` breaks the Jacobi identity, an error."""
-    text = (derivations_folder() / "guiding_centre.toml").read_text(encoding="utf-8")
-    declared = spec(text, ("m*u/q*kappa", curl))
+@pytest.mark.parametrize(
+    ("name", "old", "new", "right"),
+    [
+        ("guiding_centre", "m*u/q*kappa", "m*u/q*kappa", True),
+        ("guiding_centre", "m*u/q*kappa", "0*u", False),
+        ("guiding_centre_twisted", "B0*s + 2*m*u*k", "B0*s + 2*m*u*k", True),
+        ("guiding_centre_twisted", "B0*s + 2*m*u*k", "B0*s + 0*m*u*k", False),
+    ],
+)
+def test_a_bracket_without_the_curl_of_b_is_none(name, old, new, right):
+    """B in the place of ``B* = B + (m u/q) curl b``, or of its part along b, breaks Jacobi's."""
+    text = (derivations_folder() / f"{name}.toml").read_text(encoding="utf-8")
+    declared = spec(text, (old, new))
     if not right:
         with pytest.raises(AlgebraError, match="Jacobi"):
             prove_claims(declared)

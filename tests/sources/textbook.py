@@ -8,6 +8,7 @@ commutators of the shipped systems are written out there and nowhere else. Where
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
@@ -134,10 +135,10 @@ def within(name: str, point: dict[str, Any]) -> dict[str, Any]:
 
 
 def rational(name: str, point: dict[str, Any]) -> dict[str, Any]:
-    """A point moved to where the heights of rolling bodies have rational roots.
+    """A point moved to where the heights of rolling bodies, and fields, have rational roots.
 
-    ``1 + (4/3)^2 = (5/3)^2`` of a disk, ``1 + 2^2 + 2^2 = 3^2`` of an ellipsoid, and
-    ``A^2 (1 - z^2) + (A z/2)^2 z^2 = A^2 (1 - z^2/2)^2`` of a spheroid.
+    ``1 + (4/3)^2 = (5/3)^2`` of a disk, ``1 + 2^2 + 2^2 = 3^2`` of an ellipsoid and of lines that
+    are screws, and ``A^2 (1 - z^2) + (A z/2)^2 z^2 = A^2 (1 - z^2/2)^2`` of a spheroid.
     """
     if name in ("rolling_disk", "euler_disk"):
         return point | {"Gamma2": point["Gamma1"] * 4 / 3}
@@ -146,6 +147,9 @@ def rational(name: str, point: dict[str, Any]) -> dict[str, Any]:
         return point | {f"axes{n}": long / point[f"Gamma{n}"] for n in (2, 3)}
     if name == "body_of_revolution":
         return point | {"C": point["A"] * point["Gamma3"] / 2}
+    if name == "guiding_centre_twisted":
+        place = 2 / Fraction(point["k"])
+        return point | {"X1": place, "X2": -place, "B0": abs(point["B0"])}
     return point
 
 

@@ -58,7 +58,7 @@ INERTIAL = ("lie-poisson", "euler-poincare", "hamilton-pontryagin", "poincare")
 #: Systems of other books.
 BEYOND = {"gravity_gradient_satellite", *fields.STATES, *machines.STATES}
 #: Systems whose claims are of integrals alone: they have no Casimir, or those of a rotation.
-CONSERVED_ALONE = ("affine_line", "guiding_centre", "two_field_top")
+CONSERVED_ALONE = ("affine_line", "guiding_centre", "guiding_centre_twisted", "two_field_top")
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
@@ -176,6 +176,7 @@ SHIPPED = {
         "m q B0 L",
         ("euler-lagrange", "canonical", "newton"),
     ),
+    "guiding_centre_twisted": ("X1 X2 X3 u", "m q mu B0 k", ("poisson", "first-order")),
     "guiding_centre": ("X1 X2 X3 u", "m q mu B0 L", ("poisson", "first-order")),
     "veselova_so4": (
         "U1 U2 U3 Gamma1 Gamma2 Gamma3 Gamma4 a1 a2 a3 a4",
@@ -189,6 +190,11 @@ SHIPPED = {
         " ".join(f"{name}_{n}" for name in ("gamma1", "gamma2", "v1", "v2") for n in (1, 2, 3)),
         "m1 m2 l1 l2 g",
         CONSTRAINED,
+    ),
+    "n_link_chain": (
+        "theta_1 theta_2 theta_3 theta_4 omega_1 omega_2 omega_3 omega_4",
+        "m l g",
+        ("euler-lagrange",),
     ),
     "ball_on_turntable": ("omega1 omega2 omega3 x1 x2", "I m r W", CONSTRAINED),
     "ball_in_sphere": ("omega1 omega2 omega3 n1 n2 n3", "I m r a g", CONSTRAINED),

@@ -35,6 +35,7 @@ from coadjoint.crosscheck.oracle import (
     oracle,
 )
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
+from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
@@ -92,7 +93,7 @@ class _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
         known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        turning = {each.name: each for each in spec.turning if spec.turns_back}
+        turning = {each.name: each for each in spec.turning}
         size = len(spec.state) // len(declared.variables)
 
         def rows(names: Sequence[str]) -> tuple[str, ...]:
@@ -142,9 +143,8 @@ class _Window:
             by_name = dict(zip(labels, values, strict=True))
             values = [by_name[name] for name in self.totals]
         if function == "constraint_residual":
-            back = self.reference.equations.turning_back
-            assert back is not None, function
-            by_name = dict(zip((name for name, _ in back.exact.residuals), values, strict=True))
+            rows = turning_residuals(self.reference.equations.setting)
+            by_name = dict(zip((name for name, _ in rows), values, strict=True))
             values = [by_name[name] for name in self.residuals]
         return values
 

@@ -26,7 +26,7 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
-from coadjoint.derive.mechanics.turning import step_back
+from coadjoint.derive.mechanics.turning import step_back, turning_residuals
 from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -52,10 +52,9 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
-    small = 2 * declared.reach
+    small = max(1 if declared.index.periodic else 2 * declared.reach, 2 if declared.pairs else 1)
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
-    rates = reader.rates_with_pairs if declared.pairs else reader.rates_of(reader.middle)
-    rates = tuple(rates)
+    rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
     named |= {
@@ -76,7 +75,7 @@ def derive_family(equations: Equations) -> Family:
         pair_sums=pairs,
         ends=reader.ends,
         totals=totals,
-        small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
+        small=small,
         turned=reader.turned,
         residuals=reader.residuals,
     )
@@ -239,7 +238,9 @@ class _Reader:
         return 0 if self.declared.index.periodic else self.declared.reach
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
-        """The rates of a member in generic symbols."""
+        """The rates of a member in generic symbols, and in those of sums over its partners."""
+        if self.declared.pairs:
+            return tuple(self._rates_with_pairs(member))
         reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
         new = self.rename(member, reach, reach)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
@@ -248,7 +249,7 @@ class _Reader:
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
         """The rates of the members of an open chain that lack neighbours."""
-        if self.declared.index.periodic or self.declared.pairs:
+        if self.declared.index.periodic:
             return {}
         reach, count = self.declared.reach, self.members.count
         starts = {k: self.rates_of(k) for k in range(reach)}
@@ -265,7 +266,7 @@ class _Reader:
     @property
     def turned(self) -> tuple[sympy.Expr, ...]:
         """The state of a member with its attitudes moved back; empty without attitudes."""
-        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
+        back, new = self.equations.projection, self.rename(self.middle, 0, 0)
         if back is None:
             return ()
         known = dict(zip(back.variables, back.rates, strict=True))
@@ -279,8 +280,8 @@ class _Reader:
     @property
     def residuals(self) -> tuple[sympy.Expr, ...]:
         """What is zero where the attitudes of a member are rotations."""
-        back, new = self.equations.turning_back, self.rename(self.middle, 0, 0)
-        known = dict(() if back is None else back.exact.residuals)
+        known = dict(turning_residuals(self.equations.setting))
+        new = self.rename(self.middle, 0, 0)
         rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
         return self.see((self.write(known[name]) for name in rows if known), new)
 
@@ -386,13 +387,13 @@ class _Reader:
             terms.append(value)
         return terms
 
-    def _flow(self, energy: Element) -> list[Element]:
-        """The brackets of the first member's state with a function."""
+    def _flow(self, energy: Element, member: int = 0) -> list[Element]:
+        """The brackets of a member's state with a function."""
         tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
         assert tensor is not None, self.equations.route
         state = self.equations.variables
         slopes = field.gradient(energy, state)
-        rows = [state.index(name) for name in self.names_of(self.declared.variables, 0)]
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
         return [
             field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
             for row in rows
@@ -402,36 +403,42 @@ class _Reader:
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
         """What the partners add to the rates of a member, by the components to which they add."""
         field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
-        flows = zip(*map(self._flow, self.pair_energies), strict=True)
-        for state, parts in zip(self.states, flows, strict=True):
-            term = field.sum(parts)
+        flows = [self._flow(energy) for energy in self.pair_energies]
+        for n, state in enumerate(self.states):
+            term = field.sum(flow[n] for flow in flows)
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
                 sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
         return sums
 
-    @property
-    def _forces(self) -> list[Element]:
-        """What forces add to the rates of the first member."""
-        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
-        zero = self.equations.setting.field.zero
-        return [known.get(name, zero) for name in self.names_of(self.declared.variables, 0)]
-
-    @property
-    def rates_with_pairs(self) -> Iterator[sympy.Expr]:
-        """The rates of a member with sums over its partners.
-
-        What the energy of one member gives is the member's own share.
-        """
-        spec = self.equations.spec
+    @cached_property
+    def own_energy(self) -> Element:
+        """What the sums over members give to the energy of the window."""
+        spec, values = self.equations.spec, list[Element]()
         assert spec.hamiltonian is not None, spec.name
-        own = self._forces
         for each, term in self.sums_of(spec.hamiltonian):
             if len(each.indices) == 1:
-                placed = place_at(term, {each.indices[0]: 0}, self.members)
-                flow = self._flow(*self.value(placed))
-                own = [a + b for a, b in zip(own, flow, strict=True)]
-        new = self.rename(0, 0, 0)
-        for state, total in zip(self.states, self.see(map(self.write, own), new), strict=True):
+                before, after = (0, 0) if self.members.periodic else reach(each.term)
+                for at in range(before, self.members.count - after):
+                    values += self.value(place_at(term, {each.indices[0]: at}, self.members))
+        return self.equations.setting.field.sum(values)
+
+    def _forces(self, member: int) -> list[Element]:
+        """What forces add to the rates of a member."""
+        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
+        zero = self.equations.setting.field.zero
+        return [known.get(name, zero) for name in self.names_of(self.declared.variables, member)]
+
+    def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:
+        """The rates of a member with sums over its partners.
+
+        What the energy of members and neighbours gives is the member's own share, and so are
+        forces.
+        """
+        width = self.declared.reach
+        new = self.rename(member, width, width)
+        flow, forces = self._flow(self.own_energy, member), self._forces(member)
+        own = (self.write(a + b) for a, b in zip(flow, forces, strict=True))
+        for state, total in zip(self.states, self.see(own, new), strict=True):
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

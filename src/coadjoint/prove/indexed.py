@@ -1,4 +1,4 @@
-"""Claims about every number of members, from proofs for two small numbers.
+"""Claims about every number of members, from proofs for two or three small numbers.
 
 A statement of one member, or of some next to each other, reads a bounded number of members: it
 holds for all as soon as it holds where that many are written out and keep apart. A total is a sum
@@ -9,10 +9,13 @@ over the members, and so is its rate:
   every F(N) does. A shorter ring is a longer one that repeats itself;
 * in an open chain, F(N+1) - F(N) is a function of the last w + 1 members: likewise from w on;
 * with pairs, the rate of a sum over members is a sum of terms of one member and of two. If it
-  vanishes for 2 members and for 3, both sums vanish for every N.
+  vanishes for 2 members and for 3, both sums vanish for every N;
+* with pairs and neighbours, what two new members far from each other add together, and not each
+  alone, is a function of them and the members near them, the same for every N. It vanishes if F
+  does for three numbers that follow one another; then F does for every larger one.
 
 The energy is kept since the bracket is antisymmetric for each member. Comes in: the certificates of
-two windows. Goes out: one certificate, in which each claim says for which N it holds.
+the windows. Goes out: one certificate, in which each claim says for which N it holds.
 Read next: `coadjoint.spec.windows`, which chooses the windows.
 """
 
@@ -54,9 +57,10 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     family = spec.family
     assert family is not None, spec.name
     general = zip(list_windows(spec), certificates, strict=True)
-    first, second, *rest = (_merge(_keep_general(family, *each)) for each in general)
-    assert [c.statement for c in first] == [c.statement for c in second], spec.name
-    claims = [_join(family, both) for both in zip(first, second, strict=True)]
+    kept = [_merge(_keep_general(family, *each)) for each in general]
+    windows, rest = kept[: len(family.windows)], kept[len(family.windows) :]
+    assert len({tuple(c.statement for c in each) for each in windows}) == 1, spec.name
+    claims = [_join(family, same) for same in zip(*windows, strict=True)]
     claims += [_examine_lax(family)] if family.lax else []
     if family.loaded is not None:
         own = {f"{each.formula.in_one_line} is conserved" for each in family.loaded.conserved}
@@ -169,18 +173,19 @@ def _merge(claims: Iterable[Claim]) -> list[Claim]:
     return list(merged.values())
 
 
-def _join(family: Windows, both: tuple[Claim, Claim]) -> Claim:
-    """One claim from the claims of two windows: the weaker verdict decides."""
+def _join(family: Windows, same: Sequence[Claim]) -> Claim:
+    """One claim from the claims of all windows: the weakest verdict decides."""
     counts = [len(window.state) // len(family.variables) for window in family.windows]
-    worst = min(both, key=lambda claim: _ORDER.index(claim.verdict))
+    worst = min(same, key=lambda claim: _ORDER.index(claim.verdict))
     statement = f"{worst.statement}, for every N >= {family.least}"
     if worst.verdict is not Verdict.PROVED:
-        method = f"{worst.method}, with {counts[both.index(worst)]} members"
+        method = f"{worst.method}, with {counts[same.index(worst)]} members"
         return replace(worst, statement=statement, method=method)
     reason = _reason(family, worst)
-    method = f"{_generalise(worst.method)}, with {counts[0]} and with {counts[1]} members; {reason}"
+    several = f"{', with '.join(map(str, counts[:-1]))} and with {counts[-1]}"
+    method = f"{_generalise(worst.method)}, with {several} members; {reason}"
     return replace(
-        worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in both)
+        worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in same)
     )
 
 
@@ -191,13 +196,17 @@ def _generalise(method: str) -> str:
 
 
 def _reason(family: Windows, claim: Claim) -> str:
-    """Why two numbers of members are enough."""
+    """Why so many numbers of members are enough."""
     if claim.statement.startswith("the energy") and not family.windows[0].is_forced:
         return "the bracket of each member is antisymmetric"
     if claim.kind != "conserved" or claim.statement in family.of_members:
         if family.pairs:
+            if len(family.windows) > 2:
+                return "each of its terms reads members next to each other, or those and a partner"
             return "each of its terms reads one member or two"
         return "it reads one member and those next to it"
+    if len(family.windows) > 2:
+        return "two more members far from each other add the same terms for every N"
     if family.pairs:
         return "the rate is a sum over members and pairs"
     return "one more member adds the same terms for every N"

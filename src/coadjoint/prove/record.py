@@ -38,14 +38,12 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
     if spec.observables:  # claims name them
         record["observables"] = {each.name: each.formula.in_one_line for each in spec.observables}
-    if spec.constraints:  # in the order of the rows of the function constraint_residual
-        record["constraints"] = {
-            name: each.in_one_line for each in spec.constraints for name in each.components
-        }
-    if spec.turns_back:
-        record["constraints"] = _list_rotations(spec)
+    kept = {name: each.in_one_line for each in spec.constraints for name in each.components}
     if spec.rolling is not None and spec.rolling.contact is not None:
-        record["constraints"] |= spec.rolling.contact.texts
+        kept |= spec.rolling.contact.texts
+    kept |= _list_rotations(spec)
+    if kept:  # in the order of the rows of the function constraint_residual
+        record["constraints"] = kept
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"

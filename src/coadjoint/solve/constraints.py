@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from coadjoint.declared import Quantity
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
 
@@ -33,6 +34,23 @@ TYPED = 1e-9
 SETTLING = 20
 #: Methods that go on from the last state and its rate alone; others hold earlier steps as well.
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
+
+
+def describe_projection(system: System, method: str) -> str:
+    """Onto what states are moved, and when; "" for a System whose states are not.
+
+    Args:
+        system: The System.
+        method: As `Course.method` has it.
+    """
+    if "projection" not in system.functions:
+        return ""
+    kept = dict.fromkeys(system.certificate.get("constraints", {}).values())
+    name = method.removeprefix("scipy:")
+    when = "at each sample"
+    if name == method or name in ONE_STEP:
+        when = f"after each step and {when}"
+    return f"{when}, onto {', '.join(kept) or 'the constraints'}"
 
 
 def find_excess(
@@ -49,7 +67,7 @@ def find_excess(
         residuals: Of the constraints at states of this shape.
         atol: What the run takes for nothing.
     """
-    units = np.array([q.unit_of(name) for q in system.STATE.values() for name in q.components])
+    units = np.array([unit for q in system.STATE.values() for unit in _list_units(system, q)])
     largest = {unit: np.abs(state[units == unit]).max(axis=0) for unit in dict.fromkeys(units)}
     here = residuals(state)
     with np.errstate(invalid="ignore"):
@@ -61,6 +79,15 @@ def find_excess(
             moved[row : row + system.members] += step
             off -= np.abs(residuals(moved) - here) / step * (TYPED * size + atol)
     return off
+
+
+def _list_units(system: System, quantity: Quantity) -> list[str]:
+    """The unit of each row of a quantity, which equal members share."""
+    units = [part.strip() for part in quantity.unit.split(",")]
+    count = len(quantity.components)
+    if len(units) * system.members == count:
+        return [unit for unit in units for _ in range(system.members)]
+    return [quantity.unit] * count
 
 
 def settle(

@@ -84,10 +84,10 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
             yield "an observable has a value for each member"
     if file.lagrangian is not None:
         yield from _examine_lagrangian(file, read(file.lagrangian), members)
-    pairs = any(isinstance(n, Sum) and len(n.indices) > 1 for t in energy for n in walk(t))
-    pairs |= any(isinstance(n, Sum) and len(n.indices) > 1 for t in observables for n in walk(t))
-    if pairs and any(reach(tree) != (0, 0) for tree in (*energy, *observables, *others)):
-        yield "there are sums over pairs, and sums that name neighbours"
+    sums = [n for t in (*energy, *observables) for n in walk(t) if isinstance(n, Sum)]
+    pairs = any(len(each.indices) > 1 for each in sums)
+    if pairs and any(reach(tree) != (0, 0) for tree in friction):
+        yield "Rayleigh's function couples neighbours, and there are sums over pairs"
 
 
 def _examine_lagrangian(file: Any, trees: list[Node], members: Members) -> Iterator[str]:
@@ -130,6 +130,8 @@ def _examine(tree: Node, members: Members) -> Iterator[str]:
                 yield f"{name} stands there of one member alone"
             case Member(name=name) if name not in (*members.names, *members.scalars):
                 yield f"{i} counts components of {name}"
+            case Sum(term=term, indices=[_, _, *_]) if reach(term) != (0, 0):
+                yield "a sum over pairs names neighbours"
             case Sum() if not is_plain(node):
                 yield "a sum goes over some members, or over pairs other than i < j"
             case Sum(term=term) if has_sum(term):
