@@ -28,7 +28,9 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.solvers import _list_functions, check_solvers
 from coadjoint.crosscheck.subject import Subject
+from coadjoint.derive import derive
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import (
     Add,
     Call,
@@ -38,6 +40,7 @@ from coadjoint.lower.program import (
     children,
     with_children,
 )
+from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.solvers import Line, arrange, select_programs
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
@@ -45,6 +48,7 @@ from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
 from tests.kernels import COMPILER, ProgramReference
 from tests.programs import BOUNDED, HEAVY_TOP, LOOPED, PENDULUM, program
+from tests.specs import RIGID_BODY, spec
 
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED, "looped": LOOPED}
@@ -66,10 +70,14 @@ NAMED = replace(
 )
 
 
+#: Those that few tests look at, by name.
+OTHERS = {"named": NAMED}
+
+
 @cache
 def texts_by_name(name):
     """The files of a system."""
-    return render_system(NAMED if name == "named" else CONTEXTS[name])
+    return render_system((CONTEXTS | OTHERS)[name])
 
 
 def rates_of(context):
@@ -315,6 +323,36 @@ def test_steps_of_numpy_are_exact_within_the_bound(context):
     assert check_choice(made, points(made)) == 3
 
 
+KINKED = """
+title = "A ball that falls from both sides to a kink"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate", default = 1 }
+p = { role = "momentum", of = "q" }
+[parameters]
+g = { positive = true, default = 1 }
+[hamiltonian]
+h = "p^2/2 + g*abs(q)"
+"""
+
+
+def context_of(name, text):
+    """What the kernels of a spec are rendered from."""
+    equations = derive(spec(text))
+    OTHERS[name] = replace(kernel_context(equations, lower(equations), 0), name=name)
+    return OTHERS[name]
+
+
+def test_the_choice_of_a_step_that_a_kink_rejects_is_compared(monkeypatch):
+    """Every first step goes beyond the kink; what is left of it tells how long it was."""
+    made = solvers(context_of("kinked", KINKED), ("taylor",))
+    assert check_choice(made, points(made)) == 3
+    right = Taylor._choose
+    monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 0.97)
+    with pytest.raises(CrossCheckError, match=r"rung 4.*takes the step"):
+        check_choice(made, points(made))
+
+
 def fails(made, rung, size=0.125):
     """Whether a step is refused by its rung."""
     with pytest.raises(CrossCheckError, match=f"rung {rung}"):
@@ -466,3 +504,17 @@ def test_no_step_beyond_the_largest_double_is_compared(monkeypatch):
     samples = np.array([solver_exact.START + 0.5, solver_exact.START + 1])
     found = solver_exact.list_exact_steps(solvers, "dop853", SimpleNamespace(size=2), samples)
     assert [member for member, _ in found] == [1]
+
+
+@needs_compiler
+def test_a_system_at_rest_compiles(tmp_path):
+    """Rates that are all 0 have no quotients by orders: a body of equal moments of inertia."""
+    text = RIGID_BODY.replace("default = [1, 2, 3]", "default = 1").replace("shape = [3], ", "")
+    text = text.replace("dot(Omega, diag(I)*Omega)", "I*dot(Omega, Omega)")
+    context = context_of("resting", text)
+    assert "_parts" not in render_system(context)["solver.c"]
+    made = solvers(context, ("taylor",), tmp_path)
+    ensemble = made.begin(points(made), np.array([4.0]), size=0.0, steps=3)
+    start = np.array(ensemble.state)
+    made.advance["taylor"]["c"](ensemble, 3)
+    assert np.array_equal(ensemble.state, start)

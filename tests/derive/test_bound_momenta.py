@@ -120,6 +120,14 @@ def test_a_constraint_is_divided_by_positive_parameters_alone():
     assert "no component has a factor that is a number or of positive parameters" in said
 
 
+def test_a_velocity_that_nothing_gives_is_named():
+    """Without the weight at its side a rod may turn about itself as it likes."""
+    hanging = ("Omega2^2)/2 - w*Gamma1", "Omega2^2)/2 - w*Gamma3")
+    upright = ('follows = ["Gamma2"], ', "")
+    said = refuse(TOP, *ROD, hanging, upright)
+    assert "nothing gives the velocity along Omega3. Constraints in their order: (1)" in said
+
+
 def test_advice_about_components_that_follow_is_followed():
     """What constraints give is written as advised; what none gives is removed."""
     bare = ('follows = ["Pi1", "Pi2"], ', "")

@@ -6,6 +6,9 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.prove import Verdict, prove
+from coadjoint.prove.almost_poisson import about_reduced_jacobi
+from coadjoint.prove.constrained import motion_of
+from coadjoint.prove.zero import Discovery
 from coadjoint.spec.reader import read_spec, read_spec_text
 from tests.families import are_equal
 from tests.specs import shipped
@@ -228,3 +231,13 @@ P = "u + sum(i, u + v[i]*cos(q[i]))"
 conserved = ["energy", "P"]
 """
     assert all(each.verdict is Verdict.PROVED for each in prove(read(text)).claims)
+
+
+def test_the_bracket_of_many_coupled_links_is_not_examined(monkeypatch):
+    """It would take minutes; the certificate says that it was not, and why."""
+    monkeypatch.setattr("coadjoint.prove.almost_poisson.SOLVED", 3)
+    motion = motion_of(derive(shipped("n_link_chain")))
+    ((statement, kind, examine),) = about_reduced_jacobi(motion)
+    assert kind == "jacobi"
+    assert "not examined: 4 unknowns are solved for together, more than 3" in statement
+    assert examine() == Discovery("no search")

@@ -4,8 +4,10 @@ import pickle
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from coadjoint import load, pipeline
+from coadjoint.cli.program import main
 from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
 from coadjoint.solve import family as families
 from coadjoint.solve.choices import Choice
@@ -186,6 +188,16 @@ def test_memory_is_looked_at_before_work(ring, monkeypatch):
         ring.resize({"i": 1_000_000})
 
 
+def test_an_error_of_a_generated_folder_is_told_as_it_is(tmp_path):
+    """The advice is its own: to generate the folder again would not make room for members."""
+    text = (
+        "from coadjoint.errors import ResourceError\nraise ResourceError('Take fewer members.')\n"
+    )
+    (tmp_path / "__init__.py").write_text(text)
+    with pytest.raises(ResourceError, match=r"^Take fewer members\.$"):
+        load_folder(tmp_path)
+
+
 def test_a_system_without_an_index_has_no_size(ring):
     """`load` says so."""
     from coadjoint.systems.rigid_body import system
@@ -349,3 +361,26 @@ def test_starts_may_differ_from_member_to_member():
         np.testing.assert_allclose(run.state[:, -1], start, atol=2e-7)
         assert np.ptp(start) > 1
         assert not system.resize({"i": 4}).STATE.defaults
+
+
+def test_members_that_are_written_out_are_derived_for_the_size_that_is_chosen(tmp_path):
+    """Another size needs another load, which the message says; the command line chooses it, too."""
+    path = tmp_path / "walls.toml"
+    path.write_text(
+        'title = "W"\nroutes = ["canonical"]\n[index]\ni = { size = 3 }\n[variables]\n'
+        'q = { role = "coordinate", index = "i" }\n'
+        'p = { role = "momentum", of = "q", index = "i" }\n'
+        '[hamiltonian]\nh = "sum(i, p[i]^2)/2 + sum(i, q[i])^2/2"\n'
+        '[claims]\nconserved = ["energy"]\n'
+    )
+    system = load(path, sizes={"i": 2})
+    assert system.members == ("i", 2)
+    assert system.rhs([1.0, 2.0, 3.0, 4.0]).tolist() == [3.0, 4.0, -3.0, -3.0]
+    assert system.resize({"i": 2}) is system
+    with pytest.raises(KernelArgumentError, match=r"coadjoint.load\(path, sizes=\{'i': 4\}\)"):
+        system.resize({"i": 4})
+    given = ["prove", str(path), "--size", "i=4"]
+    outcome = CliRunner().invoke(main, given)
+    assert outcome.exit_code == 0, outcome.output
+    assert "for N = 4" in " ".join(outcome.output.split())
+    assert CliRunner().invoke(main, [*given[:3], "i=x"]).exit_code == 2

@@ -1,6 +1,7 @@
 """Noise: random words and normals, orders, closed forms, what methods keep, and bad input."""
 
 import math
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.special import ndtri
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import stochastic
+from coadjoint.solve.events import Event
 from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
 from coadjoint.solve.steps import Lanes
 from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
@@ -301,6 +303,55 @@ def test_a_step_that_is_not_solved_ends_the_path():
     assert message.startswith("the equation of a step of 1 has no solution that is found")
 
 
+#: Events of a path: a component, and a formula that is bent along a straight line.
+SOUGHT = ["Pi1 == 0", "Pi1^2 + Pi2^2 == 0.5"]
+
+
+@pytest.mark.parametrize("method", ["heun", "midpoint"])
+def test_events_lie_on_the_straight_lines_between_ends_of_steps(method):
+    """Where these meet the level, and with the same bits for any target and threads."""
+    start = np.repeat(START[:, None], 20, axis=1)
+    again = {"method": method, "step": 0.05, "seed": 1, "samples": 81, "events": SOUGHT}
+    runs = [
+        body.simulate(start, (0, 4), target=target, threads=threads, **again)
+        for threads, target in enumerate(["numpy", *TARGETS], 1)
+    ]
+    run, *others = runs
+    for name in SOUGHT:
+        found = run.events[name]
+        assert len(found) > 10
+        for other in others:
+            assert (found.time == other.events[name].time).all()
+            assert (found.state == other.events[name].state).all()
+    for member in range(20):
+        Pi1, found = run.state[0, member], run.events[SOUGHT[0]].of(member).time
+        (k,) = np.flatnonzero(Pi1[:-1] * Pi1[1:] < 0)[np.newaxis]
+        part = Pi1[k] / (Pi1[k] - Pi1[k + 1])
+        assert np.allclose(found, run.time[k] + part * np.diff(run.time)[k], rtol=0, atol=1e-12)
+    found = run.events[SOUGHT[1]]
+    assert np.allclose((found.state[:2] ** 2).sum(axis=0), 0.5, rtol=0, atol=1e-9)
+
+
+def test_first_events_are_those_of_a_walk():
+    """A ball that turns about its third axis by s W: the first passage of W through 1, by time 1.
+
+    At the ends of steps its probability is that of the level 1 + 0.5826 sqrt(h), up to terms of
+    the order h: D. Siegmund, Sequential Analysis (1985), section X.2. That of the whole path is
+    0.317, which is missed by far.
+    """
+    ball, level = {"I": [1.0, 1, 1], "sigma": [0.0, 0.0, 0.5]}, np.sin(0.5)
+    start, event = np.repeat(np.array([[1.0], [0], [0]]), 20_000, axis=1), Event("Pi2", level)
+    options = {"step": 1 / 16, "seed": 3, "samples": 1, "events": event, "target": "numpy"}
+    run = body.simulate(start, (0, 1), ball, method="heun", **options)
+    (name,) = run.events
+    part = (np.bincount(run.events[name].member, minlength=20_000) > 0).mean()
+    assert part == pytest.approx(math.erfc((1 + 0.5826 / 4) / math.sqrt(2)), abs=0.012)
+    ended = body.simulate(
+        start, (0, 1), ball, method="heun", **{**options, "events": replace(event, terminal=True)}
+    )
+    assert (ended.status == "EVENT").mean() == part
+
+
 def test_ordinary_integrators_are_refused():
     """They would follow the drift alone."""
     with pytest.raises(KernelArgumentError, match="expected a system without noise"):
@@ -326,7 +377,6 @@ BAD = [
     ({"method": "DOP853"}, "Wiener processes move the state of stochastic_rigid_body"),
     ({"method": "scipy:Radau"}, "expected one of 'auto', 'heun', 'midpoint'"),
     ({"rtol": 1e-6}, "expected no rtol or atol"),
-    ({"events": "Pi1"}, "expected no events"),
     ({"dense": True}, "expected no dense"),
     ({"target": "python"}, "they are written for the targets c, c-fast and numpy"),
     ({"samples": 8}, "lies between the ends of steps of 0.1, where nothing is known"),

@@ -111,7 +111,7 @@ def turn(rate: Array, by: Any) -> Array:
     [
         ({"method": "rk4", "step": 0.02}, 1e-6),
         ({"method": "taylor"}, 1e-10),
-        ({"method": "scipy:RK23", "rtol": 1e-8}, 1e-6),
+        ({"method": "scipy:DOP853", "rtol": 1e-8}, 1e-6),
     ],
     ids=["rk4", "taylor", "scipy"],
 )

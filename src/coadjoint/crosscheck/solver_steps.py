@@ -58,6 +58,8 @@ MOST_STEPS: Final = 12
 #: How far the chosen step may be from the one that is asked for, in octaves: logarithms are within
 #: 0.01, a power within one part in 5000.
 OCTAVES: Final = 0.02 / (ORDER - 1) + 3e-4
+#: The same where the first order bounds it.
+ROUGH: Final = 0.02 + 3e-4
 _KEPT: Final = ("out", "state", "time", "step", "next", "steps", "rejected", "status")
 
 
@@ -94,6 +96,10 @@ def check_steps(solvers: Solvers, batch: Batch, size: float) -> dict[str, dict[s
             for target, ensemble in found.items()
         }
     return figures
+
+
+#: What is left of a step that does not have the rates at its end, for the next one.
+SHORTER = 0.4
 
 
 def _take_few(solvers: Solvers, batch: Batch) -> Batch:
@@ -148,16 +154,18 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
         advance(ensemble, 1)
         for member in range(few.size):
             taken = float(ensemble.time[member]) - START
-            if ensemble.status[member] == Status.DOMAIN or not ensemble.steps[member]:
+            if not ensemble.steps[member]:  # beyond a kink: the next one is tried with a part of it
+                taken = float(ensemble.step[member]) / SHORTER
+            if ensemble.status[member] == Status.DOMAIN or not taken > 0:
                 continue
             try:
-                octaves = _choose(solvers, find_point(solvers, few, member))
+                octaves, allowed = _choose(solvers, find_point(solvers, few, member))
             except (OutsideDomain, ArithmeticError, ValueError):
                 continue
             if octaves < -20:  # the time, to which the step is added, has too few digits for it
                 continue
             compared += 1
-            if abs(math.log2(taken) - octaves) > OCTAVES:
+            if abs(math.log2(taken) - octaves) > allowed:
                 raise solvers.failure(
                     4,
                     f"the Taylor method, {target}, takes the step {taken!r}; expected "
@@ -171,12 +179,15 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
     return compared
 
 
-def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
+def _choose(solvers: Solvers, point: Mapping[str, float]) -> tuple[float, float]:
     """The logarithm to base 2 of the step whose last two orders are a 64th of the tolerance.
 
     With the factor of A. Jorba and M. Zou, Experimental Mathematics 14 (2005) 99. No step is longer
     than all the time there is, or than one in which the first order is four times the state, where
     rates have branch points.
+
+    Returns:
+        The logarithm, and by how much that of a step may differ, since it is taken roughly.
     """
     state, given = split(solvers.subject.programs["rhs"], point)
     series = solve(rates_of(solvers.subject), state, given, ORDER)
@@ -186,7 +197,8 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> float:
     radius = min(((size / norms[k]) ** (1 / k) for k in last), default=math.inf)
     bounded = norms[1] > 0 and solvers.text.branches
     change = 4 * max(norms[0], 1.0) / norms[1] if bounded else math.inf
-    return math.log2(min(radius * math.exp(-0.7 / (ORDER - 1)), change, FAR))
+    radius *= math.exp(-0.7 / (ORDER - 1))
+    return math.log2(min(radius, change, FAR)), OCTAVES if radius < change else ROUGH
 
 
 # -- rung 5 ---------------------------------------------------------------------------------------

@@ -350,7 +350,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
-            *([f"repeating={context.repeating!r}"] * bool(context.repeating)),
+            *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},

@@ -95,7 +95,7 @@ def simulate(
     obstacle = generated.find_obstacle(system, target, reconstruct)
     stepwise = generated.find_stepwise(system, inputs)
     if has_noise(system):
-        given = {"rtol or atol": tolerances, "events": events, "dense": dense, "inputs": inputs}
+        given = {"rtol or atol": tolerances, "dense": dense, "inputs": inputs}
         given["reconstruct"] = is_asked(reconstruct)
         name = choose_noisy(system, method, step, seed, given)
         if obstacle:

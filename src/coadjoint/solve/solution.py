@@ -117,18 +117,8 @@ class Solution:
         ``stepwise`` says why the steps of a generated method were made in Python.
         """
         course = self.course
-        names = [
-            "method",
-            "order",
-            "rtol",
-            "atol",
-            "step",
-            "stepwise",
-            "seed",
-            "keeps",
-            "projection",
-        ]
-        told = {name: getattr(course, name) for name in names}
+        names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed")
+        told = {name: getattr(course, name) for name in (*names, "keeps", "projection")}
         return {name: value for name, value in told.items() if value not in (None, "")}
 
     @property

@@ -22,7 +22,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.declared import Bound, Quantity
-from coadjoint.errors import KernelArgumentError, OutputError, system_error
+from coadjoint.errors import CoadjointError, KernelArgumentError, OutputError, system_error
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
@@ -437,10 +437,13 @@ def load_folder(folder: Path) -> System:
 
     Raises:
         OutputError: The folder holds no generated system.
+        ResourceError: Its members do not fit into memory.
     """
     spec = spec_from_file_location(f"_coadjoint_{folder.name}", folder / "__init__.py")
     try:
         module = _execute(folder, spec)
+    except CoadjointError:  # as of members that do not fit into memory
+        raise
     except Exception as error:
         raise system_error(error) or OutputError(
             f"{folder / '__init__.py'} cannot be loaded: {type(error).__name__}: {error}. "

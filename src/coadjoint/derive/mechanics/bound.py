@@ -317,6 +317,7 @@ def check_bound(
         raise _refuse(setting, names, known, problem, hint)
     if free := known.free:
         given = " and ".join(write_direction(setting.field, along, each) for each in free)
+        given = given if along == names else given.replace("d/d", "")  # names of velocities
         hint = "Add the term that determines it, or leave that combination out."
         raise _refuse(setting, names, known, f"nothing gives the velocity along {given}", hint)
     longest = max(len(columns) for _, columns in known.groups)
