@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from coadjoint.declared import Quantity
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
 
@@ -66,7 +67,7 @@ def find_excess(
         residuals: Of the constraints at states of this shape.
         atol: What the run takes for nothing.
     """
-    units = np.array([q.unit_of(name) for q in system.STATE.values() for name in q.components])
+    units = np.array([unit for q in system.STATE.values() for unit in _list_units(system, q)])
     largest = {unit: np.abs(state[units == unit]).max(axis=0) for unit in dict.fromkeys(units)}
     here = residuals(state)
     with np.errstate(invalid="ignore"):
@@ -78,6 +79,15 @@ def find_excess(
             moved[row : row + system.members] += step
             off -= np.abs(residuals(moved) - here) / step * (TYPED * size + atol)
     return off
+
+
+def _list_units(system: System, quantity: Quantity) -> list[str]:
+    """The unit of each row of a quantity, which equal members share."""
+    units = [part.strip() for part in quantity.unit.split(",")]
+    count = len(quantity.components)
+    if len(units) * system.members == count:
+        return [unit for unit in units for _ in range(system.members)]
+    return [quantity.unit] * count
 
 
 def settle(

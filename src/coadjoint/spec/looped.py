@@ -84,6 +84,10 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
             yield "an observable has a value for each member"
     if file.lagrangian is not None:
         yield from _examine_lagrangian(file, read(file.lagrangian), members)
+    sums = [n for t in (*energy, *observables) for n in walk(t) if isinstance(n, Sum)]
+    pairs = any(len(each.indices) > 1 for each in sums)
+    if pairs and any(reach(tree) != (0, 0) for tree in friction):
+        yield "Rayleigh's function couples neighbours, and there are sums over pairs"
 
 
 def _examine_lagrangian(file: Any, trees: list[Node], members: Members) -> Iterator[str]:
