@@ -94,8 +94,13 @@ def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
     if setting.spec.lagrangian is None or not setting.momenta or setting.spec.is_first_order:
         return []
     bending = {} if setting.spec.variational else mechanics(setting).bending
+    for solve in equations.exact.solves if bending else ():
+        for place, name in zip(solve.block, solve.names, strict=True):
+            if solve.newton is not None:
+                pivot = field[pivot_name(place)]
+                pairs.append((Bound(name, "transform", True, _inputs(equations, pivot)), pivot))
     for name, value in equations.exact.definitions:
-        if name not in velocities or name not in bending:
+        if name not in velocities or name not in bending or name in equations.kept:
             continue
         for generator in sorted(field.functions_in(value) - seen):
             seen.add(generator)

@@ -209,13 +209,21 @@ class Equations:
     @cached_property
     def intermediates(self) -> frozenset[str]:
         """Names of L, D, y and z of the solves in the kernel."""
-        return frozenset(name for each in self.exact.solves for name in solver_names(each.block))
+        names = {name for each in self.exact.solves for name in solver_names(each.block)}
+        return frozenset(names.union(self.guesses))
+
+    @property
+    def guesses(self) -> frozenset[str]:
+        """Names of what Newton's iterations in the kernel find."""
+        found = (each.newton for each in self.exact.solves if each.newton is not None)
+        return frozenset(name for newton in found for name in newton.names)
 
     @cached_property
     def moving(self) -> frozenset[str]:
         """Names whose values depend on the member: state, inputs, time, and what rests on them."""
         names = {*self.setting.state, *self.setting.velocities, *self.setting.driving}
         names |= {name for each in self.spec.reconstruction for name in each.components}
+        names |= self.guesses
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:
                 names.add(name)

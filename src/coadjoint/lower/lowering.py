@@ -18,6 +18,7 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.definitions import inline_single_uses, shorten
+from coadjoint.lower.guesses import insert_guesses
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
@@ -194,6 +195,7 @@ def _program(
     )
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in parts]
+    named = [*insert_guesses(equations, lowering.graph, definitions), *named]
     if solve is not None:
         lines, results = solve_by_minors(lowering.graph, solve, dict(results), outputs)
         named += lines

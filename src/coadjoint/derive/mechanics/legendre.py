@@ -23,6 +23,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
+from coadjoint.derive.mechanics.newton import Newton, guess_name
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -33,12 +34,13 @@ from coadjoint.derive.mechanics.solver import (
     solver_names,
 )
 from coadjoint.derive.mechanics.variational import normal_extremals
-from coadjoint.derive.setting import Setting, calls_of, fault, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.exact.roots import simplify_roots
+from coadjoint.exact.signs import sign
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
 
@@ -127,8 +129,11 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     for block in coupled_blocks(mass):
         own = tuple(tuple(mass[i][j] for j in block) for i in block)
         rest = [known[i] for i in block]
-        if names[block[0]] in of.bending:
-            radial += _solve_radially(of, known, block)
+        if any(names[i] in of.bending for i in block):
+            found = _solve_radially(of, known, block)
+            radial += found or []
+            if found is None:
+                solves.append(_iterate(of, block))
         elif len(block) <= LARGEST_BLOCK:
             velocities |= _invert_block(setting, own, rest, block)
         else:
@@ -171,9 +176,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 
     Which velocities are coupled shows before there is a field; see `sampled_mechanics`.
     """
-    count = sum(len(variable.components) for variable in spec.having_role("velocity"))
-    called = calls_of(spec, "velocity")
-    if spec.lagrangian is None or spec.in_frame or (count <= LARGEST_BLOCK and not called):
+    if spec.lagrangian is None or spec.in_frame or not spec.having_role("momentum"):
         return ()
     try:
         known = sampled_mechanics(spec)
@@ -181,8 +184,8 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     names = list[str]()
     for block in coupled_blocks(known.mass):
-        if known.setting.velocities[block[0]] in known.bending:
-            names += map(forward_name, block)
+        if any(known.setting.velocities[i] in known.bending for i in block):
+            names += [*solver_names(block), *map(guess_name, block)]
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
     return tuple(names)
@@ -200,15 +203,52 @@ def _invert_block(
     return dict(zip(names, values, strict=True))
 
 
-def _solve_radially(
-    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
-) -> list[Definition]:
-    """Velocities of a block in which l is a function of one quadratic form.
-
-    They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
+def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
+    """Velocities of a block by Newton's iteration, its last step as an ordinary solve.
 
     Raises:
-        DerivationError: It is none, or one that is not solved in closed form.
+        DerivationError: The block is driven, or its Hessian at rest not positive for certain.
+    """
+    setting, names = of.setting, of.setting.velocities
+    field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
+    moved = {place: field.substitute(of.momenta[place], guess) for place in block}
+    hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
+    if driven := sorted({*setting.driving}.intersection(*[set().union(*map(field.reach, moved.values()))])):
+        raise _not_solved(of, block, f"its momenta depend on {driven[0]}, which is given in time")
+    rest = dict.fromkeys(names, field.zero)
+    still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
+    for size in range(1, len(block) + 1):
+        minor = determinant(tuple(row[:size] for row in still[:size]))
+        if sign(field, minor) != 1:
+            raise _not_solved(of, block, "d2l/dxi2 at rest is not positive definite for certain")
+    mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
+    products = [
+        field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
+        for row in hessian
+    ]
+    known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
+    newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
+    own = [names[i] for i in block]
+    return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+
+
+def _not_solved(of: Mechanics, block: tuple[int, ...], problem: str) -> DerivationError:
+    """What is wrong with a block that no iteration is made for."""
+    names = [of.setting.velocities[i] for i in block]
+    message = (
+        f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
+        f"does not solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one of "
+        f"parameters and state, convex at rest. Give {_way_out(of.setting)} instead."
+    )
+    return _refusal(of.setting, message, names[0])
+
+
+def _solve_radially(
+    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
+) -> list[Definition] | None:
+    """Velocities of a block in which l is a function of one quadratic form; None where it is none.
+
+    They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
     """
     setting, names = of.setting, [of.setting.velocities[i] for i in block]
     field, still = setting.field, momenta_at_rest(setting, of.momenta)
@@ -217,9 +257,7 @@ def _solve_radially(
     y = {forward_name(i): known[i] for i in block} | {name: field[name] for name, _ in parts}
     invert = partial(inverse_in_blocks, field, refuse=of.refusal)
     found = radial_solution(field, moving, names, [*y.values()], invert)
-    if found is not None:
-        return [*parts, *zip(names, found, strict=True)]
-    raise _not_closed(of, names[0])
+    return None if found is None else [*parts, *zip(names, found, strict=True)]
 
 
 def _not_closed(of: Mechanics, name: str) -> DerivationError:
