@@ -54,9 +54,26 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
     return replace(
         known,
         bounds=tuple(each for each in conditions if each not in known.conditions),
-        definitions=dict(equations.exact.definitions),
-        momenta=momenta,
+        definitions=_definitions(equations),
+        momenta=_definitions(equations) if equations.iterations else momenta,
     )
+
+
+def _definitions(equations: Equations) -> dict[str, Element]:
+    """The definitions; of velocities that iterations find, the other way round.
+
+    These are free, and momenta follow from them.
+    """
+    setting, given = equations.setting, dict[str, Element]()
+    for newton in equations.iterations:
+        names = [setting.velocities[place] for place in newton.block]
+        found = dict(zip(newton.names, setting.elements(names), strict=True))
+        given |= found
+        for place, slope in zip(newton.block, newton.slopes, strict=True):
+            at = setting.field.substitute(slope, found)
+            given[setting.momenta[place]] = at * setting.weights[place]
+    free = {setting.velocities[place] for newton in equations.iterations for place in newton.block}
+    return given | {n: value for n, value in equations.exact.definitions if n not in free}
 
 
 def _arguments(equations: Equations) -> list[Condition]:

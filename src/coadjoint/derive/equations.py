@@ -20,6 +20,7 @@ from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
+from coadjoint.derive.mechanics.newton import Newton
 from coadjoint.derive.mechanics.projection import nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.mechanics.turning import turned_back, turning_residuals
@@ -215,8 +216,12 @@ class Equations:
     @property
     def guesses(self) -> frozenset[str]:
         """Names of what Newton's iterations in the kernel find."""
-        found = (each.newton for each in self.exact.solves if each.newton is not None)
-        return frozenset(name for newton in found for name in newton.names)
+        return frozenset(name for newton in self.iterations for name in newton.names)
+
+    @property
+    def iterations(self) -> list[Newton]:
+        """Newton's iterations in the kernel."""
+        return [each.newton for each in self.exact.solves if each.newton is not None]
 
     @cached_property
     def moving(self) -> frozenset[str]:

@@ -8,11 +8,12 @@ Read next: `coadjoint.lower.lowering`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from coadjoint.derive import Equations
-from coadjoint.derive.mechanics.newton import Newton, iterate_name
+from coadjoint.derive.mechanics.newton import Newton, iterate_name, rate_name
+from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel, solver_names
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
 
@@ -49,9 +50,8 @@ def insert_guesses(
     """
     field = equations.setting.field
     reached = frozenset[str]().union(*(field.reach(value) for _, value in definitions))
-    found = (each.newton for each in equations.exact.solves if each.newton is not None)
     lines = list[tuple[str, int]]()
-    for newton in found:
+    for newton in equations.iterations:
         if reached.intersection(newton.names):
             lines += _insert(equations, graph, newton)
     return lines
@@ -60,7 +60,7 @@ def insert_guesses(
 def _insert(equations: Equations, graph: Graph, newton: Newton) -> list[tuple[str, int]]:
     """One iteration."""
     field, lines = equations.setting.field, list[tuple[str, int]]()
-    names = frozenset().union(*map(field.reach, newton.elements)) - {*newton.names}
+    names = frozenset[str]().union(*map(field.reach, newton.elements)) - {*newton.names}
 
     def number(value: Fraction) -> Noded:
         return Noded(graph, graph.number(value))
@@ -75,3 +75,41 @@ def _insert(equations: Equations, graph: Graph, newton: Newton) -> list[tuple[st
     known = {name: Noded(graph, graph.symbol(name)) for name in names}
     found = newton.find(field, known, number, call, settle)
     return [*lines, *((name, value.node) for name, value in found.items())]
+
+
+def with_carried_velocities(equations: Equations) -> tuple[Equations, list[str]]:
+    """Equations in which the velocities that iterations find are state, and their names.
+
+    They change as ``d2l/dxi2 xi' = d/dt (mu - dl/dxi)``, the last at fixed velocities.
+    """
+    field, exact = equations.setting.field, equations.exact
+    found = [each for each in exact.solves if each.newton is not None]
+    names = [name for each in found for name in each.names]
+    gone = {*names, *(each for solve in found for each in solver_names(solve.block))}
+    definitions = [line for line in exact.definitions if line[0] not in gone]
+    solves = [each for each in exact.solves if each.newton is None]
+    for each in found:
+        assert each.newton is not None
+        at = {n: field[name] for n, name in zip(each.newton.names, each.names, strict=True)}
+        pairs = zip(each.newton.sought, each.newton.slopes, strict=True)
+        residuals = [mu - field.substitute(slope, at) for mu, slope in pairs]
+        own = Solve(
+            matrix=tuple(tuple(field.substitute(e, at) for e in row) for row in each.matrix),
+            known=[_rate(equations, residual) for residual in residuals],
+            block=each.block,
+            names=[*map(rate_name, each.block)],
+        )
+        definitions += solve_in_kernel(field, own)
+        solves.append(own)
+    rates = [field[rate_name(place)] for each in found for place in each.block]
+    carried = replace(
+        exact, definitions=tuple(definitions), rates=(*exact.rates, *rates), solves=tuple(solves)
+    )
+    return replace(equations, exact=carried), names
+
+
+def _rate(equations: Equations, element: Element) -> Element:
+    """The rate of a function of the state, velocities being constant."""
+    field, state = equations.setting.field, equations.setting.state
+    slopes = zip(field.gradient(element, state), equations.exact.rates, strict=True)
+    return field.sum(slope * rate for slope, rate in slopes if slope != 0)

@@ -18,7 +18,7 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.definitions import inline_single_uses, shorten
-from coadjoint.lower.guesses import insert_guesses
+from coadjoint.lower.guesses import insert_guesses, with_carried_velocities
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
@@ -63,6 +63,8 @@ def lower(equations: Equations) -> dict[str, Program]:
             programs[name] = _clear_hidden_zeros(equations, name, rows)
     if looped is None:
         programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
+    if equations.guesses:
+        programs["rhs"] = _carry(equations, programs["rhs"])
     return programs
 
 
@@ -87,6 +89,16 @@ def _loop(equations: Equations) -> Program | None:
     needed = [(name, lowering.graph.symbol(name)) for name, _ in definitions]
     program = _name(equations, "rhs", lowering, (named, needed), rows.shape, rows.state)
     return loop_over(program, rows, products)
+
+
+def _carry(equations: Equations, program: Program) -> Program:
+    """The rates with a form in which the velocities of iterations are state, for recurrences."""
+    carried, names = with_carried_velocities(equations)
+    state = (*equations.setting.state, *names)
+    lines = zip(state, carried.exact.rates, strict=True)
+    labelled = [(f"d{name}/dt", rate) for name, rate in lines]
+    form = _program(carried, "rhs", labelled, (len(state),), state)
+    return set_factored(program, form)
 
 
 def _choose(equations: Equations, plain: Program) -> Program:

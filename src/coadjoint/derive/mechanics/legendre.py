@@ -23,7 +23,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.newton import Newton, guess_name
+from coadjoint.derive.mechanics.newton import Newton, guess_name, rate_name
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -185,7 +185,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     names = list[str]()
     for block in coupled_blocks(known.mass):
         if any(known.setting.velocities[i] in known.bending for i in block):
-            names += [*solver_names(block), *map(guess_name, block)]
+            names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
     return tuple(names)

@@ -55,7 +55,12 @@ def iterate_name(place: int, step: int) -> str:
 
 def is_guess(name: str) -> bool:
     """Whether a name is that of a guess, or of a step towards one."""
-    return name.startswith("_x")
+    return name.startswith("_x") and name[2:3].isdigit()
+
+
+def rate_name(place: int) -> str:
+    """Name of the rate of a velocity that an iteration finds, in recurrences of its coefficients."""
+    return f"_a{place + 1}"
 
 
 @dataclass(frozen=True)
