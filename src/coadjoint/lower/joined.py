@@ -47,7 +47,18 @@ def join(one: Program, other: Program) -> Program:
         statements=tuple(sorted(statements, key=lambda each: each.level != "parameters")),
         outputs=outputs,
         shape=(len(outputs),),
+        factored=_join_forms(one, other),
     )
+
+
+def _join_forms(one: Program, other: Program) -> Program | None:
+    """The forms that carry velocities as state behind the rows of both; None without them."""
+    if one.factored is None or other.factored is None:
+        return None
+    joined, count = join(one.factored, other.factored), len(one.outputs)
+    carried, last = joined.outputs[count : len(one.factored.outputs)], len(one.factored.outputs)
+    outputs = (*joined.outputs[:count], *joined.outputs[last:], *carried)
+    return replace(joined, outputs=outputs, factored=None)
 
 
 def widen(program: Program, state: tuple[str, ...], *, moves: bool) -> Program:

@@ -64,7 +64,7 @@ def lower(equations: Equations) -> dict[str, Program]:
     if looped is None:
         programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
     if equations.guesses:
-        programs["rhs"] = _carry(equations, programs["rhs"])
+        programs |= _carry(equations, programs)
     return programs
 
 
@@ -91,14 +91,21 @@ def _loop(equations: Equations) -> Program | None:
     return loop_over(program, rows, products)
 
 
-def _carry(equations: Equations, program: Program) -> Program:
-    """The rates with a form in which the velocities of iterations are state, for recurrences."""
+def _carry(equations: Equations, programs: Mapping[str, Program]) -> dict[str, Program]:
+    """What moves, with a form in which the velocities of iterations are state, for recurrences."""
     carried, names = with_carried_velocities(equations)
-    state = (*equations.setting.state, *names)
-    lines = zip(state, carried.exact.rates, strict=True)
-    labelled = [(f"d{name}/dt", rate) for name, rate in lines]
-    form = _program(carried, "rhs", labelled, (len(state),), state)
-    return set_factored(program, form)
+    state, moving = equations.setting.state, carried.exact.rates
+    lines = {"rhs": [*zip((*state, *names), moving, strict=True)]}
+    rows = {"rhs": (*state, *names)}
+    if "reconstruction" in programs:
+        lines["reconstruction"] = [*equations.followed]
+        rows["reconstruction"] = (*programs["reconstruction"].state, *names)
+    found = dict[str, Program]()
+    for name, own in lines.items():
+        labelled = [(f"d{label}/dt", rate) for label, rate in own]
+        form = _program(carried, "rhs", labelled, (len(own),), rows[name])
+        found[name] = set_factored(programs[name], form)
+    return found
 
 
 def _choose(equations: Equations, plain: Program) -> Program:

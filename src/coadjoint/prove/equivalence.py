@@ -8,7 +8,7 @@ loses nothing where the transform is invertible; another claim says where that i
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +19,6 @@ from coadjoint.derive.mechanics.configuration import (
     coupled_blocks,
     mechanics,
 )
-from coadjoint.derive.mechanics.legendre import known_side
 from coadjoint.derive.mechanics.newton import Newton
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.derive.setting import once
@@ -134,7 +133,9 @@ class LegendreMap:
                 defects += self._guess_defects(solve, solve.newton, at)
         return defects
 
-    def _guess_defects(self, solve: Solve, newton: Newton, at: Mapping[str, Element]) -> list[Element]:
+    def _guess_defects(
+        self, solve: Solve, newton: Newton, at: Mapping[str, Element]
+    ) -> list[Element]:
         """What vanishes if the iteration has its end at ``mu = dl/dxi``, and H is d2l/dxi2."""
         field, mass = self.setting.field, mechanics(self.setting).mass
         defects = []

@@ -1,9 +1,10 @@
 """The Legendre transform of a Lagrangian, exactly.
 
-Comes in: l as an element, quadratic in the velocities, or a function of one quadratic form
-(`coadjoint.derive.mechanics.radial`). Goes out: the momenta dl/dxi, the velocities in terms of the
-momenta, and the energy. Of up to `LARGEST_BLOCK` coupled velocities the inverse is written out;
-more of them are solved for in the kernel, and then keep their names everywhere else.
+Comes in: l as an element, a function of the velocities. Goes out: the momenta dl/dxi, the
+velocities in terms of the momenta, and the energy. Where l is quadratic in the velocities, or a
+function of one quadratic form (`coadjoint.derive.mechanics.radial`), the inverse is written out, of
+up to `LARGEST_BLOCK` coupled velocities. More of them are solved for in the kernel, and so are
+those of any other l, by `coadjoint.derive.mechanics.newton`; they keep their names everywhere else.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
@@ -23,7 +24,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.newton import Newton, guess_name, rate_name
+from coadjoint.derive.mechanics.newton import Newton, guess_name, rate_name, tell_iterations
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -67,6 +68,11 @@ class LegendreTransform:
     definitions: tuple[Definition, ...]
     solves: tuple[Solve, ...]
     curved: tuple[Definition, ...]
+
+    @property
+    def iterations(self) -> str:
+        """What a statement says of Newton's iterations, where there are some."""
+        return tell_iterations([each.newton for each in self.solves if each.newton is not None])
 
 
 @once
@@ -114,7 +120,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     """Transform l(xi, a), block by block of coupled velocities.
 
     Raises:
-        DerivationError: l has no transform in closed form, or no invertible one.
+        DerivationError: l has no invertible transform, or none that begins at rest.
         LimitError: l couples more velocities than docs/limits.md allows.
     """
     setting, mass = of.setting, of.mass
@@ -210,10 +216,12 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         DerivationError: The block is driven, or its Hessian at rest not positive for certain.
     """
     setting, names = of.setting, of.setting.velocities
+    _check_count(setting, block)
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
-    if driven := sorted({*setting.driving}.intersection(*[set().union(*map(field.reach, moved.values()))])):
+    reached = frozenset[str]().union(*map(field.reach, moved.values()))
+    if driven := sorted(reached.intersection(setting.driving)):
         raise _not_solved(of, block, f"its momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
@@ -261,14 +269,14 @@ def _solve_radially(
 
 
 def _not_closed(of: Mechanics, name: str) -> DerivationError:
-    """What is wrong with a Lagrangian that is neither quadratic nor solved in closed form."""
+    """What is wrong with a Lagrangian whose momenta at rest are not defined."""
     spec, named = of.setting.spec, of.bending[name]
     route = "euler-lagrange" if spec.algebra is None else "nonholonomic"
     momenta = " and ".join(each.name for each in spec.having_role("momentum"))
     message = (
         f"the Lagrangian is not quadratic in the velocities: its second derivative by {name} "
-        f"depends on {', '.join(named)}; expected a kinetic energy quadratic in the velocities, or "
-        "a function of one quadratic form whose Legendre transform has a closed form. Give "
+        f"depends on {', '.join(named)}, and its momenta are not defined at rest, where the kernel "
+        f"begins to solve for velocities; expected a Lagrangian that is smooth there. Give "
         f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
         "velocities are the state."
     )
@@ -278,15 +286,7 @@ def _not_closed(of: Mechanics, name: str) -> DerivationError:
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
-    if len(block) > COUPLED_VELOCITIES:
-        refused = _refusal(
-            setting,
-            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
-            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            f"that decouple them, or give {_way_out(setting)}.",
-            names[0],
-        )
-        raise LimitError(str(refused), **refused.parts)
+    _check_count(setting, block)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -299,6 +299,20 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
         f"is positive for each. Give {_way_out(setting)} instead.",
         names[minors],
     )
+
+
+def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
+    """A block is not too large for the kernel."""
+    names = [setting.velocities[i] for i in block]
+    if len(block) > COUPLED_VELOCITIES:
+        refused = _refusal(
+            setting,
+            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
+            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
+            f"that decouple them, or give {_way_out(setting)}.",
+            names[0],
+        )
+        raise LimitError(str(refused), **refused.parts)
 
 
 def _way_out(setting: Setting) -> str:
