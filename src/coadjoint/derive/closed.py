@@ -3,8 +3,8 @@
 A kernel solves ``A x = b`` by ``L D L^T``, with names for all intermediates. People read the
 solution: by Cramer's rule, its determinants not multiplied out, for up to `LARGEST` unknowns. More
 of them would fill pages; then the equations themselves are given.
-Comes in: exact equations. Goes out: SymPy expressions by name, and the equations left over. Velocities that Newton's iteration
-finds keep their names.
+Comes in: exact equations. Goes out: SymPy expressions by name, and the equations left over.
+Velocities that Newton's iteration finds keep their names.
 Read next: `coadjoint.derive.equations`.
 """
 
