@@ -71,6 +71,23 @@ Y = "sum(i, c[i]*y[i])"
 conserved = ["energy"]
 """
 
+#: R. Camassa and D. D. Holm, Physical Review Letters 71 (1993) 1661.
+PEAKONS = """
+title = "Peakons"
+routes = ["canonical"]
+[index]
+i = { size = 5 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, j, i < j, p[i]*p[j]*exp(-abs(q[i] - q[j])))"
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+
 
 def write_ring(n):
     """The ring with n spins."""

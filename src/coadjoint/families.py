@@ -32,11 +32,15 @@ class Index:
         name: As in the spec, e.g. ``i``.
         size: N, or None if it is chosen when the system is loaded.
         periodic: Whether member N-1 is followed by member 0; an open chain has two ends.
+        first: The number of the first member in formulas, and in names where all are written out.
+        count: What formulas call N; "" for nothing.
     """
 
     name: str
     size: int | None = None
     periodic: bool = False
+    first: int = 0
+    count: str = ""
 
 
 @dataclass(frozen=True)

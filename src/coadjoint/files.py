@@ -11,7 +11,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import secrets
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -143,7 +142,7 @@ def write_whole(path: Path) -> Iterator[Path]:
     """
     check_writable(path)
     target = path.resolve()
-    place = target.with_name(f".{target.stem}.{secrets.token_hex(4)}{target.suffix}")
+    place = target.with_name(f".{target.stem}.{os.urandom(4).hex()}{target.suffix}")
     if _is_special(path):
         place = target = path
     try:

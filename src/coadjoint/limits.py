@@ -90,6 +90,9 @@ C_STATEMENTS = 1500
 NEIGHBOURS = 4
 #: Members that an index counts: a state of three components each has 2.4 GB.
 FAMILY_MEMBERS = 100_000_000
+#: Parts of one formula that is written out for all members: a sum over three indices of 20 members
+#: each has 8000 terms, and is written out in a second.
+WRITTEN_PARTS = 200_000
 #: Members up to which a claim is proved that does not follow for every number of them.
 PROVED_MEMBERS = 12
 

@@ -315,7 +315,41 @@ def transpose(a):
     return [list(row) for row in zip(*a, strict=True)]
 
 
+def multiply_quaternions(p, q):
+    """Hamilton's product by his rules i^2 = j^2 = k^2 = ijk = -1, unit by unit."""
+    units = {(0, n): (1, n) for n in range(4)} | {(n, 0): (1, n) for n in range(4)}
+    units |= {(n, n): (-1, 0) for n in (1, 2, 3)}
+    for i, j, k in ((1, 2, 3), (2, 3, 1), (3, 1, 2)):
+        units |= {(i, j): (1, k), (j, i): (-1, k)}
+    found = [mpf(0)] * 4
+    for (i, j), (sign, k) in units.items():
+        found[k] += sign * p[i] * q[j]
+    return found
+
+
+def conjugate(q):
+    """The quaternion with the other sign of its vector."""
+    return [q[0], *(-x for x in q[1:])]
+
+
+def rotate(q, v):
+    """``q v q*`` of a quaternion, without its real part."""
+    return multiply_quaternions(multiply_quaternions(q, [mpf(0), *v]), conjugate(q))[1:]
+
+
+def rotation(g):
+    """The matrix that turns as a quaternion does; the square part of a pose ``[R, x]``."""
+    if isinstance(g[0], list):
+        return [row[:-1] for row in g]
+    return transpose([rotate(g, [mpf(i == j) for i in range(3)]) for j in range(3)])
+
+
 FUNCTIONS = {
+    "qmul": multiply_quaternions,
+    "conjugate": conjugate,
+    "rotate": rotate,
+    "rotation": rotation,
+    "translation": lambda g: [row[-1] for row in g],
     "sqrt": square_root,
     "log": logarithm,
     "exp": exponential,

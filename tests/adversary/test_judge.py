@@ -391,6 +391,25 @@ def test_absence_of_an_invariant_measure_is_checked(energy, caught):
     assert report.verdicts["no measure"] == (not caught)
 
 
+def test_the_reader_knows_quaternions_and_poses():
+    """A third of a turn about (1, 1, 1) takes the axes into each other; i j = k, j i = -k."""
+    turn = [mpf(1) / 2] * 4
+    g = [[mpf(0), mpf(0), mpf(1), mpf(7)], [mpf(1), mpf(0), mpf(0), mpf(8)]]
+    g.append([mpf(0), mpf(1), mpf(0), mpf(9)])
+    names = {"q": turn, "g": g, "v": [mpf(1), mpf(2), mpf(3)]}
+    for text, expected in {
+        "rotate(q, v)": [3, 1, 2],
+        "rotate(conjugate(q), v)": [2, 3, 1],
+        "rotation(q)*v": [3, 1, 2],
+        "rotation(g)*v + translation(g)": [10, 9, 11],
+        "qmul(vector(0, 1, 0, 0), vector(0, 0, 1, 0))": [0, 0, 0, 1],
+        "qmul(vector(0, 0, 1, 0), vector(0, 1, 0, 0))": [0, 0, 0, -1],
+        "qmul(q, qmul(q, q))": [-1, 0, 0, 0],
+        "qmul(q, conjugate(q))": [1, 0, 0, 0],
+    }.items():
+        assert value(read(text), names) == expected, text
+
+
 def test_the_reader_knows_the_language():
     """Precedence, powers, vectors and functions, against closed forms."""
     names = {"x": mpf(2), "a": [mpf(1), mpf(2), mpf(3)], "b": [mpf(0), mpf(1), mpf(-1)]}

@@ -3,6 +3,7 @@
 import pytest
 
 from coadjoint import pipeline
+from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
@@ -25,6 +26,14 @@ SPOILED = [
     ("vortices", "kernel.c", "const double y_j = _batch ?", "const double y_j = _shared ?"),
     ("vortices", "kernel.py", "size + j]", "size + i]"),
     ("vortices", "kernel_python.py", "_t1 * ", "_t1 + "),
+    ("vortices", "kernel.c", "_block->x[_l] = _at_x[", "_block->x[_l] = _at_y["),
+    ("vortices", "kernel.c", "= _block->x[_l + _s];", "= _block->x[_l];"),
+    ("vortices", "kernel.c", "= _block->x[_l + _s];", "= _block->y[_l + _s];"),
+    ("vortices", "kernel.c", "double x_j = _at_x_j[_l];", "double x_j = _one_x_j;"),
+    ("vortices", "kernel.c", "_parts[0][_s][_l] += _value0", "_parts[0][_s][_l] += _value1"),
+    ("vortices", "kernel.c", "_term0[_l] += _value2", "_term0[_l] += _value0"),
+    ("vortices", "kernel.c", "_run.out + 1 * _run.size + _j", "_run.out + 0 * _run.size + _j"),
+    ("vortices", "kernel.c", "(_turned ? _value2 : _value0)", "(_turned ? _value0 : _value2)"),
 ]
 
 
@@ -63,24 +72,65 @@ def test_a_text_beyond_the_parts_is_that_of_the_template(rendered):
         check_family_text(own.context, texts, own.printed)
 
 
-def test_the_ladder_sees_wrong_loops(rendered):
-    """Loops that leave a partner out are wrong where members are written out."""
+#: Loops over partners: how a line of them is spoiled, and the rung that sees it.
+WRONG_LOOPS = [
+    ("kernel.py", "np.delete(i, one)", "np.roll(i, one)[1:]", 4),
+    ("kernel.py", "i[:whole] % LANES != place", "i[:whole] % LANES > place", 4),
+    ("kernel.py", "np.roll(np.add.accumulate(lanes, axis=0)[-1], s,", "np.roll(lanes[-1], s,", 4),
+    ("kernel.py", "row[last:whole] += other", "row[last:whole] -= other", 4),
+    ("kernel.py", "in range(whole, size):", "in range(whole, min(size, FEWEST)):", 4),
+    ("kernel_python.py", "place = (j + s) % LANES", "place = (j - s) % LANES", 5),
+    ("kernel_python.py", "if size < FEWEST", "if size < LANES", 5),
+]
+
+
+@pytest.mark.parametrize(("file", "old", "new", "rung"), WRONG_LOOPS)
+def test_the_ladder_sees_wrong_loops(rendered, monkeypatch, file, old, new, rung):
+    """Loops that leave a partner out are wrong for few members or for many, or have other bits."""
     own = rendered["vortices"].family
     texts = dict(rendered["vortices"].texts)
-    texts["kernel.py"] = texts["kernel.py"].replace(
-        "for j in range(size)", "for j in range(size - 1)"
-    )
-    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 4"):
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    monkeypatch.setattr(ladder, "POINTS", 2)
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match=f"rung {rung}"):
         crosscheck_family(
-            own.windows, own.declared, own.family, own.context, texts, texts, system, ("numpy",)
+            own.windows,
+            own.declared,
+            own.family,
+            own.context,
+            texts,
+            texts,
+            system,
+            ("numpy", "python"),
         )
+
+
+#: Loops of C: how a line of them is spoiled.
+WRONG_C = [
+    ("_j = _run.i + LANES; _j < _whole", "_j = _run.i + 2 * LANES; _j < _whole"),
+    ("LANES - _s + _l]", "_s + _l]"),
+    ("_last + (_i + LANES - _s) % LANES", "_last + (_i + _s) % LANES"),
+    ("_j - _j % LANES + (_i + _j) % LANES", "_j"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), WRONG_C)
+def test_the_ladder_sees_wrong_tiles(rendered, old, new):
+    """In C: their pairs, the order of their parts, and that of one member of a batch."""
+    texts = dict(rendered["vortices"].texts)
+    assert old in texts["kernel.c"]
+    texts["kernel.c"] = texts["kernel.c"].replace(old, new)
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 5"):
+        ladder._compare_targets(system, "rhs", 2, ("numpy", "c"), calls=False)
 
 
 def test_the_ladder_sees_other_bits(rendered):
     """Sums in another order are right to 50 digits, and have other bits."""
     own = rendered["ring"].family
     texts = dict(rendered["ring"].texts)
-    texts["kernel_python.py"] = texts["kernel_python.py"].replace("LANES = 8", "LANES = 2")
+    texts["kernel_python.py"] = texts["kernel_python.py"].replace(
+        "LANES, FEWEST = 8, ", "LANES, FEWEST = 2, "
+    )
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 5"):
         crosscheck_family(
             own.windows,

@@ -289,11 +289,14 @@ def test_a_route_that_is_not_declared_is_added_as_advised():
 ELSEWHERE = {
     "Correct the Lagrangian": "test_first_order.py: what contradicts itself has no other way out",
     "Solve it by hand, and write what it gives in the Lagrangian": "test_first_order.py",
-    "Add the term that determines it, or leave that combination of coordinates out": (
-        "test_first_order.py"
-    ),
-    "Write follows = true for": "test_first_order.py",
-    "Remove follows = true of": "test_first_order.py",
+    "Add the term that determines it, or leave that combination out": "test_first_order.py",
+    "Write follows = ": "test_first_order.py, test_bound_momenta.py",
+    "Remove follows of ": "test_first_order.py, test_bound_momenta.py",
+    "Or take the route first-order, on which": "test_bound_momenta.py",
+    "Give the energy of the velocities in simpler terms": "test_bound_momenta.py",
+    "Write one that is.": "test_bound_momenta.py",
+    "Add the kinetic energy of these velocities": "test_bound_momenta.py",
+    "Choose other coordinates": "where the brackets of constraints have no inverse",
     "Declare the momentum of": "test_first_order.py",
     "Take euler-lagrange if it is regular": "test_first_order.py",
     "Let time and inputs act in the potential": "test_first_order.py",

@@ -178,7 +178,7 @@ def test_an_iteration_that_is_lowered_wrongly_is_found():
     [
         ("v^4/4 - a*v^2/2", "not positive definite"),
         ("v^4/4 + a*v^3", "not positive definite"),
-        ("v^4/4 + a*v^2/2 + sqrt(v)", "not defined at rest"),
+        ("v^4/4 + a*v^2/2 + sqrt(v)", "not defined there"),
         ("v^4/4 + u*v^2/2 + a*v^2", "depend on u, which is given in time"),
     ],
 )

@@ -7,13 +7,14 @@ import pytest
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
-from tests.families import CHAIN, RING, VORTICES, family_of, read
+from tests.families import CHAIN, PEAKONS, RING, VORTICES, family_of, read
 
-TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES}
+TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "peakons": PEAKONS}
 #: Operations of a member and of a pair, counted by hand before the kernels were looked at. A spin:
 #: three sums of neighbours, three by J, the anisotropy 2 D S3, a cross product. Vortices: two
-#: differences, the square of the distance, one quotient, two products for each sum.
-BY_HAND = {"ring": (21, 0), "vortices": (8, 14)}
+#: differences, the square of the distance, one quotient; for each vortex of a pair its strength by
+#: 2 and two products for each of two sums, of which two are subtracted.
+BY_HAND = {"ring": (21, 0), "vortices": (8, 18)}
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,27 @@ def test_a_wrong_partner_is_seen(families):
     loops["rhs"] = replace(loops["rhs"], partners=replace(own, reads=reads))
     with pytest.raises(CrossCheckError, match="rung 2"):
         check_loops(families["vortices"], loops)
+
+
+@pytest.mark.parametrize("function", ["rhs", "jacobian_vector"])
+def test_a_wrong_term_of_the_second_member_is_seen(families, function):
+    """A pair's terms of both members: those of the second change places."""
+    loops = lower_family(families["vortices"])
+    part = loops[function].partners
+    first, second, third, fourth = part.program.outputs
+    program = replace(part.program, outputs=(first, second, fourth, third))
+    loops[function] = replace(loops[function], partners=replace(part, program=program))
+    with pytest.raises(CrossCheckError, match="rung 2"):
+        check_loops(families["vortices"], loops)
+
+
+def test_pairs_of_two_members_have_one_quotient():
+    """Also where each of them has one sum with one quotient, and what stands above it differs."""
+    rates = "-sum(i, j, i < j, c[i]*c[j]*log((x[i] - x[j])^2 + (y[i] - y[j])^2))"
+    changes = [(rates, "sum(i, j, i < j, c[i]^2*c[j]^2/(1 + (x[i] - x[j])^2))")]
+    loops = lower_family(family_of(read(VORTICES, *changes)))["rhs"]
+    assert loops.pair_sums == 1
+    assert loops.partners.program.operation_counts()["divide"] == 1
 
 
 @pytest.mark.parametrize("name", BY_HAND)

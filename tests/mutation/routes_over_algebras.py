@@ -33,7 +33,7 @@ REDUCED = (
         "lie-poisson",
         "structure",
         PLAIN,
-        ("poisson_structure: flip setting", "the plus bracket for left invariance"),
+        ("lie_poisson_structure: flip setting", "the plus bracket for left invariance"),
     ),
     *of(
         "lie-poisson",

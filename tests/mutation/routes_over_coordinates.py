@@ -93,8 +93,29 @@ FIRST_ORDER = (
         "first-order",
         "routes/first_order",
         (),
-        "derive: rewrite explicit(_1, _2) + _3 -> explicit(_1, _2)",
+        "_rates_by_bracket: rewrite explicit(_1, _2) + _3 -> explicit(_1, _2)",
         tests=SINGULAR,
+    ),
+    *of(
+        "first-order",
+        "mechanics/bound",
+        (),
+        "bind: rewrite x - field.substitute(f, still) -> x + field.substitute(f, still)",
+        tests=("tests/derive/test_bound_momenta.py -k constraints_of_constraints",),
+    ),
+    *of(
+        "first-order",
+        "mechanics/singular",
+        (),
+        "laws: rewrite a + b + f -> a + b",
+        tests=("tests/derive/test_bound_momenta.py -k friction_on_momenta",),
+    ),
+    *of(
+        "first-order",
+        "mechanics/bound_momenta",
+        (),
+        "BoundMomenta.push: rewrite force - part -> force",
+        tests=("tests/derive/test_bound_momenta.py -k everything",),
     ),
 )
 

@@ -39,6 +39,7 @@ def check_claims(system, claims):
     expected |= {"galilean"} if declared.galilean else set()
     expected |= {"dissipation"} if declared.relaxation else set()
     expected |= {"noise"} if declared.noise else set()
+    expected |= {"attitude"} if declared.turning else set()
     found = {"transformation", "integrals", "measure", "symmetry"}  # also without being claimed
     if not declared.constraints:
         assert kinds - found == expected - found

@@ -10,6 +10,7 @@ from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES
 from tests.families import (
     CHAIN,
+    PEAKONS,
     RING,
     VORTICES,
     are_equal,
@@ -37,6 +38,15 @@ def test_every_claim_is_proved_for_every_number_of_members(name):
     for formula in wanted:
         text = formula.in_one_line
         assert f"{'the ' if text == 'energy' else ''}{text} is" in said
+
+
+def test_what_a_proof_leaves_out_is_said_of_all_members():
+    """Not of those that were written out: peakons pass each other where their distance is 0."""
+    claims = prove(read(PEAKONS)).require().claims
+    jumps = [claim.method for claim in claims if "jumps" in claim.method]
+    assert len(jumps) == 4
+    assert all("where and while no function of any members jumps" in method for method in jumps)
+    assert not any("q_0" in claim.method for claim in claims)
 
 
 CLAIM = 'conserved = ["energy"'

@@ -190,10 +190,10 @@ def test_an_integral_is_no_invariant_factor():
 def test_wrong_densities_in_velocities_are_refuted():
     """|omega| to another power, or a power of v, is no density of the sleigh."""
     along = motion("chaplygin_sleigh")
-    measure, omega, v = Measure(along), along.field["omega"], along.field["v"]
+    omega, v = along.field["omega"], along.field["v"]
 
     def verdict(*powers):
-        return decide_zero([measure.defect(powers)], along.field).verdict
+        return decide_zero([along.grow(powers)], along.field).verdict
 
     assert verdict((omega, Fraction(-1))) is Verdict.PROVED
     assert verdict((omega, Fraction(1))) is Verdict.REFUTED
@@ -226,7 +226,7 @@ def test_wrong_densities_are_refuted():
     whole = measure.minors[0]
 
     def verdict(exponent):
-        return decide_zero([measure.defect([(whole, exponent)])], along.field, where).verdict
+        return decide_zero([along.grow([(whole, exponent)])], along.field, where).verdict
 
     assert verdict(Fraction(1, 2)) is Verdict.PROVED
     assert verdict(Fraction(-1, 2)) is Verdict.REFUTED

@@ -37,6 +37,43 @@ def turn(S, J, D):
     return np.cross(S, field, axis=0)
 
 
+def test_events_name_members_as_specs_do(ring):
+    """Members are counted from 0, components from 1; a spin alone turns about its axis."""
+    system = ring.resize({"i": 3})
+    S = np.array([[1.0, 0.0, 0.0], [0.0, 0.8, 0.0], [0.1, 0.6, 1.0]])
+    events = ["S[0, 2] = 0.05", "S2[0] = 0.05", "S2[1] = 0.75", "S[1, 2] = 0.75"]
+    given = {"S": S}, (0, 4), {"J": 0.5, "D": [0.2, 0.3, 0.4]}
+    there = system.simulate(*given, samples=5)["S"][..., 2]
+    distance = float(np.linalg.norm(there[:, 0] - there[:, 1]))
+    events += [f"norm(S[0] - S[1]) = {distance:.12f}"]
+    motion = system.simulate(*given, events=events, dense=True)
+    times = [motion.events[name].time for name in events]
+    assert all(map(len, times))
+    assert np.array_equal(times[0], times[1])
+    assert np.array_equal(times[2], times[3])
+    assert np.abs(times[4] - 2).min() < 1e-6
+    np.testing.assert_allclose(motion.at(times[0])["S"][1, 0], 0.05, rtol=1e-9)
+    np.testing.assert_allclose(motion.at(times[2])["S"][1, 1], 0.75, rtol=1e-9)
+    assert len(repr(motion.dense)) < 60
+
+
+@pytest.mark.parametrize(
+    ("formula", "problem"),
+    [
+        ("S[3, 1]", "no member 3 of S; expected members 0 to 2"),
+        ("S[0, 4]", r"S\[0\] is a 3-vector and has no such component"),
+        ("S1[0, 1]", r"S1\[0\] is a scalar and has no such component"),
+        ("S[0]", "the value is a 3-vector; expected a scalar"),
+        ("sum(i, S[i, 1])", "events name an observable"),
+    ],
+)
+def test_events_of_members_that_are_not_there_are_refused(ring, formula, problem):
+    """With what there is."""
+    system = ring.resize({"i": 3})
+    with pytest.raises(KernelArgumentError, match=problem):
+        system.simulate({"S": np.eye(3)}, (0, 1), events=formula)
+
+
 @pytest.mark.parametrize("target", ["c", "numpy", "python"])
 @pytest.mark.parametrize("size", [3, 10, 67])
 def test_rates_are_those_of_the_equations(ring, size, target):

@@ -8,7 +8,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.plot import _faces_viewer, plot
 from coadjoint.solve.solution import Solution
-from coadjoint.systems import heavy_top, rigid_body, so8_body
+from coadjoint.systems import heavy_top, heisenberg_lattice, rigid_body, so8_body
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -70,6 +70,17 @@ def test_many_components_have_lines_of_their_own(tmp_path):
     strokes = {(line.get_color(), line.get_linestyle()) for line in lines}
     assert len(lines) == len(strokes) == 28
     assert axes.get_legend()._ncols == 2
+
+
+def test_many_members_are_colours_over_time():
+    """A panel for each component, with a row for each member and a column for each sample."""
+    spins = heisenberg_lattice.system.resize({"i": 30})
+    state = np.vstack([np.cos(np.arange(30)), np.sin(np.arange(30)), np.zeros(30)]).ravel()
+    motion = spins.simulate(state, (0, 1), samples=7)
+    figure = plot_figure(motion)
+    drawn = [axes.collections[0].get_array() for axes in figure.axes[:6:2]]
+    assert np.array_equal(drawn, motion["S"])
+    assert [axes.get_ylabel() for axes in figure.axes[:6:2]] == ["member"] * 3
 
 
 def test_only_the_near_side_is_drawn_strong(body):

@@ -211,12 +211,13 @@ def centre_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def centre_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """``m u^2/2 + mu |B|``, and ``q A_phi rho``."""
+    """``m u^2/2 + mu |B|``, the rates by the names of velocities, and ``q A_phi rho``."""
     m, q, mu, B0, L = parameters
     x, y, z, u = state
     flux = B0 * (x**2 + y**2) * (1 + z**2 / L**2) / 2
     return {
         "energy": m * u**2 / 2 + mu * centre_parts(state, parameters)[1],
+        **dict(zip(("V1", "V2", "V3", "a"), centre_rates(state, parameters), strict=True)),
         "J": q * flux,
     }
 
@@ -234,7 +235,50 @@ def centre_tensor(state: Vector, parameters: Vector) -> list[list[Any]]:
     ]
 
 
+# -- the top in two fields, as Reyman and Semenov-Tian-Shansky (1987) and Kharlamov have it --------
+
+
+def top_rates(state: Vector, parameters: Vector) -> list[Any]:
+    """``alpha' = alpha x w``, ``2 w1' = w2 w3 + beta3`` and so on, times I."""
+    moment, a, b = parameters
+    rows, (p1, p2, p3) = [state[:3], state[3:6], state[6:9]], state[9:]
+    w1, w2, w3 = w = [p1 / (2 * moment), p2 / (2 * moment), p3 / moment]
+    alpha, beta = times(a, rows[0]), times(b, rows[1])
+    moved = [moment * w2 * w3 + beta[2], -moment * w1 * w3 - alpha[2], alpha[1] - beta[0]]
+    return [*(x for row in rows for x in cross(row, w)), *moved]
+
+
+def top_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
+    """``(w1^2 - w2^2 + alpha1 - beta2)^2 + (2 w1 w2 + alpha2 + beta1)^2``, and Kharlamov's G."""
+    moment, a, b = parameters
+    rows, momentum = [state[:3], state[3:6], state[6:9]], state[9:]
+    w1, w2, w3 = w = [momentum[0] / (2 * moment), momentum[1] / (2 * moment), momentum[2] / moment]
+    alpha, beta = times(a / moment, rows[0]), times(b / moment, rows[1])
+    gamma = times(a * b / moment**2, rows[2])
+    along = [dot(x, [w1, w2, w3 / 2]) for x in (alpha, beta, gamma)]
+    G = along[0] ** 2 + along[1] ** 2 + w3 * along[2]
+    G -= alpha[0] * (b / moment) ** 2 + beta[1] * (a / moment) ** 2
+    grams = {(i, j): dot(rows[i], rows[j]) for i in range(3) for j in range(i, 3)}
+    return {
+        "energy": moment * (w1**2 + w2**2 + w3**2 / 2 - alpha[0] - beta[1]),
+        **named("Omega", w),
+        "K": (w1**2 - w2**2 + alpha[0] - beta[1]) ** 2 + (2 * w1 * w2 + alpha[1] + beta[0]) ** 2,
+        "G": moment**4 * G,
+        # by the matrix of cofactors, which is R where R is a rotation
+        **named("Pi_spatial", [dot(cross(rows[n - 2], rows[n - 1]), momentum) for n in range(3)]),
+        **{f"R_gram{i + 1}{j + 1}": value for (i, j), value in grams.items()},
+    }
+
+
+def top_tensor(state: Vector) -> list[list[Any]]:
+    """``{alpha_i, Pi_j} = -epsilon_ijk alpha_k`` for each row of R, and so for Pi."""
+    turned = [hat(state[n : n + 3]) for n in range(0, 12, 3)]
+    rows = [[0] * 9 + row for each in turned[:3] for row in each]
+    return rows + [[x for each in turned for x in each[i]] for i in range(3)]
+
+
 RATES = {
+    "two_field_top": top_rates,
     "three_wave": waves_rates,
     "steklov": steklov_rates,
     "hess_appelrot": hess_rates,
@@ -243,6 +287,7 @@ RATES = {
     "guiding_centre": centre_rates,
 }
 OBSERVABLES = {
+    "two_field_top": top_observables,
     "three_wave": waves_observables,
     "steklov": steklov_observables,
     "hess_appelrot": hess_observables,
@@ -251,6 +296,7 @@ OBSERVABLES = {
     "guiding_centre": centre_observables,
 }
 TENSORS = {
+    "two_field_top": lambda x, p: top_tensor(x),
     "three_wave": lambda x, p: paired([1] * 3),
     "steklov": lambda x, p: se3_tensor(x),
     "hess_appelrot": lambda x, p: se3_tensor(x),
@@ -259,6 +305,10 @@ TENSORS = {
     "guiding_centre": centre_tensor,
 }
 STATES = {
+    "two_field_top": (
+        *(f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
+        *("Pi1", "Pi2", "Pi3"),
+    ),
     "three_wave": ("q1", "q2", "q3", "p1", "p2", "p3"),
     "steklov": ("Pi1", "Pi2", "Pi3", "P1", "P2", "P3"),
     "hess_appelrot": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
@@ -267,6 +317,7 @@ STATES = {
     "guiding_centre": ("X1", "X2", "X3", "u"),
 }
 PARAMETERS = {
+    "two_field_top": ("I", "a", "b"),
     "three_wave": (),
     "steklov": ("a1", "a2", "a3", "kappa", "nu", "sigma"),
     "hess_appelrot": ("I1", "I3", "d", "m", "g", "chi"),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from tests.sources import planes
 from tests.sources.components import Vector, cross, dot, hat, minus, plus, times
 from tests.sources.points import circular, named
 
@@ -355,6 +356,7 @@ RATES = {
     "double_spherical_pendulum": rods_rates,
     "ball_on_turntable": turntable_rates,
     "ball_in_sphere": sphere_rates,
+    "veselova_so4": planes.planes_rates,
 }
 OBSERVABLES = {
     "suslov_so5": suslov_5_observables,
@@ -363,6 +365,7 @@ OBSERVABLES = {
     "double_spherical_pendulum": rods_observables,
     "ball_on_turntable": turntable_observables,
     "ball_in_sphere": sphere_observables,
+    "veselova_so4": planes.planes_observables,
 }
 #: Brackets of the state, velocities standing for their momenta.
 TENSORS = {
@@ -370,6 +373,7 @@ TENSORS = {
     "roller_racer": racer_tensor,
     "appell_machine": appell_tensor,
     "ball_in_sphere": sphere_tensor,
+    "veselova_so4": planes.planes_tensor,
 }
 TURNING = ("omega1", "omega2", "omega3")
 STATES = {
@@ -381,6 +385,7 @@ STATES = {
     ),
     "ball_on_turntable": (*TURNING, "x1", "x2"),
     "ball_in_sphere": (*TURNING, "n1", "n2", "n3"),
+    "veselova_so4": planes.STATE,
 }
 PARAMETERS = {
     "suslov_so5": ("K1", "K2", "K3", "K4", "k1", "k2", "k3", "k4", "j"),
@@ -389,8 +394,9 @@ PARAMETERS = {
     "double_spherical_pendulum": ("m1", "m2", "l1", "l2", "g"),
     "ball_on_turntable": ("I", "m", "r", "W"),
     "ball_in_sphere": ("I", "m", "r", "a", "g"),
+    "veselova_so4": planes.PARAMETERS,
 }
 #: With sines and cosines of the state, typed to 80 digits.
 CONFIGURATIONS = ("roller_racer",)
 #: Whose rates are quotients in the state.
-QUOTIENTS = ("double_spherical_pendulum", "ball_in_sphere")
+QUOTIENTS = ("double_spherical_pendulum", "ball_in_sphere", "veselova_so4")

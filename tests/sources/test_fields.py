@@ -5,10 +5,11 @@ import importlib
 import numpy as np
 import pytest
 
+from coadjoint.derive.reference import Reference
 from coadjoint.errors import AlgebraError
 from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
-from tests.specs import prove_claims, spec
+from tests.specs import derived, prove_claims, spec
 
 
 def system(name):
@@ -69,6 +70,34 @@ def test_the_relation_of_hess_rests_on_the_second_moment(middle, kept):
     found = verdicts("hess_appelrot", ("(I1 - d^2/I3)*Omega2^2", f"({middle})*Omega2^2"))
     (statement,) = [each for each in found if each.startswith("Pi3 is conserved")]
     assert (found[statement] is Verdict.PROVED) == kept
+
+
+# -- a top in two fields ----
+
+
+def test_a_top_in_two_fields_swings_about_its_third_axis():
+    """R = exp(s hat(e3)): ``I s'' = -(a + b) sin s``, as both fields pull on the angle."""
+    c, s, p, (a, b) = 0.8, 0.6, 0.3, (1.0, 0.6)
+    equations = derived("two_field_top")["euler-poincare"]
+    point = dict(zip(equations.setting.state, [c, -s, 0, s, c, 0, 0, 0, 1, 0, 0, p], strict=True))
+    slopes = [-s * p, -c * p, 0, c * p, -s * p, 0, 0, 0, 0, 0, 0, -(a + b) * s]
+    found = Reference(equations).evaluate("rhs", point | {"I": 1.0, "a": a, "b": b}, float, None)
+    assert np.allclose(found, slopes, atol=1e-15)
+
+
+def test_the_integral_of_kovalevskaya_rests_on_the_ratio_of_the_moments():
+    """Its other name is the square of a complex number; with 3 in the place of 2 it changes."""
+    found = verdicts(
+        "two_field_top",
+        ("2*Omega1^2 + 2*Omega2^2", "3*Omega1^2 + 3*Omega2^2"),
+        ("(Pi1^2 + Pi2^2)/(4*I)", "(Pi1^2 + Pi2^2)/(6*I)"),
+    )
+    where = "where R*transpose(R) = 1, det(R) = 1"
+    assert found[f"K is conserved {where}"] is found[f"G is conserved {where}"] is Verdict.REFUTED
+    assert found["the energy is conserved"] is Verdict.PROVED
+    found = verdicts("two_field_top")
+    assert set(found.values()) == {Verdict.PROVED}
+    assert {"K is conserved", f"G is conserved {where}"} <= found.keys()
 
 
 # -- Maxwell and Bloch ----

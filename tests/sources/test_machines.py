@@ -10,7 +10,7 @@ from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
 from tests.constrained import derived as constrained
 from tests.sources.test_equations import solved, values
-from tests.specs import derived, prove_claims, spec
+from tests.specs import derived, prove_claims, shipped, spec
 
 
 def system(name):
@@ -156,6 +156,22 @@ def test_the_rocking_disk_follows_from_its_constraint(way, same):
     whole = constrained(DISK, ("(r - l*cos(phi))", f"({way})"))["nonholonomic"]
     free = derived("rocking_disk")["euler-lagrange"]
     assert (acceleration(whole) == pytest.approx(acceleration(free))) == same
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("l*sin(q)*w^2)", "2*l*sin(q)*w^2)"),
+        ("-(l*sin(angle)*pressure", "(l*sin(angle)*pressure"),
+        ('phidot = "w"', 'phidot = "-w"'),
+    ],
+)
+def test_wrong_forces_of_the_line_are_refuted(change):
+    """The chart of the body in the plane, with another friction, moment or angle."""
+    text = shipped("rocking_disk").path.read_text(encoding="utf-8")
+    assert change[0] in text
+    claims = prove_claims(spec(text, change)).claims
+    assert any(c.verdict is Verdict.REFUTED and "the chart bound" in c.statement for c in claims)
 
 
 def acceleration(equations):

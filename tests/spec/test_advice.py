@@ -10,6 +10,7 @@ import coadjoint.spec
 from coadjoint.cli import main
 from coadjoint.errors import CoadjointError, SpecError
 from tests.constrained import PARTICLE, SLEIGH
+from tests.derive import test_bound_momenta
 from tests.derive.test_configuration import LAW
 from tests.rolling import BALL
 from tests.spec.test_charts import CHART, RATES
@@ -23,6 +24,7 @@ from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
 END = "[claims]"
+FAST = test_bound_momenta.TOP.split(END)[0]
 BARE = """
 title = "A Lax pair alone"
 routes = ["lax"]
@@ -412,6 +414,23 @@ ADVICE = [
         "Remove follows.",
         write(", follows = true", ""),
     ),
+    *(
+        (FAST, write('["Pi1", "Pi2"], default = [0, 0, 2]', wrong), said, write(wrong, right))
+        for wrong, said, right in (
+            ('["Pi3"], default = [0, 0, 2]', "Write 0 in the place of Pi3.", '["Pi1", "Pi2"]'),
+            ('["Pi1", "Pi4"]', "Did you mean", '["Pi1", "Pi2"]'),
+            ('["Pi1", "Pi2", "Pi3"]', "Write follows = true.", "true"),
+        )
+    ),
+    (
+        FAST,
+        write(
+            "Gamma = {",
+            'x = { role = "advected", representation = "trivial", follows = ["x"] }\nGamma = {',
+        ),
+        "Write follows = true.",
+        write('follows = ["x"]', "follows = true"),
+    ),
     (
         TOP,
         write(', representation = "vector"', ""),
@@ -701,7 +720,7 @@ FORMULAS = [
     ("a \u00d7 b", "The cross product is cross(a, b).", "cross(a, b)"),
     ("a \u00b7 b", "The dot product is dot(a, b), a product *.", "dot(a, b)"),
     ("m \u2212 c", "Write the minus sign of the keyboard, -.", "m - c"),
-    ("sum(a, b)", "Sums over members need a table [index].", "dot(a, b)"),
+    ("sum(a, b)", "Sums over members need [index]; events name an observable.", "dot(a, b)"),
     ("m^2^c", "Write (a^b)^c, or multiply the exponents out.", "(m^2)^2"),
     ("m c", "Write m*c.", "m*c"),
     ("2(m + c)", "Write * for a product.", "2*(m + c)"),

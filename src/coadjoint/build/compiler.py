@@ -18,19 +18,22 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from threading import Lock
+from typing import TYPE_CHECKING
 
 from coadjoint.build import warden
 from coadjoint.build.calling import SUPPORT
 from coadjoint.build.versions import keep_version, recall_version
 from coadjoint.errors import CompilerError, errno_of, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 CANDIDATES = ("cc", "gcc", "clang")
 ANOTHER = "Set CC to another compiler."
@@ -284,6 +287,8 @@ def _attempt(
 @contextmanager
 def compilers() -> Iterator[ThreadPoolExecutor]:
     """Threads in which compilers are waited for; Ctrl-C ends what runs, and the wait with it."""
+    from concurrent.futures import ThreadPoolExecutor  # nothing waits where all is compiled
+
     pool = ThreadPoolExecutor()
     with _lock:
         _pools.add(pool)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import fcntl
 import os
-import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -110,7 +109,7 @@ def _is_free(path: Path) -> bool:
 def _make_and_lock(base: Path, *, folder: bool) -> tuple[Path, int]:
     """A new file or folder and its lock; a sweep may take it before it is locked, without loss."""
     while True:
-        path = base / f"{PREFIX}{secrets.token_hex(8)}"
+        path = base / f"{PREFIX}{os.urandom(8).hex()}"
         if folder:
             path.mkdir(mode=0o700)
         else:

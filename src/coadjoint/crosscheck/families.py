@@ -6,7 +6,8 @@ system. Goes out: a `Report`, or a `CrossCheckError`.
     rung 3   each part of each text reads back as it was lowered, places of names among it, and the
              rest is what the templates print
     rung 4   every target, for the numbers of members of both windows, against their Equations to 50
-             digits: these were written out member by member, and know nothing of loops
+             digits: these were written out member by member, and know nothing of loops; sums of
+             many members, taken in blocks, against a plain loop over all pairs
     rung 5   NumPy equals every exact target bit for bit, for several numbers of members; steps in C
              are those of their twins
 
@@ -24,6 +25,7 @@ import numpy as np
 
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.crosscheck.compare import Figures
+from coadjoint.crosscheck.family_sums import MEMBERS, check_blocks
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
@@ -56,8 +58,8 @@ if TYPE_CHECKING:
 #: Points of each window, for each function and target; half of them have parameters of their own.
 POINTS: Final = 24
 #: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors
-#: have, and no multiple of them.
-SIZES: Final = (7, 17, 64)
+#: have, and no multiple of them; and more than pairs need to be taken in blocks.
+SIZES: Final = (7, 17, MEMBERS, 64)
 #: Methods whose steps are compared with those of their twins.
 METHODS: Final = (Choice("rk4", 4), Choice("dop853", 8))
 #: Trajectories of a batch whose bits are compared.
@@ -165,6 +167,9 @@ def crosscheck_family(
         window = _Window.of(equations, declared, family)
         for name, each in loops.items():
             _check_window(window, name, each, system, chosen, figures[name])
+    for each in loops.values():
+        if each.partners is not None and "numpy" in chosen:
+            check_blocks(system, each)
     equal, together = dict[str, dict[str, int]](), dict[str, dict[str, int]]()
     for name, each in loops.items():
         counts = _compare_targets(system, name, family.small, chosen, calls=_calls(each))

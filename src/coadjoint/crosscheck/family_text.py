@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 from coadjoint.crosscheck.parse_back import as_printed
@@ -30,6 +30,9 @@ _C_PLACE = re.compile(
     r"_run\.(state|parameters) \+ \((.*)\) \* _run\.(stride|row) \+ _run\.n( \* _run\.own)?"
 )
 
+#: Lines of a tile that add terms to sums, and say where sums are.
+_C_ADDS = re.compile(r"_parts|_term\d+\[_l\] \+=|double \*const _term\d+ =")
+
 
 @dataclass
 class _Text:
@@ -37,15 +40,17 @@ class _Text:
 
     Attributes:
         places: Array and row by name; the row is an expression in ``i``, ``j`` and ``size``.
-        steps: In C, what says whether the lanes have values of their own.
+        steps: In C, what says whether the lanes have values of their own; in a tile, how they read.
         sums: The number of a sum by name.
         lines: Names and values, in order, results among them.
+        adds: In C, the lines that add terms of a pair to sums.
     """
 
     places: dict[str, tuple[str, str]] = field(default_factory=dict)
     steps: dict[str, str] = field(default_factory=dict)
     sums: dict[str, int] = field(default_factory=dict)
     lines: list[tuple[str, Node]] = field(default_factory=list)
+    adds: list[str] = field(default_factory=list)
 
 
 def check_family_text(
@@ -78,6 +83,8 @@ def check_family_text(
             for file, read in readers.items():
                 found = read(texts[file], part_name, name)
                 lines[name] += _check_part(part, found, loops.is_periodic, file, part_name)
+        if loops.partners is not None:
+            lines[name] += _check_pairs(loops, texts["kernel.c"])
     return lines
 
 
@@ -113,6 +120,34 @@ def _check_part(part: Part, found: _Text, is_periodic: bool, file: str, name: st
         first = next((pair for pair in pairs if pair[0] != pair[1]), (found.lines, wanted))
         raise failure(f"{file}: {name} reads back as {first[0]}; expected {first[1]}", name)
     return len(wanted) + len(names) + len(sums)
+
+
+def _check_pairs(loops: Loops, text: str) -> int:
+    """In C, terms of pairs are added to the right sums, and tiles compute what pairs do."""
+    part, count, name = loops.partners, loops.pair_sums, f"{loops.name}_partners"
+    assert part is not None, loops.name
+    pair, tile = _read_c(text, name, loops.name), _Text()
+    chosen = [f"(_turned ? _value{count + k} : _value{k})" for k in range(count)]
+    wanted = [
+        f"_term{k}[_l] = _left_out ? _term{k}[_l] : _term{k}[_l] + {value}"
+        for k, value in enumerate(chosen)
+    ]
+    if pair.adds != wanted:
+        raise failure(f"kernel.c: {name} adds up {pair.adds}; expected {wanted}", loops.name)
+    for own in ("take", "tile"):
+        _read_c_body(text, f"{loops.name}_{own}", tile, loops.name)
+    wanted = [f"double *const _term{k} = _run.out + {k} * _run.size + _j" for k in range(count)]
+    for k in range(count):
+        wanted += [f"_parts[{k}][_s][_l] += _value{k}", f"_term{k}[_l] += _value{count + k}"]
+    if tile.adds != wanted:
+        raise failure(f"kernel.c: {name} of a tile add up {tile.adds}", loops.name)
+    reads = {
+        each.name: "one" if each.shift is None else "at" if each.of_partner else "block"
+        for each in part.reads
+    }
+    if tile.steps != reads:
+        raise failure(f"kernel.c: lanes of a tile read {tile.steps}; expected {reads}", loops.name)
+    return _check_part(part, replace(tile, steps=pair.steps), loops.is_periodic, "kernel.c", name)
 
 
 def _check_place(read: Read, found: _Text, is_periodic: bool, file: str, name: str) -> None:
@@ -168,14 +203,38 @@ def _evaluate(text: str, values: Mapping[str, int]) -> int:
 
 def _read_c(text: str, part: str, name: str) -> _Text:
     """A part of ``kernel.c``."""
+    read = _Text()
+    _read_c_body(text, part, read, name)
+    return read
+
+
+def _read_c_body(text: str, part: str, read: _Text, name: str) -> None:
+    """A function of ``kernel.c``, of which a part is made."""
     found = re.search(rf"^ALWAYS void {part}\(.*?^}}$", text, re.DOTALL | re.MULTILINE)
     if not found:
         raise failure(f"kernel.c has no function {part!r}", name)
     body = re.sub(r"/\*.*?\*/", "", found[0].split("\n{\n", 1)[1], flags=re.DOTALL)
-    read = _Text()
     for line in (" ".join(each.split()) for each in re.split(r"[;{}]", body)):
-        _read_c_line(line, read, part, name)
-    return read
+        if part.endswith(("_take", "_tile")) and _read_c_lane(line, read, part, name):
+            continue
+        if "_left_out ?" in line or _C_ADDS.match(line):
+            read.adds.append(line)
+        else:
+            _read_c_line(line, read, part, name)
+
+
+def _read_c_lane(line: str, read: _Text, part: str, name: str) -> bool:
+    """A line of a tile that reads a name in its lanes, or keeps it twice in a row."""
+    kept = re.fullmatch(r"_block->(\w+)\[_l\] = _at_(\w+)\[_l % LANES\]", line)
+    found = re.fullmatch(
+        r"const double (\w+) = _(?:(block)->(\w+)\[_l \+ _s\]|(at)_(\w+)\[_l\]|(one)_(\w+))", line
+    )
+    if found:
+        read.steps[found[1]] = found[2] or found[4] or found[6]
+    names = kept.groups() if kept else (found[1], found[3] or found[5] or found[7]) if found else ()
+    if len(set(names)) > 1:
+        raise failure(f"kernel.c: {part}: {line!r} reads another name", name)
+    return bool(names)
 
 
 def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
@@ -198,7 +257,7 @@ def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
     elif total := re.fullmatch(rf"const double ({SUM}\d+) = _sums\[(\d+)\]\[_l\]", line):
         read.sums[total[1]] = int(total[2])
     elif out := re.fullmatch(r"(?:const double )?_(?:out|term|value)(\d+)(?:\[_l\])? = (.*)", line):
-        if "_terms[" not in out[2] and "_left_out" not in out[2]:
+        if "_terms[" not in out[2]:
             read.lines.append((f"_out{out[1]}", read_c(out[2], name)))
     elif (stated := re.fullmatch(r"const double (\w+) = (.*)", line)) and not re.match(
         r"_one_", stated[1]

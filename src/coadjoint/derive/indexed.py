@@ -32,14 +32,8 @@ from coadjoint.families import Family, Sum, Total
 from coadjoint.spec import Formula
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import (
-    Members,
-    member_name,
-    place_at,
-    put_term,
-    reach,
-    split_sums,
-)
+from coadjoint.spec.core.members import Members, member_name, place_at, reach
+from coadjoint.spec.core.totals import put_term, split_sums
 from coadjoint.spec.model import Windows
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
+from coadjoint.derive.mechanics.bound_momenta import bound_momenta
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.first_order import first_order
 from coadjoint.derive.setting import Setting, once
@@ -42,10 +43,19 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
         return _declared_structure(setting, bracket)
     if setting.spec.algebra is None:
         return _of_configuration(setting)
+    whole = lie_poisson_structure(setting)
+    if setting.spec.is_first_order:
+        tensor = bound_momenta(setting).restrict(whole)
+        return PoissonStructure(setting.field, setting.state, tensor, setting.spec.name)
+    return _reorder(whole, setting.state)
+
+
+@once
+def lie_poisson_structure(setting: Setting) -> PoissonStructure:
+    """The bracket of all momenta along the algebra, and of what is advected."""
     coordinates = (*setting.momenta, *setting.advected_names)
     sign = -setting.sign  # minus for left-invariant systems
-    whole = lie_poisson(momentum_algebra(setting), setting.field, coordinates, sign)
-    return _reorder(whole, setting.state)
+    return lie_poisson(momentum_algebra(setting), setting.field, coordinates, sign)
 
 
 def has_structure(setting: Setting) -> bool:

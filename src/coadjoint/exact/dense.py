@@ -253,13 +253,24 @@ def inverse(a: Matrix) -> Matrix:
     """
     size, known = tuple(range(len(a))), _Minors()
     share = quotient(1, _expand(a, size, size, known))
+    return tuple(tuple(entry * share for entry in row) for row in _adjugate(a, known))
+
+
+def adjugate(a: Sequence[Sequence[Any]]) -> Matrix:
+    """The transpose of the cofactors, whose product with the matrix is the determinant.
+
+    >>> adjugate(((2, 1), (3, 4)))
+    ((4, -1), (-3, 2))
+    """
+    return _adjugate(a, {})
+
+
+def _adjugate(a: Sequence[Sequence[Any]], known: _Minors) -> Matrix:
+    size = tuple(range(len(a)))
     if len(a) == 1:
-        return ((share,),)
+        return ((1,),)
     return tuple(
-        tuple(
-            (-1) ** (i + j) * _expand(a, _skip(size, j), _skip(size, i), known) * share
-            for j in size
-        )
+        tuple((-1) ** (i + j) * _expand(a, _skip(size, j), _skip(size, i), known) for j in size)
         for i in size
     )
 

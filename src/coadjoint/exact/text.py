@@ -11,6 +11,9 @@ from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
 from coadjoint.exact.rationals import Monomial, Written
 
+#: What comes before the places where functions jump, in the words of a method of proof.
+WHILE = ", where and while "
+
 
 def element_text(field: Field, element: Element) -> str:
     """An element as text.
@@ -98,4 +101,4 @@ def text_of_jumps(field: Field) -> str:
             zero, side = (element_text(field, each) for each in known.arguments)
             either = f"{zero} is not 0 or " if known.arguments[0] != 0 else ""
             texts.append(f"{either}{side} is positive")
-    return f", where and while {' and '.join(texts)}" if texts else ""
+    return f"{WHILE}{' and '.join(texts)}" if texts else ""

@@ -4,34 +4,40 @@ Comes in: a `coadjoint.families.Family`. Goes out: a `Loops` for each function, 
 Programs of one member, of a pair of members, or of sums, with a note where each name is read. Texts
 have one loop for any number of members.
 
-Sums have a stated order, the same in every target (docs/decisions/family-kernels.md). The sum over
-the partners of a member goes through them from 0 on. A sum over members, or over pairs by their
-first member, has `LANES` parts: part l adds up the members l, l + LANES, l + 2 LANES and so on, and
-then the parts are added up in order. All begin with 0.0.
+Sums have a stated order, the same in every target (docs/decisions/family-kernels.md). Blocks are
+`LANES` members, from 0 on; the rest are those behind the last whole block, and all if they are less
+than `FEWEST`. The sum over the partners of a member of a block goes through its own block in order;
+the blocks before it, in each of which the partner with the member's own place comes first, then
+those after it, round the block; the blocks behind it, in `LANES` sums, of which sum s has the
+partner s places before the member's own place, round the block, of each block, and which are added
+in order; the rest. The sum of a member of the rest goes through all partners from 0 on. A sum over
+members, or over pairs by their first member, has `LANES` parts: part l adds up the members l,
+l + LANES, l + 2 LANES and so on, and then the parts are added up in order. All begin with 0.0.
+
+The terms of a pair are computed together: those of member i, then those of member j. Where both lie
+in whole blocks that differ, i is the one of the first of them. Else each member is member i once,
+and takes the first half.
 Read next: `coadjoint.render.families`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Final
 
-import sympy
-
-from coadjoint.elementary import ELEMENTARY
 from coadjoint.families import Family, Sum, Symbol, Total, Tree
+from coadjoint.lower.family_trees import Inserting, factor, factor_whole
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
 
 #: Parts of a sum over members, and members that are computed together where there are sums.
 LANES: Final = 8
+#: The fewest members that are taken in blocks: for less there is nothing to gain.
+FEWEST: Final = 5 * LANES
 #: What the names of sums begin with; their number follows.
 SUM: Final = "_sum"
-#: Digits of constants that are no rational numbers, such as pi.
-_DIGITS: Final = 60
 
 
 @dataclass(frozen=True)
@@ -103,7 +109,7 @@ class Loops:
         is_periodic: Whether member N-1 is followed by member 0.
         blocks: Rows of its first argument for each member.
         shape: Of a result that does not depend on N, else None.
-        partners: Terms of the sums over partners, if there are any.
+        partners: Terms of the sums over partners, if there are any: of member i, then of member j.
         member: The rates of member i.
         ends: Of an open chain, those of members 0, 1, ... and -1, -2, ... in this order.
         totals: What is added up, of a function of sums.
@@ -119,6 +125,11 @@ class Loops:
     ends: tuple[tuple[int, Part], ...] = ()
     totals: tuple[Totals, ...] = ()
     finish: Part | None = None
+
+    @property
+    def pair_sums(self) -> int:
+        """How many sums over partners each member has."""
+        return 0 if self.partners is None else len(self.partners.program.outputs) // 2
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -204,40 +215,49 @@ class _Lowering:
             for read in self._reads.values()
             if read.array == "state"
         ]
+        #: The name of the other member of a pair, of each name that one of them has.
+        self._others = self._pair_names()
+
+    def _pair_names(self) -> dict[str, str]:
+        """Names that change places with the members of a pair."""
+        reads = (*self._reads.values(), *self._vector)
+        places = {(r.array, r.blocks, r.of_partner): r.name for r in reads if r.shift == 0}
+        return {
+            name: places[array, blocks, not of_partner]
+            for (array, blocks, of_partner), name in places.items()
+            if (array, blocks, not of_partner) in places
+        }
 
     # -- functions ----------------------------------------------------------------------
 
     def rates(self, name: str) -> Loops:
-        """The rates, or their derivative along a vector."""
+        """The rates, or their derivative along a vector.
+
+        A sum over partners is added to the rate of one component, so that derivatives of rates name
+        those of sums, and not the sums.
+        """
         family, along = self.family, name == "jacobian_vector"
         sums = [each.symbol for each in family.pair_sums]
-        first = len(sums) if along else 0
-        loops = self._rates(name, sums, first)
-        values = {f"{SUM}{n}" for n in range(first)}
-        used = {each for part in loops.parts[1:] for each in part.program.state}
-        return loops if used & values or not first else self._rates(name, sums, 0)
+        names = {symbol: f"{SUM}{n + len(sums) * along}" for n, symbol in enumerate(sums)}
+        slopes = {symbol: f"{SUM}{n}" for n, symbol in enumerate(sums)} if along else None
 
-    def _rates(self, name: str, sums: Sequence[Symbol], first: int) -> Loops:
-        """The same, given the number of the first sum of derivatives; 0 if no others are needed."""
-        family, along = self.family, name == "jacobian_vector"
-        names = {symbol: f"{SUM}{n}" for n, symbol in enumerate(sums)}
-        slopes = {symbol: f"{SUM}{first + n}" for n, symbol in enumerate(sums)} if along else {}
-        if along and not first:
-            names = {symbol: f"{SUM}{len(sums) + n}" for n, symbol in enumerate(sums)}
-
-        def lower(trees: Sequence[Tree], *, keeps: bool = False) -> Part:
-            return self._part(name, trees, names, slopes if along else None, keeps=keeps)
+        def lower(trees: Sequence[Tree], *, of_pair: bool = False) -> Part:
+            return self._part(name, trees, names, slopes, of_pair=of_pair)
 
         terms = [each.term for each in family.pair_sums]
-        return Loops(
+        found = Loops(
             name=name,
             is_periodic=family.index.periodic,
             blocks=len(family.states) * (2 if along else 1),
             shape=None,
-            partners=lower(terms, keeps=first > 0) if terms else None,
+            partners=lower(terms, of_pair=True) if terms else None,
             member=lower(family.rates),
             ends=tuple((member, lower(trees)) for member, trees in family.ends.items()),
         )
+        used = {each for part in found.parts[1:] for each in part.program.state}
+        assert not along or not used & set(names.values()), name
+        assert found.pair_sums <= len(family.states), name
+        return found
 
     def totals(self, name: str, totals: Sequence[Total], shape: tuple[int, ...]) -> Loops:
         """Numbers of the whole system: sums first, then what follows from them."""
@@ -270,7 +290,7 @@ class _Lowering:
         sums: Mapping[Symbol, str],
         slopes: Mapping[Symbol, str] | None = None,
         *,
-        keeps: bool = False,
+        of_pair: bool = False,
     ) -> Part:
         """Trees as a Program, in the form that takes the fewest operations.
 
@@ -279,11 +299,11 @@ class _Lowering:
             trees: What is computed.
             sums: Names of the sums that they read.
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
-            keeps: Whether the trees are wanted, too: their derivatives follow them.
+            of_pair: Whether both members of a pair have them: those of member j follow.
         """
         own, shared = self.family.states, self.family.shared
-        forms = ([form(tree, own, shared) for tree in trees] for form in (_factor_whole, _factor))
-        parts = [self._lower(name, form, sums, slopes, keeps=keeps) for form in forms]
+        forms = ([form(tree, own, shared) for tree in trees] for form in (factor_whole, factor))
+        parts = [self._lower(name, form, sums, slopes, of_pair=of_pair) for form in forms]
         return min(parts, key=lambda part: sum(part.program.operation_counts().values()))
 
     def _lower(
@@ -293,15 +313,19 @@ class _Lowering:
         sums: Mapping[Symbol, str],
         slopes: Mapping[Symbol, str] | None,
         *,
-        keeps: bool,
+        of_pair: bool,
     ) -> Part:
         """Trees as a Program, in the form that they have."""
         graph = Graph()
         names = {symbol: read.name for symbol, read in self._reads.items()} | dict(sums)
-        values = list(_Inserting(graph, names, self._own, trees).nodes())
+        others = self._others if of_pair else {}
+        values = list(Inserting(graph, names, self._own, trees, others).nodes())
         if slopes is not None:
-            along = self._differentiate(graph, values, {sums[each]: slopes[each] for each in sums})
-            values = [*values, *along] if keeps else along
+            named = {sums[each]: slopes[each] for each in sums}
+            values = self._differentiate(graph, values, named)
+        if of_pair:
+            known: dict[int, int] = {}
+            values += [graph.exchange(value, others, known) for value in values]
         outputs = [(str(n), node) for n, node in enumerate(values)]
         naming = Naming(graph, [], outputs, ())
         used = naming.program(name, (len(outputs),), state=(), parameters=()).names_used()
@@ -326,109 +350,3 @@ class _Lowering:
             known[graph.symbol(name)] = {"": graph.symbol(slope)}
         zero = graph.number(0)
         return [graph.derivative(value, known).get("", zero) for value in values]
-
-
-class _Inserting:
-    """SymPy's trees as nodes of a graph.
-
-    A denominator that several quotients share becomes one reciprocal.
-    """
-
-    def __init__(
-        self,
-        graph: Graph,
-        names: Mapping[Symbol, str],
-        own: frozenset[Symbol],
-        trees: Sequence[Tree],
-    ) -> None:
-        self.graph, self._names, self._own, self._trees = graph, names, own, trees
-        self._quotients: dict[Tree, set[Tree]] = {}
-        for tree in trees:
-            for each in sympy.preorder_traversal(tree):
-                _, _, below = _split(each)
-                if below:
-                    self._quotients.setdefault(below, set()).add(each)
-
-    def nodes(self) -> Iterable[int]:
-        """The node of each tree."""
-        return map(self.node, self._trees)
-
-    def node(self, tree: Tree) -> int:
-        """The node of a tree."""
-        graph = self.graph
-        if tree in self._names:
-            return graph.symbol(self._names[tree])
-        if tree.is_Rational:
-            return graph.number(_as_fraction(tree))
-        if tree.is_NumberSymbol:
-            return graph.number(_as_fraction(tree))
-        if tree.is_Add:
-            return graph.sum(map(self.node, tree.as_ordered_terms()))
-        if tree.is_Mul or tree.is_Pow:
-            return self._quotient(tree)
-        name = {"Abs": "abs", "Min": "min", "Max": "max"}.get(type(tree).__name__, str(tree.func))
-        assert name in ELEMENTARY, tree
-        return graph.call(name, *map(self.node, tree.args))
-
-    def _quotient(self, tree: Tree) -> int:
-        """A product, perhaps over another one."""
-        graph, (number, above, below) = self.graph, _split(tree)
-        # what all lanes share comes first: it is computed once for them
-        ordered = sorted(above, key=lambda factor: bool(factor.free_symbols & self._own))
-        node = graph.product([graph.number(abs(number)), *map(self._power, ordered)])
-        if below:
-            divisor = graph.product(map(self._power, below))
-            if len(self._quotients[below]) > 1:
-                node = graph.multiply(node, graph.divide(graph.number(1), divisor))
-            else:
-                node = graph.divide(node, divisor)
-        return graph.negate(node) if number < 0 else node
-
-    def _power(self, factor: Tree) -> int:
-        """A factor, of which the exponent is positive and a multiple of 1/2."""
-        base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
-        if exponent == 1:
-            return self.node(factor)
-        assert (2 * exponent).is_Integer, factor
-        whole, half = divmod(int(2 * exponent), 2)
-        node = self.node(base)
-        return self.graph.product([node] * whole + [self.graph.call("sqrt", node)] * half)
-
-
-def _as_fraction(number: Tree) -> Fraction:
-    """A rational number as it is, another one to many digits."""
-    if number.is_Rational:
-        return Fraction(int(number.p), int(number.q))
-    return Fraction(str(number.evalf(_DIGITS)))
-
-
-def _split(tree: Tree) -> tuple[Fraction, tuple[Tree, ...], tuple[Tree, ...]]:
-    """The number, the factors and the divisors of a product; a sum or function is one factor."""
-    if not (tree.is_Mul or tree.is_Pow):
-        return Fraction(1), (tree,), ()
-    number = Fraction(1)
-    above, below = list[Tree](), list[Tree]()
-    for factor in sympy.Mul.make_args(tree):
-        base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
-        if base.is_Rational or base.is_NumberSymbol:
-            assert exponent.is_Integer, factor
-            number *= _as_fraction(base) ** int(exponent)
-        elif exponent.is_negative:
-            below.append(base**-exponent)
-        else:
-            above.append(factor)
-    return number, tuple(above), tuple(below)
-
-
-def _factor(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
-    """A sum over the components of a member, and sums within it over the parameters."""
-    if tree.is_Add and len(tree.args) > 2:
-        tree = sympy.collect(tree, own)
-    return tree.replace(
-        lambda part: part.is_Add and len(part.args) > 1, lambda part: sympy.collect(part, shared)
-    )
-
-
-def _factor_whole(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
-    """The same with what all terms share before the sum."""
-    return sympy.factor_terms(_factor(tree, own, shared))

@@ -75,10 +75,26 @@ class _Symbols:
             return self._family.partners[component]
         return self._family.neighbours[component, read.shift] if read.shift else component
 
+    def of_both(self, terms: Sequence[Tree]) -> list[Tree]:
+        """Terms of member i, and then those of its partner."""
+        pairs = dict(self._family.partners)
+        pairs |= {
+            self.vector[one]: self.vector[j] for one, j in pairs.items() if one in self.vector
+        }
+        others = pairs | {j: one for one, j in pairs.items()}
+        return [*terms, *(term.xreplace(others) for term in terms)]
+
     def slope(self, tree: Tree, sums: Mapping[Symbol, Symbol]) -> Tree:
-        """The derivative of a tree along the vector."""
+        """The derivative of a tree along the vector, between jumps.
+
+        SymPy differentiates `sign` of real symbols alone, and gives it a derivative where it jumps.
+        """
         moving = self.vector | dict(sums)
-        return sympy.Add(*(sympy.diff(tree, s) * h for s, h in moving.items() if tree.has(s)))
+        real = {s: sympy.Dummy(s.name, real=True) for s in tree.free_symbols}
+        back, whole = {dummy: s for s, dummy in real.items()}, tree.xreplace(real)
+        slopes = (sympy.diff(whole, real[s]) * h for s, h in moving.items() if s in real)
+        along = sympy.Add(*slopes).replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
+        return along.xreplace(back)
 
 
 def _list_parts(
@@ -109,15 +125,15 @@ def _list_parts(
     assert len(places) == 1 + len(family.ends), loops.name
     if loops.name == "rhs":
         if loops.partners is not None:
-            yield loops.partners, terms, ()
+            yield loops.partners, symbols.of_both(terms), ()
         for part, rates in places:
             yield part, rates, sums
         return
     slopes = {each: sympy.Symbol(f"h {each}") for each in sums}
     along = [symbols.slope(term, {}) for term in terms]
-    keeps = loops.partners is not None and len(loops.partners.program.outputs) > len(terms)
+    keeps = loops.partners is not None and loops.pair_sums > len(terms)
     if loops.partners is not None:
-        yield loops.partners, [*terms, *along] if keeps else along, ()
+        yield loops.partners, symbols.of_both([*terms, *along] if keeps else along), ()
     read = [*sums, *slopes.values()] if keeps else list(slopes.values())
     for part, rates in places:
         yield part, [symbols.slope(rate, slopes) for rate in rates], read

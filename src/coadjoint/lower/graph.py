@@ -2,7 +2,8 @@
 
 Comes in: calls that build sums, products and quotients. Goes out: node numbers; equal trees get the
 same number, so shared values are found by construction. Constants fold exactly, signs move outward,
-and nothing is reordered: the operand order of the caller is the order of evaluation.
+and nothing is reordered: the operand order of the caller is the order of evaluation. Only where
+names change places (`Graph.exchange`) operands follow the nodes that there are.
 Read next: `coadjoint.lower.naming`, which turns a graph into statements.
 """
 
@@ -157,6 +158,51 @@ class Graph:
                 return self.call(function, *(self.insert(each, values) for each in children(tree)))
         operands = [self.insert(child, values) for child in children(tree)]
         return int(getattr(self, str(operation(tree)))(*operands))
+
+    # -- names that change places -------------------------------------------------------
+
+    def exchange(self, node: int, names: Mapping[str, str], known: dict[int, int]) -> int:
+        """A node in which names change places.
+
+        What an existing node is but for its sign and the order of two operands is made of that one.
+
+        Args:
+            node: The node.
+            names: The other name of each that changes.
+            known: Nodes that are exchanged already; filled on the way.
+        """
+        if node not in known:
+            kind, payload = self.kinds[node], self.payload[node]
+            operands = [self.exchange(each, names, known) for each in self.operands[node]]
+            if kind == "symbol":
+                known[node] = self.symbol(names.get(str(payload), str(payload)))
+            elif kind == "number":
+                known[node] = node
+            elif kind == "call":
+                known[node] = self.call(str(payload), *operands)
+            elif kind == "add":
+                known[node] = self._find_sum(*operands)
+            elif kind == "multiply":
+                known[node] = self._find_product(*operands)
+            else:
+                known[node] = int(getattr(self, kind)(*operands))
+        return known[node]
+
+    def _find_sum(self, a: int, b: int) -> int:
+        """``a + b`` by the sum that there is: that, ``b + a``, or the negative of one of these."""
+        if ("add", (b, a), "") in self._numbers:
+            return self.add(b, a)
+        others = self.negate(a), self.negate(b)
+        for pair in (others, others[::-1]):
+            if ("add", pair, "") in self._numbers:
+                return self.negate(self._numbers["add", pair, ""])
+        return self.add(a, b)
+
+    def _find_product(self, a: int, b: int) -> int:
+        """``a * b`` by the product that there is, but for its sign."""
+        plain = tuple(self.operands[x][0] if self.kinds[x] == "negate" else x for x in (a, b))
+        product = self.multiply(b, a) if ("multiply", plain[::-1], "") in self._numbers else None
+        return self.multiply(a, b) if product is None else product
 
     # -- derivative ---------------------------------------------------------------------
 

@@ -33,7 +33,7 @@ from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
 from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
 from coadjoint.prove.equivalence import LegendreMap
-from coadjoint.prove.first_order import about_stationarity
+from coadjoint.prove.first_order import about_form, about_stationarity
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability
 from coadjoint.prove.integrals import about_energy, about_integrals, about_spatial
@@ -176,6 +176,7 @@ EXAMINATIONS = (
     Examination(about=about_legendre, applies=has_transform, of_routes=True),
     Examination(about=about_extremals, applies=is_variational),
     Examination(about=about_stationarity, applies=is_first_order),
+    Examination(about=about_form, applies=is_first_order, of_routes=True),
     Examination(about=lambda motion: about_reduction(motion.equations)),
     Examination(about=about_equality, of_routes=True),
     Examination(about=about_hamiltonian, applies=has_bracket),
@@ -241,7 +242,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         UndecidedError: No point is found at which a claim has a value.
     """
     if spec.family is None:
-        return _certify(spec, routes)
+        return indexed.bind_size(spec, _certify(spec, routes))
     windows = indexed.list_windows(spec)
     return indexed.extend(spec, [_certify(each, searched=False) for each in windows])
 

@@ -239,7 +239,8 @@ def _search(
 ) -> CasimirSearch:
     """Casimirs beyond those known, in the coordinates of the state."""
     setting = equations.setting
-    if setting.spec.algebra is None or not setting.momenta:  # velocities are the state
+    spec = setting.spec
+    if spec.algebra is None or spec.is_first_order or not setting.momenta:  # or velocities
         return search_summands(emitted, None, degree, known)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = [*setting.momenta, *advected]

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property, partial
 from types import MappingProxyType
 
@@ -27,7 +28,7 @@ from coadjoint.derive.mechanics.sections import section_components
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
-from coadjoint.exact.dense import determinant, dot
+from coadjoint.exact.dense import adjugate, determinant, dot
 from coadjoint.exact.ranks import generic_rank, source_of_ranks
 from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Verdict
@@ -227,21 +228,49 @@ class ConstrainedRates(Motion):
     @cached_property
     def divergence(self) -> Element:
         """``div X`` in velocities and positions."""
-        rates, field = self.rates, self.field
-        parts = [field.derivative(rates[name], name) for name in self.positions]
+        return self._diverge({})
+
+    def grow(self, powers: Sequence[tuple[Element, Fraction]]) -> Element:
+        """As of any motion; what a determinant of a solve adds often cancels entry by entry."""
+        own, others = dict[str, Fraction](), list[tuple[Element, Fraction]]()
+        for factor, exponent in powers:
+            found = (n for n, d in self._determinants.items() if factor in (d, -d))
+            if name := next(found, ""):
+                own[name] = exponent
+            else:
+                others.append((factor, exponent))
+        growth = [self.rate(factor) / factor * x for factor, x in others]
+        return self.field.sum([self._diverge(own), *growth])
+
+    def _diverge(self, powers: Mapping[str, Fraction]) -> Element:
+        """``div X + d ln rho/dt`` of powers of determinants, which have the names of solves."""
+        field = self.field
+        parts = [field.derivative(self.rates[name], name) for name in self.positions]
         for solve in self.solves:
-            whole = self._determinants[solve.names[0]]
-            for place, name in enumerate(solve.names):
-                velocity = next((v for v in self.fibre if rates[v] == field[name]), None)
-                if velocity is None:  # a multiplier
-                    continue
-                slopes = [self._slope(solve, n, velocity) for n in range(len(solve.names))]
-                turned = tuple(
-                    (*row[:place], k, *row[place + 1 :])
-                    for row, k in zip(solve.matrix, slopes, strict=True)
-                )
-                parts.append(determinant(turned) / whole)  # Cramer's rule
+            slopes = self._slopes(solve)
+            if power := powers.get(solve.names[0]):
+                for (i, j), slope in slopes.items():
+                    twice = 2 if solve.symmetric and i != j else 1
+                    slopes[i, j] = slope + self.rate(solve.matrix[i][j]) * twice * power
+            cofactors = adjugate(solve.matrix)
+            total = field.sum(cofactors[j][i] * x for (i, j), x in slopes.items() if x != 0)
+            parts.append(total / self._determinants[solve.names[0]])  # Cramer's rule
         return field.sum(parts)
+
+    def _slopes(self, solve: Solve) -> dict[tuple[int, int], Element]:
+        """The slopes of the sides of a solve by the velocities of its unknowns, by their places.
+
+        After a symmetric matrix, whose inverse is symmetric, too, they are added in pairs: the
+        antisymmetric part, which may be long, does not count in the trace.
+        """
+        field, slopes = self.field, dict[tuple[int, int], Element]()
+        for column, name in enumerate(solve.names):
+            velocity = next((v for v in self.fibre if self.rates[v] == field[name]), None)
+            for row in range(len(solve.names)):
+                place = (min(row, column), max(row, column)) if solve.symmetric else (row, column)
+                own = self._slope(solve, row, velocity) if velocity else field.zero  # multipliers
+                slopes[place] = slopes.get(place, field.zero) + own
+        return slopes
 
     def _slope(self, solve: Solve, row: int, velocity: str) -> Element:
         """How ``(k - A x)_row`` changes with a velocity at fixed x.

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
+from operator import mul
 
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
@@ -181,11 +182,16 @@ class Measure:
 
     def exponents(self, factors: Sequence[Element], points: Sequence[Point]) -> Powers | None:
         """``rho = product of factors ** exponents`` that satisfies the conditions at points."""
-        rows = list[list[int]]()
-        for point, condition in ((p, c) for p in points for c in self.conditions):
-            slopes = [self._along(condition, factor) / factor for factor in factors]
-            rows.append([point.value(x) for x in (*slopes, condition.parts[-1])])
-        return _powers(factors, rows, points[0].samples.prime)
+        prime, rows = points[0].samples.prime, list[list[int]]()
+        slopes = [self.field.gradient(factor, self.positions) for factor in factors]
+        for point in points:
+            shares = [pow(point.value(factor), -1, prime) for factor in factors]
+            gradients = [tuple(map(point.value, row)) for row in slopes]
+            for condition in self.conditions:
+                *along, right = map(point.value, condition.parts)
+                grown = (sum(map(mul, along, row)) for row in gradients)
+                rows.append([*(x * y % prime for x, y in zip(grown, shares, strict=True)), right])
+        return _powers(factors, rows, prime)
 
     def powers_along(self, factors: Sequence[Element], samples: Samples) -> Powers | None:
         """``rho`` as before whose rate is right at points, where factors depend on velocities."""
@@ -199,11 +205,6 @@ class Measure:
             ]
             rows.append([*rates, -point.value(self.divergence)])
         return _powers(factors, rows, samples.prime)
-
-    def defect(self, powers: Powers) -> Element:
-        """``d ln rho / dt + div X``, zero if the measure is invariant."""
-        growth = [self.motion.rate(factor) / factor * x for factor, x in powers]
-        return self.field.sum([self.divergence, *growth])
 
 
 @once

@@ -24,6 +24,7 @@ from time import perf_counter
 
 from coadjoint.derive import derive
 from coadjoint.exact.dense import commutator
+from coadjoint.exact.text import WHILE
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import Decision, decide_zero, make_entry
 from coadjoint.spec.core.faults import list_names
@@ -59,6 +60,19 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
         loaded = [claim for each in rest for claim in each if claim.statement in own]
         claims += [replace(claim, statement=claim.statement + scope) for claim in loaded]
     return Certificate(spec.name, tuple(claims))
+
+
+def bind_size(spec: Spec, certificate: Certificate) -> Certificate:
+    """A certificate of members that are all written out: each statement names their number."""
+    if not spec.written:
+        return certificate
+    (index,) = spec.index
+    scope = f", for {index.count or 'N'} = {index.size}"
+    return replace(
+        certificate,
+        claims=tuple(replace(c, statement=c.statement + scope) for c in certificate.claims),
+        findings=tuple(replace(f, statement=f.statement + scope) for f in certificate.findings),
+    )
 
 
 def _examine_lax(family: Windows) -> Claim:
@@ -120,10 +134,16 @@ def _join(family: Windows, both: tuple[Claim, Claim]) -> Claim:
         method = f"{worst.method}, with {counts[both.index(worst)]} members"
         return replace(worst, statement=statement, method=method)
     reason = _reason(family, worst)
-    method = f"{worst.method}, with {counts[0]} and with {counts[1]} members; {reason}"
+    method = f"{_generalise(worst.method)}, with {counts[0]} and with {counts[1]} members; {reason}"
     return replace(
         worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in both)
     )
+
+
+def _generalise(method: str) -> str:
+    """How a claim of some members was decided, as it holds for those of every number of them."""
+    head, jumps, _ = method.partition(WHILE)
+    return f"{head}{WHILE}no function of any members jumps" if jumps else head
 
 
 def _reason(family: Windows, claim: Claim) -> str:
@@ -131,6 +151,8 @@ def _reason(family: Windows, claim: Claim) -> str:
     if claim.statement.startswith("the energy"):
         return "the bracket of each member is antisymmetric"
     if claim.kind != "conserved" or claim.statement in family.of_members:
+        if family.pairs:
+            return "each of its terms reads one member or two"
         return "it reads one member and those next to it"
     if family.pairs:
         return "the rate is a sum over members and pairs"

@@ -203,6 +203,12 @@ class Motion:
         ]
         return None if any(columns) else self.field.zero
 
+    def grow(self, powers: Sequence[tuple[Element, Fraction]]) -> Element:
+        """``div X + d ln rho/dt`` of a product of powers, zero if it is an invariant density."""
+        assert self.divergence is not None, self.equations.route
+        growth = [self.rate(factor) / factor * x for factor, x in powers]
+        return self.field.sum([self.divergence, *growth])
+
     # -- names ----------------------------------------------------------------------------
 
     @cached_property

@@ -14,7 +14,7 @@ from typing import Any, Final
 from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from coadjoint.lower.families import LANES, SUM, Loops, Part, Read
+from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import names_read, render_templates
@@ -41,11 +41,13 @@ class ReadText:
         name: The name.
         place: Its place.
         step: In C, what says whether lanes have values of their own; "" if they always have.
+        of: Whose it is: that of the ``member``, of a ``partner``, or of ``all``.
     """
 
     name: str
     place: str
     step: str = ""
+    of: str = "member"
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,8 @@ class FamilyFunction:
         reach: Members at both ends of which each is computed alone.
         ends_before: Members at the beginning that have rates of their own.
         ends_after: Such members at the end.
-        partners: As `Loops` has it; likewise ``member``, ``ends``, ``totals`` and ``finish``.
+        partners: As `Loops` has it; likewise ``pair_sums``, ``member``, ``ends``, ``totals`` and
+            ``finish``.
         sums: How many sums there are in a function of sums.
     """
 
@@ -111,6 +114,7 @@ class FamilyFunction:
     ends_before: int
     ends_after: int
     partners: PartText | None
+    pair_sums: int
     member: PartText | None
     ends: tuple[tuple[int, PartText], ...]
     totals: tuple[TotalsText, ...]
@@ -192,6 +196,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         ends_before=len(loops.first_ends),
         ends_after=len(loops.last_ends),
         partners=text(loops.partners),
+        pair_sums=loops.pair_sums,
         member=member,
         ends=tuple(
             (place, _arrange(part, loops.is_periodic, target, "member"))
@@ -219,7 +224,12 @@ def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
     rows = {"": "", "member": "({n} * _run.size + _run.i)", "total": "{n}"}[to]
     return PartText(
         reads=tuple(
-            ReadText(read.name, place(read, is_periodic), _c_step(read) if target == "c" else "")
+            ReadText(
+                name=read.name,
+                place=place(read, is_periodic),
+                step=_c_step(read) if target == "c" else "",
+                of="all" if read.shift is None else "partner" if read.of_partner else "member",
+            )
             for read in part.reads
         ),
         sums=tuple(SumText(name, int(name.removeprefix(SUM))) for name in names),
@@ -308,6 +318,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "licence": tell_licence(context.license),
         "id": identity,
         "lanes": LANES,
+        "fewest": FEWEST,
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
         "state": rows_of(context.state),

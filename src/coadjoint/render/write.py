@@ -14,7 +14,6 @@ import hashlib
 import json
 import os
 import re
-import secrets
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -226,7 +225,7 @@ def _stage(folder: Path, texts: Mapping[str, str]) -> Iterator[Callable[[], None
         with _report_errors(folder):
             _remove_temporaries(handle)
         for name, text in texts.items():
-            temporaries[name] = f".coadjoint-{secrets.token_hex(8)}.tmp"
+            temporaries[name] = f".coadjoint-{os.urandom(8).hex()}.tmp"
             with _report_errors(folder / name):
                 _write_synced(temporaries[name], text.encode(), handle)
 

@@ -158,5 +158,6 @@ def _describe(ensemble: Ensemble) -> _Run:
 def _place(array: NDArray[Any]) -> int:
     """Where an array begins; `ctypes.data` takes three times as long."""
     assert array.flags.c_contiguous
-    place: int = array.__array_interface__["data"][0]
-    return place
+    if array.size and array.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))
+    return array.ctypes.data

@@ -166,6 +166,9 @@ class Dense:
     signal: Signal | Array | None
     start: float
 
+    def __repr__(self) -> str:
+        return f"<Dense: steps of {self.nbytes / 1e6:.3g} MB>"
+
     @property
     def nbytes(self) -> int:
         """The memory that the steps take."""

@@ -21,7 +21,7 @@ from coadjoint.errors import KernelArgumentError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.solve.formulas import Formula
+    from coadjoint.solve.formulas import Formula, Rows
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -148,7 +148,8 @@ def _read(system: System, given: Any, *, followed: bool) -> Sought:
     from coadjoint.solve.formulas import Formula  # the reader of specs, for events alone
     from coadjoint.solve.units import check_units
 
-    formula = Formula(text, list_names_of(system, followed=followed), label)
+    members = _list_members(list_named(system, followed=followed))
+    formula = Formula(text, list_names_of(system, followed=followed), label, members)
     _check_moves(system, formula, label)
     check_units(formula, list_named(system, followed=followed), system.unit_of_time, label)
     return Sought(event, formula)
@@ -207,6 +208,20 @@ def list_named(system: System, *, followed: bool) -> list[Any]:
     tables = [system.STATE, *([system.RECONSTRUCTED] if followed else []), system.OBSERVABLES]
     tables += [system.PARAMETERS, system.INPUTS, system.TIME]
     return [quantity for table in tables for quantity in table.values()]
+
+
+def _list_members(quantities: Iterable[Any]) -> dict[str, Rows]:
+    """What the names of quantities of equal members stand for; empty for other systems."""
+    from coadjoint.solve.formulas import Rows
+
+    found: dict[str, Rows] = {}
+    for each in quantities:
+        if each.shape and each.components[0].endswith("[0]"):
+            found.setdefault(each.name, Rows(each.name))
+            firsts = each.components[:: each.shape[-1]]
+            for place, first in zip(np.ndindex(*each.shape[:-1]), firsts, strict=True):
+                found.setdefault(first.removesuffix("[0]"), Rows(each.name, place))
+    return found
 
 
 def list_names_of(system: System, *, followed: bool) -> dict[str, tuple[int, ...]]:

@@ -9,7 +9,9 @@ Read next: `coadjoint.solve.events`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import reduce
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +20,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import KernelArgumentError
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.expressions import read_expression
-from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.shapes import shape_of, words
 
 if TYPE_CHECKING:
@@ -28,6 +30,19 @@ if TYPE_CHECKING:
     Shape = tuple[int, ...]
 
 
+@dataclass(frozen=True)
+class Rows:
+    """What a name with the number of a member stands for: ``r`` and ``r2``, in ``r2[0]``.
+
+    Attributes:
+        quantity: The quantity of all members that it belongs to.
+        place: Which component it is, counted from 0; empty for all.
+    """
+
+    quantity: str
+    place: tuple[int, ...] = ()
+
+
 class Formula:
     """A scalar expression in names that a System declares.
 
@@ -35,6 +50,7 @@ class Formula:
         text: The expression.
         scope: The shape of each name that may occur.
         label: What the formula is, for messages.
+        members: What a name with the number of a member stands for, in a system of equal members.
 
     Attributes:
         text: As given.
@@ -45,9 +61,15 @@ class Formula:
         KernelArgumentError: A syntax error, an unknown name, or a value that is no scalar.
     """
 
-    def __init__(self, text: str, scope: Mapping[str, Shape], label: str) -> None:
+    def __init__(
+        self,
+        text: str,
+        scope: Mapping[str, Shape],
+        label: str,
+        members: Mapping[str, Rows] = MappingProxyType({}),
+    ) -> None:
         try:
-            self._tree = read_expression(text)
+            self._tree = _place_members(read_expression(text), scope, members)
             shape = shape_of(self._tree, scope)
         except ExpressionError as error:
             raise _explain(error, text, label) from error
@@ -75,6 +97,47 @@ class Formula:
         known = tree.evaluate_nodes(self._tree, lambda node, below: _value(node, below, values))
         size = reduce(np.add, (np.abs(known[id(term)]) for term in self.terms))
         return known[id(self._tree)], size
+
+
+def _place_members(
+    whole: tree.Node, scope: Mapping[str, Shape], members: Mapping[str, Rows]
+) -> tree.Node:
+    """A tree with rows of all members in the place of quantities of one member.
+
+    As in specs, members are counted from 0 and components from 1: of a vector r, ``r[0]`` is that
+    of member 0, and ``r[0, 2]`` its second component, which is also ``r2[0]``.
+    """
+
+    def place(node: tree.Node, below: list[tree.Node]) -> tree.Node:
+        if isinstance(node, tree.Index) and node.name in members:
+            return _list_rows(node, members[node.name], scope[members[node.name].quantity])
+        return tree.rebuild(node, below)
+
+    return tree.fold(whole, place) if members else whole
+
+
+def _list_rows(node: tree.Index, rows: Rows, whole: Shape) -> tree.Node:
+    """A component of a member, or a vector or matrix of them."""
+    (*shape, count), (member, *component) = whole, node.indices
+    if not 0 <= member < count:
+        problem = f"there is no member {member} of {node.name}"
+        raise fault_at(node, problem, expected=f"members 0 to {count - 1}")
+    given = (*rows.place, *(index - 1 for index in component))
+    if len(given) > len(shape) or any(not 0 <= k < n for k, n in zip(given, shape, strict=False)):
+        own = tuple(shape[len(rows.place) :])
+        problem = f"{node.name}[{member}] is {words(own)} and has no such component"
+        raise fault_at(node, problem, expected="components counted from 1")
+    start, end = node.start, node.end
+
+    def build(above: tuple[int, ...]) -> tree.Node:
+        if len(above) == len(shape):
+            indices = tuple(index + 1 for index in (*above, member))
+            return tree.Index(name=rows.quantity, indices=indices, start=start, end=end)
+        parts = tuple(build((*above, k)) for k in range(shape[len(above)]))
+        function = "vector" if len(above) == len(shape) - 1 else "rows"
+        return tree.Call(function=function, arguments=parts, start=start, end=end)
+
+    return build(given)
 
 
 def _explain(error: ExpressionError, text: str, label: str) -> KernelArgumentError:

@@ -16,6 +16,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
+from coadjoint.solve.family import FamilySystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,8 +29,10 @@ if TYPE_CHECKING:
 #: Colours that stay apart for colour-blind readers (Okabe and Ito, 2008).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 STYLES = ("solid", "dashed", "dotted", "dashdot")
-#: Names in one column of a legend.
-LEGEND_ROWS = 14
+#: Names in one column of a legend, and lines of one panel.
+LEGEND_ROWS, LINES = 14, 28
+#: Pictures of members, one above the other.
+STACKED = 3
 #: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
 ON_SPHERE = 1e-6
 #: From where the sphere is seen: elevation and azimuth, degrees.
@@ -194,6 +197,9 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
     panels = place.subgridspec(len(quantities), 1)
     shared = None
     for n, (name, quantity) in enumerate(quantities):
+        if len(quantity.components) > LINES:
+            _draw_rows(figure, panels[n], solution, name, ends=n == len(quantities) - 1)
+            continue
         axes = figure.add_subplot(panels[n], sharex=shared)
         shared = shared or axes
         for stroke, component in zip(_strokes(), quantity.components, strict=False):
@@ -205,6 +211,28 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         axes.legend(fontsize=8 if columns == 1 else 6.5, frameon=False, **right)
         _limit_time(axes, solution)
         axes.grid(alpha=0.3)
+
+
+def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: bool) -> None:
+    """A quantity of many rows as colours over time: of equal members, one panel a component."""
+    quantity, of_members = solution.system.STATE[name], isinstance(solution.system, FamilySystem)
+    rows = quantity.shape[-1] if of_members else len(quantity.components)
+    parts = solution[name].reshape(-1, rows, len(solution))
+    columns = -(-len(parts) // STACKED)
+    panels = place.subgridspec(-(-len(parts) // columns), columns)
+    for n, part in enumerate(parts):
+        axes = figure.add_subplot(panels[n // columns, n % columns])
+        colours = axes.pcolormesh(
+            solution.time, np.arange(rows), part, cmap="cividis", shading="nearest"
+        )
+        colours.set_rasterized(True)
+        lower = str(n + 1) * (len(parts) > 1)
+        bar = figure.colorbar(colours, ax=axes, pad=0.01)
+        bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit_label(quantity.unit)}", fontsize=9)
+        bar.ax.tick_params(labelsize=8)
+        if columns == 1:
+            axes.set_ylabel("member" if of_members else "component", fontsize=9)
+        axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
 
 
 def _draw_drift(axes: Any, solution: Solution) -> None:

@@ -7,8 +7,6 @@ rows, light to import.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from difflib import get_close_matches
-from html import escape
 from typing import Any
 
 from coadjoint.declared import Quantity
@@ -75,6 +73,8 @@ class Quantities(Mapping[str, Quantity]):
         """
         if name in self._rows:
             return self._rows[name]
+        from difflib import get_close_matches  # not when a kernel is called first
+
         near = get_close_matches(str(name), self._rows, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         raise KernelArgumentError(
@@ -113,6 +113,8 @@ class Quantities(Mapping[str, Quantity]):
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
+        from html import escape
+
         head, *rows = [[escape(cell) for cell in row] for row in self._table()]
         body = "".join("<tr><td>" + "</td><td>".join(row) + "</td></tr>" for row in rows)
         return f"<table><tr><th>{'</th><th>'.join(head)}</th></tr>{body}</table>"

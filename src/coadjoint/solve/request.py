@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cached_property
 from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -89,7 +90,7 @@ class Request:
     stepwise: str
     seed: int | None = None
 
-    @property
+    @cached_property
     def choice(self) -> Choice:
         """The generated method."""
         order = _ORDER.get(self.method) or choose_order(self.rtol)

@@ -18,7 +18,7 @@ from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
 from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, kinds_of
 from coadjoint.spec.model import Spec
-from coadjoint.spec.routes import ROUTES, energies_of
+from coadjoint.spec.routes import ROUTES, Route, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.state import Variable
 from coadjoint.spec.sections.variables import VARIABLES
@@ -120,7 +120,7 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         yield _Obstacle(f"has {one_of}", energies)
     if is_in_frame(file) and not start.in_frame and kinds == ("algebra",):
         yield _Obstacle("moves momenta, and the state has velocities")
-    if is_first_order(file) and not start.is_first_order:
+    if is_first_order(file) and not _moves_first_order(start):
         yield _Obstacle("moves velocities or momenta, and here all velocities follow")
     variational = is_variational(file)
     if variational and start.is_hamiltonian and file.lagrangian is None:
@@ -132,12 +132,19 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
             )
     for table in TABLES:
         options = {*start.options}
+        if is_first_order(file) and not start.is_first_order:
+            options = set()  # what forces do is solved for with the two-form
         if variational:
             options = options - {"constraints"} | (
                 {"constraints"} if start.is_hamiltonian else set()
             )
         if table.acts and getattr(file, table.key) and table.key not in options:
             yield _Obstacle(f"does not accept [{table.key}]", cure=f"remove [{table.key}]")
+
+
+def _moves_first_order(route: Route) -> bool:
+    """Whether a route gives velocities as rates of the state: also by a declared bracket."""
+    return route.is_first_order or ("poisson" in route.kinds and not route.table)
 
 
 def _is_bare(file: Any) -> bool:
@@ -163,7 +170,8 @@ def _list_fitting(file: Any, *, first: bool = False) -> list[str]:
     moves = [
         name
         for name, each in ROUTES.items()
-        if each.in_frame == is_in_frame(file) and each.is_first_order == is_first_order(file)
+        if each.in_frame == is_in_frame(file)
+        and (_moves_first_order(each) if is_first_order(file) else not each.is_first_order)
     ]
     if first:
         roles = {part.role for part in file.variables.values()}

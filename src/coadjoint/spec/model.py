@@ -205,6 +205,7 @@ class Spec:
         records: What tables gave that have no attribute here, by their keys.
         index: The index that counts equal members, in a spec with one.
         family: What is known of the other members, where a few stand for all of them.
+        written: Why all members are written out, in a spec with an index; else "".
         units: The units of all names, as far as the spec tells them.
     """
 
@@ -251,6 +252,7 @@ class Spec:
     records: Mapping[str, Any] = field(default_factory=dict)
     index: tuple[Index, ...] = ()
     family: Windows | None = field(default=None, repr=False)
+    written: str = ""
     units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
 
     def having_role(self, role: str) -> tuple[Variable, ...]:

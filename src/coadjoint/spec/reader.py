@@ -29,6 +29,7 @@ from coadjoint.spec.consistency import (
     check_tables,
     check_used,
 )
+from coadjoint.spec.copies import QUANTITIES
 from coadjoint.spec.core.faults import did_you_mean
 from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.core.parts import Part
@@ -115,7 +116,7 @@ def read_spec_text(
 
 def _refuse_indices(source: Source, file: Any, sizes: Mapping[str, int]) -> None:
     """Without an index, nothing has one and no size is chosen."""
-    for table in ("variables", "parameters"):
+    for table in QUANTITIES:
         for name, part in getattr(file, table).items():
             if part.index is not None:
                 raise name_fault(source, (table, name), part.index)

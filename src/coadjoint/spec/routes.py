@@ -30,8 +30,8 @@ class Route:
             leaves multipliers out, is there to be proved equal.
         takes_driving: Whether inputs and time may act.
         needs_energy: Whether it must have one of its energies.
-        is_first_order: Whether velocities of all coordinates follow from the state, in which the
-            Lagrangian is of first order.
+        is_first_order: Whether all velocities follow from the state, in which the Lagrangian is of
+            first order.
         is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
             before the variation give.
     """
@@ -101,7 +101,13 @@ _ROUTES = (
         energies=_LAGRANGIAN,
         options=_ACTS,
     ),
-    Route(name="first-order", kinds=("configuration",), energies=_LAGRANGIAN, is_first_order=True),
+    Route(
+        name="first-order",
+        kinds=("configuration", "poisson", "algebra"),
+        energies=_LAGRANGIAN,
+        options=("forces", "dissipation"),
+        is_first_order=True,
+    ),
     Route(name="newton", kinds=_SPACE, table="newton"),
     Route(name="alignment", kinds=_SPACE, table="newton", emitted=False),
     _in_frame("nonholonomic"),
@@ -113,8 +119,11 @@ ROUTES: Mapping[str, Route] = MappingProxyType({route.name: route for route in _
 
 
 def energies_of(route: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """The tables of which a route takes one: a bracket that pairs nothing knows no Lagrangian."""
-    energies = ROUTES[route].energies
-    if "poisson" in kinds and "canonical" not in kinds:
+    """The tables of which a route takes one: a bracket that pairs nothing knows no Lagrangian.
+
+    One of first order has a bracket of its own, which is compared with that of the spec.
+    """
+    energies, is_first_order = ROUTES[route].energies, ROUTES[route].is_first_order
+    if "poisson" in kinds and "canonical" not in kinds and not is_first_order:
         return tuple(each for each in energies if each != "lagrangian")
     return energies

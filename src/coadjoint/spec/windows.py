@@ -1,8 +1,10 @@
 """Windows: a spec with an index, written out for two small numbers of members.
 
 Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
-spec has, with all that is known of the others in its attribute ``family``. The numbers are those
-from which the claims follow for every other number (docs/decisions/windows.md):
+spec has, with all that is known of the others in its attribute ``family``. What a generic member
+does not tell (`coadjoint.spec.looped`) is written out for all members, and is a Spec as any other.
+The numbers are those from which the claims follow for every other number
+(docs/decisions/windows.md):
 
 * a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
 * an open chain: w and w + 1, and enough for a member with all its neighbours;
@@ -14,7 +16,7 @@ Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -22,33 +24,23 @@ from typing import Any
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.families import Index
-from coadjoint.spec.copies import differs, write_out_file
+from coadjoint.spec.copies import QUANTITIES, differs, write_out_file
 from coadjoint.spec.core.components import Shape
-from coadjoint.spec.core.faults import ExpressionError, list_names
+from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.members import has_sum, member_name, split_sums, without_sums
+from coadjoint.spec.core.members import member_name
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.totals import has_sum, split_sums, without_sums
 from coadjoint.spec.core.tree import Index as Subscript
 from coadjoint.spec.core.tree import Member, Name, Node, walk
 from coadjoint.spec.core.values import read_default
+from coadjoint.spec.looped import find_misfit, list_texts
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
+from coadjoint.spec.sections.indices import make_index
 from coadjoint.spec.sections.lax import Lax
 
-#: Tables that a spec with an index may have.
-TABLES = (
-    "index",
-    "algebra",
-    "poisson",
-    "variables",
-    "parameters",
-    "definitions",
-    "hamiltonian",
-    "lax",
-    "observables",
-    "claims",
-)
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
 
 
@@ -72,6 +64,9 @@ def read_windows(
     """
     index = _choose(source, file, sizes)
     _check(source, file, index)
+    misfit = find_misfit(file, index)
+    if misfit:
+        return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
     first = _first_window(index, reach, width, pairs=pairs)
     least = 1 if index.periodic and not pairs else first
@@ -80,7 +75,8 @@ def read_windows(
         if pairs:
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
-        return read(*write_out_file(source, file, index, size))
+        few = f"a chain of fewer than {least} has no member with all its neighbours"
+        return _write_all(source, file, read, index, few)
     bare = file.model_copy(update={"lax": None})
     small, large = (read(*write_out_file(source, bare, index, first + more)) for more in (0, 1))
     last = first if file.lax is None else max(first, 2 * reach + width + 3)
@@ -110,6 +106,26 @@ def read_windows(
     return _with_family(source, bare, read, family)
 
 
+def _write_all(
+    source: Source, file: Any, read: Callable[[Source, Any], Spec], index: Index, misfit: str
+) -> Spec:
+    """The spec with all its members, as any other spec.
+
+    Raises:
+        SpecError: Nobody says how many there are.
+        LimitError: There are more than a state may have components.
+    """
+    key, size = ("index", index.name), index.size
+    problem = f"all members are written out, since {misfit}"
+    if size is None:
+        hint = f'Give the index a size, or choose one: sizes={{"{index.name}": 5}}.'
+        raise source.fault(key, f"{problem}; no size is given", "", "a size", hint)
+    if size > limits.STATE_COMPONENTS:
+        raise source.too_many(key, f"{problem}; there are {size}", size, "STATE_COMPONENTS")
+    spec = read(*write_out_file(source, file, index, size))
+    return replace(spec, index=(index,), written=misfit)
+
+
 def _split_lax(source: Source, spec: Spec) -> tuple[Spec, Lax]:
     """A Spec and its Lax pair, which has no spectral parameter.
 
@@ -133,12 +149,9 @@ def _with_family(
     """The larger window, with the claims that hold for every number of members.
 
     Raises:
-        SpecError: The energy or an observable is no sum over members.
+        SpecError: A Casimir is neither of each member nor a sum over members.
     """
     large, index = family.windows[1], family.index
-    assert large.hamiltonian is not None, large.name
-    for formula in (large.hamiltonian, *(each.formula for each in large.observables)):
-        _check_total(source, formula)
     _check_casimirs(source, large)
     kinds = [_kind_of(large, claim) for claim in large.conserved]
     members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
@@ -236,20 +249,6 @@ def _read_loaded(
     return read(*write_out_file(source, file, family.index, size))
 
 
-def _check_total(source: Source, formula: Formula) -> None:
-    """An energy or an observable is a sum of sums over members."""
-    assert formula.sums is not None, formula.key
-    try:
-        sums = split_sums(formula.sums)
-        if not sums:
-            length = len(formula.text)
-            expected = "a sum over members, as sum(i, ...)"
-            problem = "the value is that of no sum over members"
-            raise ExpressionError(problem, 0, length, formula.in_one_line, expected)
-    except ExpressionError as error:
-        raise source.expression_fault(formula.path, error) from None
-
-
 def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
     """The smaller of two numbers of members from which claims follow for all."""
     if pairs:
@@ -268,30 +267,20 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
         if isinstance(size, bool) or not isinstance(size, int) or size < 1:
             problem = f"the size {size!r} is chosen for {name!r}"
             raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
-    return Index(name, sizes.get(name, part.size), part.periodic)
+    return make_index(name, part, sizes.get(name, part.size))
 
 
 def _check(source: Source, file: Any, index: Index) -> None:
-    """Every table goes with an index, every variable has it, and there is room for all members."""
-    for table in type(file).model_fields:
-        named = getattr(file, table)
-        if hasattr(file, table) and table not in (*TABLES, *_HEAD) and named not in (None, {}):
-            problem = f"there is a table [{table}] in a spec with [index]"
-            expected = f"the tables {list_names(TABLES)}"
-            raise source.at_key((table,), problem, table, expected, f"Remove [{table}].")
+    """Names of the index are free, quantities have no other one, and there is room for all."""
     for table, name, part in _list_quantities(file):
-        if name == index.name:
-            problem, expected = f"{name!r} is the index, too", "names that differ"
+        if name in (index.name, index.count):
+            what = "index" if name == index.name else "number of members"
+            problem, expected = f"{name!r} is the {what}, too", "names that differ"
             raise source.at_key((table, name), problem, name, expected, "Rename one of them.")
         if part.index not in (None, index.name):
             key = (table, name, "index")
             problem = f"there is no index {part.index!a}"
             raise source.unknown(key, problem, part.index, [index.name])
-        if table == "variables" and part.index is None:
-            problem = f"the variable {name!r} has no index"
-            hint = f'Add index = "{index.name}".'
-            expected = f"the index {index.name!r} of every variable"
-            raise source.at_key((table, name), problem, name, expected, hint)
         if part.index is not None and differs(file, part):
             _check_count(source, index, (table, name), len(part.default))
     if index.size is not None and index.size > limits.FAMILY_MEMBERS:
@@ -301,8 +290,9 @@ def _check(source: Source, file: Any, index: Index) -> None:
 
 def _list_quantities(file: Any) -> list[tuple[str, str, Any]]:
     """Table, name and keys of each quantity."""
-    tables = ("variables", "parameters")
-    return [(table, name, part) for table in tables for name, part in getattr(file, table).items()]
+    return [
+        (table, name, part) for table in QUANTITIES for name, part in getattr(file, table).items()
+    ]
 
 
 def _check_count(source: Source, index: Index, key: tuple[str, str], count: int) -> None:
@@ -321,24 +311,6 @@ def _read_defaults(
     return tuple(zip(*members, strict=True))
 
 
-_HEAD = ("title", "source", "description", "license", "routes")
-
-
-def _texts(value: Any) -> Iterator[str]:
-    """All texts in the tables that hold formulas."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping):
-        for each in value.values():
-            yield from _texts(each)
-    elif isinstance(value, list | tuple):
-        for each in value:
-            yield from _texts(each)
-    elif hasattr(type(value), "model_fields"):
-        for name in type(value).model_fields:
-            yield from _texts(getattr(value, name))
-
-
 def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
     """How far the energy couples, the width of what is claimed, and whether pairs are coupled.
 
@@ -350,11 +322,13 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
         found = [int((m[1] or "0").replace(" ", "")) for t in texts for m in shift.finditer(t)]
         return max([0, *found]) - min([0, *found])
 
-    shared = list(_texts(file.definitions))
-    energy = [*shared, *_texts(file.hamiltonian), *_texts(file.poisson)]
+    shared = list(list_texts(file.definitions))
+    energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
     reach = span(energy)
-    width = span([*shared, *_texts(file.observables), *_texts(file.claims), *_texts(file.lax)])
-    pairs = any(_PAIRS.search(text) for text in [*energy, *_texts(file.observables)])
+    width = span(
+        [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
+    )
+    pairs = any(_PAIRS.search(text) for text in [*energy, *list_texts(file.observables)])
     if pairs and (reach or width):
         problem = "there are sums over pairs, and sums that name neighbours"
         expected = "one of them in a spec"

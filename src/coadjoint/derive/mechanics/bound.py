@@ -9,7 +9,8 @@ asks for
 
 with the constraints :math:`\phi = 0` so far, which may bind x further, until nothing is added. Then
 the rates are determined, if the matrix has full rank there. Each constraint is solved for a
-component of x that has a number for its factor, those first that are declared to follow.
+component of x whose factor is a number or of positive parameters, those first that are declared to
+follow.
 Comes in: a one-form and a Hamiltonian. Goes out: what follows, or why there is no motion.
 Read next: `coadjoint.derive.mechanics.first_order`.
 
@@ -31,8 +32,11 @@ from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.dense import apply, dot, inverse, pfaffian, transpose
 from coadjoint.exact.ranks import independent_rows
+from coadjoint.exact.signs import sign
 from coadjoint.exact.witness import is_nonzero
 
+#: What a factor has to be, by which a constraint is divided.
+FACTOR = "that is a number or of positive parameters"
 #: Coupled components of x up to which the inverse of omega is written out, by Pfaffians.
 LARGEST = 8
 Row = tuple[Element, ...]
@@ -90,6 +94,12 @@ def invert(setting: Setting, form: Form) -> Matrix:
                 f"Pfaffian is certainly not 0 along {', '.join(names[i] for i in block)}; expected "
                 "a regular one. Write the Lagrangian in simpler functions, or give its [domain]."
             )
+            if field.is_zero(root):
+                message = (
+                    f"omega = d theta is singular along {', '.join(names[i] for i in block)}, so "
+                    "that friction alone determines the motion; expected one that has a bracket "
+                    "without friction. Add the kinetic energy of these velocities."
+                )
             raise _fault(setting, message, names[block[0]])
         for a, i in enumerate(block):
             for b, j in enumerate(block[:a]):
@@ -143,8 +153,7 @@ class Constraints:
         bound: What constraints give, by name in terms of what is left of x.
         steps: Constraints in their order, in words, and what they give.
         lines: The same as they are shown: what is 0, then the component that it gives.
-        unsolved: A constraint in which no component has a number for its factor; None while all are
-            solved.
+        unsolved: A constraint in which no component has such a factor; None while all are solved.
     """
 
     field: Field
@@ -174,10 +183,10 @@ class Constraints:
         return [value for value in values if not self.field.is_zero(value)]
 
     def _solve(self, value: Element) -> tuple[str, Element, Element] | None:
-        """A component with a number for its factor, what it is, and the value that is zero."""
+        """A component that the value gives at every point, what it is, and the value itself."""
         for name in self.names:
             slope = self.field.derivative(value, name)
-            if (number := self.field.as_number(slope)) is not None and number != 0:
+            if not self.field.reach(slope) & {*self.names} and sign(self.field, slope) != 0:
                 return name, self.field[name] - value / slope, value
         return None
 
@@ -208,13 +217,46 @@ class Constraints:
         return left_kernel(self.field, transpose(self.matrix))
 
     @property
+    def groups(self) -> list[tuple[list[int], list[int]]]:
+        """Independent equations that share unknowns, with the places of these."""
+        groups = list[tuple[list[int], set[int]]]()
+        for i in _independent(self.field, self.matrix):
+            linked = {j for j, entry in enumerate(self.matrix[i]) if entry != 0}
+            meeting = [group for group in groups if group[1] & linked]
+            groups = [group for group in groups if not group[1] & linked]
+            rows = sorted([i, *(row for known, _ in meeting for row in known)])
+            groups.append((rows, linked.union(*(columns for _, columns in meeting))))
+        return [(rows, sorted(columns)) for rows, columns in groups]
+
+    @property
+    def solution(self) -> Row:
+        """u, where nothing of it is free.
+
+        >>> field = Field(["x"])
+        >>> x, zero, one = field["x"], field.zero, field.one
+        >>> rows = ((x, zero), (one, x))
+        >>> Constraints(field, ["x"], rows, (one, zero), lambda _: (rows[0], zero)).solution
+        (1/x, (-1)/x**2)
+        """
+        found = dict[int, Element]()
+        for rows, columns in self.groups:
+            part = tuple(tuple(self.matrix[i][j] for j in columns) for i in rows)
+            found |= zip(columns, apply(inverse(part), [self.right[i] for i in rows]), strict=True)
+        return tuple(found[j] for j in range(len(found)))
+
+    @property
     def chain(self) -> str:
         """All steps, with their numbers."""
         return "; ".join(f"({n}) {step}" for n, step in enumerate(self.steps, 1)) or "none"
 
 
-def bind(setting: Setting, form: Form) -> Constraints:
+def bind(setting: Setting, form: Form, force: Sequence[Element] = ()) -> Constraints:
     """The constraints of a form, all of them solved.
+
+    Args:
+        setting: The spec and its field.
+        form: theta and h over all coordinates and momenta.
+        force: What works along each of these, at most linear in velocities; empty without any.
 
     Raises:
         DerivationError: There is no motion, or it is not determined, or a constraint cannot be
@@ -223,16 +265,26 @@ def bind(setting: Setting, form: Form) -> Constraints:
     field, omega = setting.field, form.two_form(setting.field)
     resting = [x for x, row in zip(form.names, omega, strict=True) if not any(row)]
     given = [name for name in form.names if name not in setting.state]
+    right = field.gradient(form.energy, form.names)
+    if force:
+        pairs = dict(zip(setting.positions, setting.velocities, strict=True))
+        moving = [pairs.get(x, "") for x in form.names]
+        slopes = [[field.derivative(f, v) if v else field.zero for v in moving] for f in force]
+        omega = tuple(
+            tuple(a + b for a, b in zip(*rows, strict=True))
+            for rows in zip(omega, slopes, strict=True)
+        )
+        still = dict.fromkeys(filter(None, moving), field.zero)
+        right = tuple(x - field.substitute(f, still) for x, f in zip(right, force, strict=True))
     known = Constraints(
         field=field,
         names=tuple(dict.fromkeys((*given, *resting, *form.names))),
         matrix=omega,
-        right=field.gradient(form.energy, form.names),
+        right=right,
         tangent=lambda value: (field.gradient(value, form.names), -_moved(setting, value)),
     )
     known.follow()
-    _check_determined(setting, form, known)
-    _check_declared(setting, form, known)
+    check_bound(setting, form.names, form.names, known)
     return known
 
 
@@ -241,44 +293,81 @@ def _moved(setting: Setting, value: Element) -> Element:
     return explicit_rate(setting, value, "a coordinate that constraints give")
 
 
-def _check_determined(setting: Setting, form: Form, known: Constraints) -> None:
-    """There is one motion through each point that satisfies the constraints."""
+def check_bound(
+    setting: Setting, names: Sequence[str], along: Sequence[str], known: Constraints
+) -> None:
+    """There is one motion through each point that constraints leave, and these are as declared.
+
+    Args:
+        setting: The spec and its field.
+        names: The components of x.
+        along: What the unknowns u are the velocities of.
+        known: The constraints, followed to their end.
+
+    Raises:
+        DerivationError: There is no motion, or it is not determined, or a constraint cannot be
+            solved; or what follows is not what the spec declares to follow.
+    """
     if known.unsolved is not None:
         text = f"{element_text(setting.field, known.unsolved)} = 0"
-        problem = f"the motion is bound to {text}, in which no component has a number for a factor"
+        problem = f"the motion is bound to {text}, in which no component has a factor {FACTOR}"
         hint = "Solve it by hand, and write what it gives in the Lagrangian."
         if known.is_contradicted():
             problem, hint = f"no motion satisfies {text}", "Correct the Lagrangian."
-        raise _refuse(setting, known, problem, hint)
+        raise _refuse(setting, names, known, problem, hint)
     if free := known.free:
-        along = " and ".join(write_direction(setting.field, form.names, each) for each in free)
-        hint = "Add the term that determines it, or leave that combination of coordinates out."
-        raise _refuse(setting, known, f"nothing gives the velocity along {along}", hint)
-    if len(known.bound) == len(form.names):
+        given = " and ".join(write_direction(setting.field, along, each) for each in free)
+        hint = "Add the term that determines it, or leave that combination out."
+        raise _refuse(setting, names, known, f"nothing gives the velocity along {given}", hint)
+    longest = max(len(columns) for _, columns in known.groups)
+    if longest > LARGEST:
+        problem = f"its equations couple {longest} rates; expected at most {LARGEST}"
+        hint = "Choose coordinates that decouple them."
+        raise _refuse(setting, names, known, problem, hint)
+    if len(known.bound) == len(names):
         problem, hint = "constraints give all of it, and nothing moves", "Correct the Lagrangian."
-        raise _refuse(setting, known, problem, hint)
+        raise _refuse(setting, names, known, problem, hint)
+    _check_declared(setting, names, known)
 
 
-def _check_declared(setting: Setting, form: Form, known: Constraints) -> None:
+def _check_declared(setting: Setting, names: Sequence[str], known: Constraints) -> None:
     """What follows is what the spec declares to follow."""
-    declared = {name for name in form.names if name not in setting.state}
+    declared = {name for name in names if name not in setting.state}
     more, less = sorted(known.bound.keys() - declared), sorted(declared - known.bound.keys())
+    hint = _advise_following(setting, known)
     if more:
-        hint = f"Write follows = true for {' and '.join(more)}, or choose other coordinates."
-        raise _refuse(setting, known, f"constraints give {', '.join(more)}", hint)
+        raise _refuse(setting, names, known, f"constraints give {', '.join(more)}", hint)
     if less:
-        hint = f"Remove follows = true of {' and '.join(less)}."
-        raise _refuse(setting, known, f"no constraint gives {', '.join(less)}", hint)
+        raise _refuse(setting, names, known, f"no constraint gives {', '.join(less)}", hint)
 
 
-def _refuse(setting: Setting, known: Constraints, problem: str, hint: str) -> DerivationError:
+def _advise_following(setting: Setting, known: Constraints) -> str:
+    """What the spec would declare to follow."""
+    advice = []
+    for each in setting.spec.variables:
+        given = [name for name in each.components if name in known.bound]
+        declared = [name for name in each.components if name not in setting.state]
+        if each.role == "velocity" or given == declared:
+            continue
+        if not given:
+            advice.append(f"Remove follows of {each.name}.")
+        else:
+            texts = ", ".join(f'"{name}"' for name in given)
+            value = "true" if len(given) == len(each.components) else f"[{texts}]"
+            advice.append(f"Write follows = {value} for {each.name}.")
+    return " ".join(advice)
+
+
+def _refuse(
+    setting: Setting, names: Sequence[str], known: Constraints, problem: str, hint: str
+) -> DerivationError:
     """The error, with all steps."""
-    names = ", ".join((*setting.positions, *setting.momenta))
+    state = ", ".join(names)
     message = (
-        f"the Lagrangian does not determine the rates of a state of {names}: {problem}. "
+        f"the Lagrangian does not determine the rates of a state of {state}: {problem}. "
         f"Constraints in their order: {known.chain}. {hint}"
     )
-    return _fault(setting, message, names)
+    return _fault(setting, message, state)
 
 
 def write_direction(field: Field, names: Sequence[str], vector: Row) -> str:

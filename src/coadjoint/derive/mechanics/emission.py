@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.configuration import Matrix, mechanics
 from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.mechanics.solver import Definition, Solve
 from coadjoint.derive.records import Exact, Step, write_slopes, write_step
@@ -30,6 +30,8 @@ def emit(
     energy: Element | None,
     definitions: Sequence[Definition] = (),
     solves: tuple[Solve, ...] = (),
+    forces: Rates = (),
+    tensor: Matrix | None = None,
 ) -> Equations:
     """The Equations of a route that moves the declared state.
 
@@ -41,8 +43,11 @@ def emit(
         energy: The energy, if the route or the spec knows one.
         definitions: Velocities that rates and energy name.
         solves: What the kernel solves for these.
+        forces: What forces add to the rates, of a route that puts them in itself.
+        tensor: The bracket that the route found; by default that of the spec.
     """
-    tensor = poisson_structure(setting).tensor if has_structure(setting) else None
+    if tensor is None and has_structure(setting):
+        tensor = poisson_structure(setting).tensor
     emitted = list_emitted(setting, energy, _momenta_in_frame(setting))
     exact = Exact(
         definitions=tuple(definitions),
@@ -51,6 +56,7 @@ def emit(
         emitted=emitted,
         poisson_tensor=tensor,
         solves=solves,
+        forces=forces,
     )
     return Equations(setting=setting, route=route, exact=exact, steps=tuple(steps))
 

@@ -97,10 +97,12 @@ def force_components(
 def add_forces(free: Equations) -> Equations:
     """Equations of motion with the declared forces and dissipation; unchanged without any.
 
-    Routes with constraints, and those with momenta of their own, put the forces in themselves.
+    Routes with constraints, those with momenta of their own, and those on which velocities follow
+    put the forces in themselves.
     """
     setting = free.setting
-    if not setting.spec.is_driven or free.distribution is not None or free.chart is not None:
+    own = setting.spec.is_first_order or free.distribution is not None or free.chart is not None
+    if not setting.spec.is_driven or own:
         return free
     free, forces = _name_rates(free), added_rates(setting)
     names = {*symbols(setting.spec)}

@@ -11,11 +11,12 @@ has the motions of l, where velocities of r are solved for in momenta, and veloc
 of :math:`\theta_s` and of :math:`h = \langle \partial l/\partial v, v \rangle - l`. With
 :math:`x = (q, p)`,
 
-.. math:: \omega\,\dot x = \partial h, \qquad
+.. math:: \omega\,\dot x = \partial h - f, \qquad
     \omega_{ij} = \partial_i \theta_j - \partial_j \theta_i,
 
-whose inverse is the Poisson tensor. Where it has none x is bound to where there is a solution along
-it, by the steps of `coadjoint.derive.mechanics.bound`.
+with the forces f along coordinates, if there are any. The inverse of omega is the Poisson tensor.
+Where it has none x is bound to where there is a solution along it, by the steps of
+`coadjoint.derive.mechanics.bound`.
 Comes in: a Setting with a Lagrangian. Goes out: one-form, Hamiltonian and bracket.
 Read next: `coadjoint.derive.routes.first_order`.
 
@@ -27,10 +28,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from dataclasses import field as attribute
 
 from coadjoint.derive.mechanics.bound import Form, bind, invert
 from coadjoint.derive.mechanics.configuration import Matrix, inverse_in_blocks, mechanics
 from coadjoint.derive.mechanics.driving import explicit
+from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.setting import Setting, fault, list_components, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -48,6 +51,8 @@ class FirstOrder:
         bound: What the constraints give, by name, in the state.
         lines: How they were found, as `Constraints.lines`.
         form: theta and h over the state.
+        force: What works along each of coordinates and momenta; empty without forces.
+        rates: Of coordinates and momenta in the state, where forces act; else the bracket has them.
     """
 
     setting: Setting
@@ -56,6 +61,20 @@ class FirstOrder:
     bound: Mapping[str, Element]
     lines: tuple[tuple[str, Element], ...]
     form: Form
+    force: tuple[Element, ...] = ()
+    rates: Mapping[str, Element] = attribute(default_factory=dict)
+
+    @property
+    def pulled_force(self) -> tuple[Element, ...]:
+        """What works along the state: also along what follows as the state moves."""
+        field = self.setting.field
+        along = dict(zip(self.whole.names, self.force, strict=True))
+        whole = {name: along[name] for name in self.form.names}
+        for name, value in self.bound.items():
+            slopes = field.gradient(value, self.form.names)
+            pairs = zip(whole.items(), slopes, strict=True)
+            whole = {x: force + along[name] * slope for (x, force), slope in pairs}
+        return tuple(whole.values())
 
     @property
     def tensor(self) -> Matrix:
@@ -76,7 +95,8 @@ def first_order(setting: Setting) -> FirstOrder:
             in velocities, or its one-form moves by itself; or it does not determine the motion.
     """
     solved, whole = _whole_form(setting)
-    known, form = bind(setting, whole), whole
+    force = _forces(setting, solved, whole) if setting.spec.is_forced else ()
+    known, form = bind(setting, whole, force), whole
     for name, value in known.bound.items():
         form = form.put(setting.field, name, value)
     return FirstOrder(
@@ -86,7 +106,35 @@ def first_order(setting: Setting) -> FirstOrder:
         bound=known.bound,
         lines=tuple(known.lines),
         form=form,
+        force=force,
+        rates=dict(zip(whole.names, known.solution, strict=True)) if force else {},
     )
+
+
+def _forces(setting: Setting, solved: Mapping[str, Element], whole: Form) -> tuple[Element, ...]:
+    """What works along coordinates and momenta, in these and the velocities that none gives.
+
+    Raises:
+        DerivationError: It is not linear in these velocities.
+    """
+    field, spec = setting.field, setting.spec
+    acting = external_forces(setting, setting.velocities)
+    along = dict.fromkeys(whole.names, field.zero)
+    along |= {
+        q: field.substitute(f, solved) for q, f in zip(setting.positions, acting, strict=True)
+    }
+    for name, force in along.items():
+        slopes = field.gradient(force, setting.velocities)
+        curved = [v for v in setting.velocities if any(v in field.reach(x) for x in slopes)]
+        if curved:
+            formula = next(iter((*spec.forces.values(), *filter(None, [spec.dissipation]))))
+            message = (
+                f"the force along {name} is not linear in {curved[0]}, which no momentum gives; "
+                "expected forces that are linear in such velocities on the route first-order. "
+                "Write one that is."
+            )
+            raise fault(setting, formula, message, curved[0])
+    return tuple(along.values())
 
 
 def _whole_form(setting: Setting) -> tuple[dict[str, Element], Form]:

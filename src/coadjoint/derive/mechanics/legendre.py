@@ -128,7 +128,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     try:
         known = known_side(setting, of.momenta)
     except ZeroDivisionError as error:  # a root of 0 at rest
-        raise _not_closed(of, next(iter(of.bending))) from error
+        raise _not_solved(of, [*of.bending], "momenta are not defined there") from error
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
     radial: list[Definition] = []
@@ -217,18 +217,19 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     """
     setting, names = of.setting, of.setting.velocities
     _check_count(setting, block)
+    own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
     reached = frozenset[str]().union(*map(field.reach, moved.values()))
     if driven := sorted(reached.intersection(setting.driving)):
-        raise _not_solved(of, block, f"its momenta depend on {driven[0]}, which is given in time")
+        raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
     for size in range(1, len(block) + 1):
         minor = determinant(tuple(row[:size] for row in still[:size]))
         if sign(field, minor) != 1:
-            raise _not_solved(of, block, "d2l/dxi2 at rest is not positive definite for certain")
+            raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
     mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
     products = [
         field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
@@ -236,19 +237,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     ]
     known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
     newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
-    own = [names[i] for i in block]
     return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
-
-
-def _not_solved(of: Mechanics, block: tuple[int, ...], problem: str) -> DerivationError:
-    """What is wrong with a block that no iteration is made for."""
-    names = [of.setting.velocities[i] for i in block]
-    message = (
-        f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
-        f"does not solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one of "
-        f"parameters and state, convex at rest. Give {_way_out(of.setting)} instead."
-    )
-    return _refusal(of.setting, message, names[0])
 
 
 def _solve_radially(
@@ -268,19 +257,19 @@ def _solve_radially(
     return None if found is None else [*parts, *zip(names, found, strict=True)]
 
 
-def _not_closed(of: Mechanics, name: str) -> DerivationError:
-    """What is wrong with a Lagrangian whose momenta at rest are not defined."""
-    spec, named = of.setting.spec, of.bending[name]
+def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> DerivationError:
+    """What is wrong with velocities that the kernel cannot solve for from rest on."""
+    spec = of.setting.spec
     route = "euler-lagrange" if spec.algebra is None else "nonholonomic"
     momenta = " and ".join(each.name for each in spec.having_role("momentum"))
     message = (
-        f"the Lagrangian is not quadratic in the velocities: its second derivative by {name} "
-        f"depends on {', '.join(named)}, and its momenta are not defined at rest, where the kernel "
-        f"begins to solve for velocities; expected a Lagrangian that is smooth there. Give "
+        f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
+        f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
+        "is certainly convex at rest, with momenta of the state and the parameters alone. Give "
         f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
         "velocities are the state."
     )
-    return _refusal(of.setting, message, named[0])
+    return _refusal(of.setting, message, names[0])
 
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:

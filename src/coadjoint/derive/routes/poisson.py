@@ -50,7 +50,7 @@ def hamiltonian_equations(
     """
     field, tensor = setting.field, poisson_structure(setting).tensor
     gradient = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
-    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    given = _conjugate_velocities(setting)
     pairs = dict(zip(setting.momenta, given, strict=bool(given)))
     weights = dict(zip(setting.momenta, setting.weights, strict=True))
     definitions = velocities_of(setting, h, solves)
@@ -60,6 +60,8 @@ def hamiltonian_equations(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
         for row in tensor
     )
+    if setting.spec.is_first_order:
+        definitions, rates = name_velocities(setting, rates)
     brackets = [
         (bracket(a, b), tensor[i][j])
         for (i, a), (j, b) in combinations(enumerate(setting.state), 2)
@@ -85,6 +87,25 @@ def hamiltonian_equations(
     return emit(setting, route, rates, steps, h, definitions, solves)
 
 
+def name_velocities(
+    setting: Setting, rates: tuple[Element, ...]
+) -> tuple[tuple[Definition, ...], tuple[Element, ...]]:
+    """The velocities of coordinates as definitions, and rates that name them.
+
+    So it is where a Lagrangian of first order, on another route, names them.
+    """
+    pairs = dict(zip(setting.positions, setting.velocities, strict=True))
+    known = dict(zip(setting.state, rates, strict=True))
+    definitions = tuple((v, known[q]) for q, v in pairs.items())
+    named = (setting.field[pairs[x]] if x in pairs else rate for x, rate in known.items())
+    return definitions, tuple(named)
+
+
+def _conjugate_velocities(setting: Setting) -> tuple[str, ...]:
+    """The velocities that momenta give; others are themselves state, or rates of it."""
+    return setting.velocities if setting.momenta and not setting.spec.is_first_order else ()
+
+
 def velocities_of(
     setting: Setting, h: Element, solves: tuple[Solve, ...] = ()
 ) -> tuple[Definition, ...]:
@@ -97,8 +118,7 @@ def velocities_of(
     """
     if setting.spec.variational:
         return normal_extremals(setting).definitions
-    field = setting.field
-    given = setting.velocities if setting.momenta else ()  # else velocities are themselves state
+    field, given = setting.field, _conjugate_velocities(setting)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     known = {name for name, _ in solved}
     return (

@@ -10,19 +10,34 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 from coadjoint import limits
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
-from coadjoint.spec.core.members import write_out
+from coadjoint.spec.core.members import Members, write_out
 from coadjoint.spec.core.names import refusal
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.tree import Call, Component, Index, Name, Node, fold, rebuild, walk
+from coadjoint.spec.core.tree import (
+    Binary,
+    Call,
+    Component,
+    Entry,
+    Index,
+    Member,
+    Name,
+    Node,
+    Number,
+    Sum,
+    fold,
+    rebuild,
+    walk,
+)
 
 
 @dataclass(frozen=True)
@@ -131,10 +146,27 @@ def _expand_call(
         fresh = replace(fresh, start=node.start, end=node.end, within=definition.name)
         argument = values.get(_name_called(part)) if isinstance(part, (Name, Index)) else None
         count += 1 if argument is None else argument[1] + isinstance(part, Index)
+        if isinstance(fresh, Member | Entry):
+            return _place_indices(fresh, {name: given for name, (given, _) in values.items()})
         return fresh if argument is None else _component(fresh, argument[0])
 
     whole = fold(definition.tree, place)
     return _component(node, whole), count + isinstance(node, Index)
+
+
+def _place_indices(node: Member | Entry, given: Mapping[str, Node]) -> Node:
+    """A quantity of a member whose name, or whose index, is an argument."""
+    named = given.get(node.name)
+    if isinstance(named, Name):
+        node = replace(node, name=named.name)
+    if not isinstance(node, Member) or node.index not in given:
+        return node
+    index, where = given[node.index], dict[str, Any](start=node.start, end=node.end)
+    if isinstance(index, Name):
+        return replace(node, index=index.name)
+    numbers = [Number(Fraction(each), **where) for each in (node.shift, *node.indices)]
+    first = Binary(operator="+", left=index, right=numbers[0], **where)
+    return Entry(name=node.name, subscripts=(first, *numbers[1:]), within=node.within, **where)
 
 
 def _component(node: Node, whole: Node) -> Node:
@@ -194,8 +226,12 @@ def define(
                 expression, functions(known), indexed=source.members is not None
             )
             tree = expand(typed, known, source.spent)
-            plain = tree if source.members is None else write_out(tree, source.members, key)
-            shape = _shape(plain, shapes, arguments, [_name(later) for later in texts])
+            plain, inner = tree, tuple[str, ...]()
+            if source.members is not None and arguments:  # which may be indices
+                inner = _list_indices(tree, source.members)
+            elif source.members is not None:
+                plain = write_out(tree, source.members, key)
+            shape = _shape(plain, shapes, (*arguments, *inner), [_name(later) for later in texts])
         except ExpressionError as error:
             raise source.expression_fault(key, error) from None
         known[name] = Definition(
@@ -206,6 +242,13 @@ def define(
 
 def _name(key: str) -> str:
     return signature(key)[0]
+
+
+def _list_indices(tree: Node, members: Members) -> tuple[str, ...]:
+    """What counts in a tree, or is the number of what is counted."""
+    sums = (node for node in walk(tree) if isinstance(node, Sum))
+    named = dict.fromkeys(index for node in sums for index in node.indices)
+    return (members.index, members.number, *named)
 
 
 def _check_arguments(

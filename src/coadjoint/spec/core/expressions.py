@@ -14,8 +14,8 @@ the text is ever executed, evaluated or passed on: numbers become fractions, nam
 
 and where members are counted by an index, as another ``atom``,
 
-    NAME "[" INDEX [("+" | "-") INTEGER] {"," INTEGER} "]"
-    "sum" "(" INDEX "," [INDEX "," INDEX "<" INDEX ","] sum ")"
+    NAME "[" sum {"," sum} "]"                     whole numbers, of indices and their number
+    "sum" "(" INDEX {"," INDEX} "," [sum RELATION sum ","] sum ")"
 
 Read next: `coadjoint.spec.core.shapes`, which says what the names and functions mean.
 """
@@ -25,14 +25,22 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import Any, TypeGuard
 
 from coadjoint import limits
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
 from coadjoint.spec.core.shapes import FUNCTIONS
-from coadjoint.spec.core.tokens import Token, read_tokens, refuse_by_limit, unknown_character
+from coadjoint.spec.core.tokens import (
+    RELATIONS,
+    Token,
+    read_tokens,
+    refuse_by_limit,
+    unknown_character,
+)
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
+    Entry,
     Index,
     Member,
     Name,
@@ -45,6 +53,8 @@ from coadjoint.spec.core.tree import (
 
 #: Functions of what has an index: sums over members, and matrices with a row for each.
 OVER_MEMBERS = ("sum", "tridiagonal")
+#: Subscripts of an entry of a matrix.
+MOST_SUBSCRIPTS = 2
 _BINDING = {"+": 1, "-": 1, "*": 2, "/": 2}
 _POWERS = ("^", "**")
 
@@ -221,7 +231,8 @@ class _Reader:
         if name.text not in self.functions:
             expected = f"one of {', '.join(sorted(self.functions))}"
             plain = f"Write {name.text}[1] for a component, {name.text}*(...) for a product."
-            plain = "Sums over members need a table [index]." if name.text == "sum" else plain
+            if name.text == "sum":
+                plain = "Sums over members need [index]; events name an observable."
             hint = did_you_mean(name.text, self.functions, plain)
             problem = f"{name.text!r} is not a function"
             raise self._fault(problem, name.start, name.end, expected, hint)
@@ -239,49 +250,28 @@ class _Reader:
         )
 
     def _sum(self, name: Token, opening: Token) -> Node:
-        """A sum over the members that an index counts, or over their pairs."""
-        kinds = [token.kind for token in self.tokens[self.at : self.at + 6]]
-        if kinds[:2] != ["name", ","]:
-            problem, expected = "the sum has no index", "sum(i, ...) or sum(i, j, i < j, ...)"
-            raise self._fault(problem, name.start, opening.end, expected)
-        indices = [self._take().text]
-        self._take()
-        if kinds[2:4] == ["name", ","]:
+        """A sum over the members that an index counts, over their pairs, or over some of these."""
+        indices = list[str]()
+        while [token.kind for token in self.tokens[self.at : self.at + 2]] == ["name", ","]:
             indices.append(self._take().text)
             self._take()
-            self._pair(name, indices)
+        if not indices:
+            problem, expected = "the sum has no index", "sum(i, ...) or sum(i, j, i < j, ...)"
+            raise self._fault(problem, name.start, opening.end, expected)
         with self._nest(opening):
-            term = self._climb(0)
+            term, sides, sign = self._climb(0), tuple[Node, ...](), ""
+            if self.next.kind in RELATIONS:
+                sign = self._take().kind
+                sides = (term, self._climb(0))
+                self._close(opening, ",")
+                term = self._climb(0)
         end = self._close(opening, ")").end
-        return self._count(Sum(indices=tuple(indices), term=term, start=name.start, end=end))
-
-    def _pair(self, name: Token, indices: list[str]) -> None:
-        """The condition of a sum over pairs, which counts each of them once."""
-        first, second = indices
-        condition = self.tokens[self.at : self.at + 4]
-        if [token.text for token in condition] != [first, "<", second, ","]:
-            problem = "the sum over pairs does not count each pair once"
-            expected = f"sum({first}, {second}, {first} < {second}, ...)"
-            raise self._fault(problem, name.start, condition[0].end, expected)
-        self.at += len(condition)
-
-    def _member(self, name: Token, opening: Token) -> Node:
-        """A quantity of the member that an index counts, or of a neighbour."""
-        index, shift = self._take().text, 0
-        if self.next.kind in ("+", "-"):
-            sign = 1 if self._take().kind == "+" else -1
-            shift = sign * self._subscript(opening)
-        indices = []
-        while self.next.kind == ",":
-            self._take()
-            indices.append(self._subscript(opening))
-        end = self._close(opening, "]").end
         return self._count(
-            Member(
-                name=name.text,
-                index=index,
-                shift=shift,
+            Sum(
                 indices=tuple(indices),
+                term=term,
+                sides=sides,
+                sign=sign,
                 start=name.start,
                 end=end,
             )
@@ -289,19 +279,25 @@ class _Reader:
 
     def _index(self, name: Token) -> Node:
         opening = self._take()
-        if self.indexed and self.next.kind == "name":
-            return self._member(name, opening)
-        indices = [self._subscript(opening)]
-        if self.next.kind == ",":
+        subscripts = [self._place(opening)]
+        while self.next.kind == "," and (self.indexed or len(subscripts) < MOST_SUBSCRIPTS):
             self._take()
-            indices.append(self._subscript(opening))
+            subscripts.append(self._place(opening))
         closing = self._close(opening, "]")
         if self.next.kind == "[":
             start, end = self.next.start, self.next.end
             raise self._fault("two subscripts in a row", start, end, f"{name.text}[1, 2]")
-        return self._count(
-            Index(name=name.text, indices=tuple(indices), start=name.start, end=closing.end)
-        )
+        return self._count(_make_entry(name.text, subscripts, name.start, closing.end))
+
+    def _place(self, opening: Token) -> Node:
+        """A subscript: an integer or, where members are counted, what can be worked out."""
+        kinds = [token.kind for token in self.tokens[self.at : self.at + 2]]
+        literal = kinds[1:] and kinds[1] in (",", "]") and kinds[0] != "name"
+        if not self.indexed or literal:
+            at = self.next
+            return Number(Fraction(self._subscript(opening)), start=at.start, end=at.end)
+        with self._nest(opening):
+            return self._climb(0)
 
     def _subscript(self, opening: Token) -> int:
         token = self.next
@@ -347,7 +343,7 @@ class _Reader:
     def _unexpected(self) -> ExpressionError:
         """What stands where it cannot."""
         token = self.next
-        if token.kind == "<" and not self.indexed:
+        if token.kind in RELATIONS and not self.indexed:
             return unknown_character(self.text, token.start)
         before = self.tokens[self.at - 1] if self.at else Token("", "", 0, 0)
         ends = before.kind in ("number", "name", ")", "]")
@@ -372,3 +368,26 @@ class _Reader:
     ) -> ExpressionError:
         """A fault of what stands between two places."""
         return ExpressionError(problem, start, end, self.text[start:end], expected, hint)
+
+
+def _make_entry(name: str, subscripts: list[Node], start: int, end: int) -> Node:
+    """A quantity with subscripts: a component, a quantity of a member, or one to be worked out."""
+    where: dict[str, Any] = {"start": start, "end": end}
+    first, *rest = subscripts
+    numbers = tuple(int(each.value) for each in rest if _is_whole(each))
+    if len(numbers) == len(rest):
+        match first:
+            case Number(value=value) if _is_whole(first):
+                return Index(name=name, indices=(int(value), *numbers), **where)
+            case Name(name=index):
+                return Member(name=name, index=index, shift=0, indices=numbers, **where)
+            case Binary(operator="+" | "-" as sign, left=Name(name=index), right=Number() as by):
+                if _is_whole(by):
+                    shift = int(by.value) * (1 if sign == "+" else -1)
+                    return Member(name=name, index=index, shift=shift, indices=numbers, **where)
+    return Entry(name=name, subscripts=tuple(subscripts), **where)
+
+
+def _is_whole(node: Node) -> TypeGuard[Number]:
+    """Whether a node is a whole number."""
+    return isinstance(node, Number) and node.value.denominator == 1

@@ -1,19 +1,24 @@
-"""Members: sums over the members that an index counts, written out for a few of them.
+"""Members: sums over the members that an index counts, written out for a number of them.
 
 Comes in: a tree with sums over members and with quantities of a member. Goes out: the same tree for
 N members, without sums and with a name for each quantity of each member. So the rest of a spec's
-way is that of any other spec: the equations of the generic member are read off from a few of them,
-and what is proved for a few is proved for all by the lemmas in docs/decisions/windows.md.
+way is that of any other spec. The equations of the generic member are read off from a few of them,
+and what is proved for a few is proved for all by the lemmas in docs/decisions/windows.md; what does
+not follow so is written out for all members.
 Read next: `coadjoint.spec.windows`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import reduce
-from itertools import combinations
+from itertools import product
+from math import prod
+from operator import add, eq, ge, gt, le, lt, mul, ne, sub
+from typing import Any
 
 from coadjoint import limits
 from coadjoint.spec.core.faults import fault_at
@@ -22,17 +27,33 @@ from coadjoint.spec.core.tree import (
     Binary,
     Call,
     Component,
+    Entry,
     Index,
     Member,
     Name,
     Negate,
     Node,
     Number,
+    Power,
     Sum,
+    children,
     fold,
     rebuild,
     walk,
 )
+
+_SIGNS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "<": lt,
+    "<=": le,
+    ">": gt,
+    ">=": ge,
+    "==": eq,
+    "!=": ne,
+}
+_OPERATORS: Mapping[str, Callable[[Fraction, Fraction], Fraction]] = {"+": add, "-": sub, "*": mul}
+_OF_NUMBERS: Mapping[str, Callable[..., Fraction]] = {"abs": abs, "min": min, "max": max}
+#: Tables in which the index may be free: the value has a component for each member.
+_FREE = ("claims", "definitions", "observables")
 
 
 def member_name(name: str, member: int) -> str:
@@ -48,12 +69,18 @@ def member_name(name: str, member: int) -> str:
 class Members:
     """How many members there are, and what each of them has.
 
+    Members have places from 0 on; in formulas and in names the first one has the number ``first``.
+
     Attributes:
         index: The index that counts them.
         count: How many are written out.
         periodic: Whether the last one is followed by the first.
         names: What each member has: variables and parameters.
-        bound: Of keys that are written out for each member, the member.
+        bound: Of keys that are written out for each member, the place of the member.
+        first: The number of the first member.
+        number: What formulas call the number of members; "" for nothing.
+        taken: What the spec declares, so that no index has its name.
+        scalars: What has neither an index nor components.
     """
 
     index: str
@@ -61,22 +88,33 @@ class Members:
     periodic: bool
     names: frozenset[str]
     bound: Mapping[KeyPath, int] = field(default_factory=dict)
+    first: int = 0
+    number: str = ""
+    taken: frozenset[str] = frozenset()
+    scalars: frozenset[str] = frozenset()
 
     def place(self, member: int) -> int | None:
-        """The member of a number from 0; None beyond the end of an open chain."""
+        """The member at a place from 0; None beyond the end of an open chain."""
         if self.periodic:
             return member % self.count
         return member if 0 <= member < self.count else None
 
-    def run(self, node: Node) -> range:
+    def run(self, node: Node, index: str = "") -> range:
         """The members for which a term reads no neighbour beyond the end of an open chain."""
-        before, after = (0, 0) if self.periodic else reach(node)
+        before, after = (0, 0) if self.periodic else reach(node, index, self.names)
         return range(before, self.count - after)
 
+    def member_of(self, key: KeyPath) -> int | None:
+        """The place of the member that a key is written out for."""
+        keys = (key[:length] for length in range(len(key), 0, -1))
+        return next((self.bound[each] for each in keys if each in self.bound), None)
 
-def reach(node: Node) -> tuple[int, int]:
+
+def reach(node: Node, index: str = "", names: Collection[str] = ()) -> tuple[int, int]:
     """How many members a term reads before the one that the index counts, and after it."""
-    shifts = [0, *(part.shift for part in walk(node) if isinstance(part, Member))]
+    parts = (part for part in walk(node) if isinstance(part, Member))
+    own = (p for p in parts if index in ("", p.index) and (not names or p.name in names))
+    shifts = [0, *(part.shift for part in own)]
     return -min(shifts), max(shifts)
 
 
@@ -86,61 +124,255 @@ def write_out(tree: Node, members: Members, key: KeyPath) -> Node:
     Args:
         tree: With definitions expanded.
         members: How many there are.
-        key: Where it stands. In a bracket of a member the index is that member; in a claim it may
-            be any: the value is a vector with a component for each.
+        key: Where it stands. In what is written for each member the index is that member; in claims
+            and observables it may be any: the value is a vector with a component for each.
 
     Raises:
-        ExpressionError: A quantity of a member stands without an index, or with another one.
+        ExpressionError: A quantity of a member stands without an index, or with another one, or
+            there are too many terms.
     """
-
-    def write(node: Node, below: list[Node]) -> Node:
-        if isinstance(node, Name | Index) and node.name in members.names:
-            raise _without_index(node, members)
-        if isinstance(node, Member):
-            _check_member(node, members)
-        fresh = rebuild(node, below)
-        if isinstance(fresh, Call) and fresh.function == "tridiagonal":
-            return write_band(fresh, members)
-        return add_up(fresh, members) if isinstance(fresh, Sum) else fresh
-
-    whole = fold(tree, write)
-    if not any(isinstance(node, Member) for node in walk(whole)):
-        return whole
-    if key in members.bound:
-        _check_free(whole, members, free=True)
-        return place_at(whole, {members.index: members.bound[key]}, members)
-    _check_free(whole, members, free=key[0] in ("claims", "definitions"))
-    parts = tuple(place_at(whole, {members.index: k}, members) for k in members.run(whole))
-    return Call(function="vector", arguments=parts, start=whole.start, end=whole.end)
+    free, spent, own = find_free(tree, members), Counter[str](), members.member_of(key)
+    if own is not None:
+        _check_free(free, members)
+        return place_at(tree, {members.index: own}, members, spent)
+    if not free:
+        return place_at(tree, {}, members, spent)
+    if key[0] == "definitions" and free.keys() != {members.index}:
+        return place_at(tree, dict.fromkeys(free, 0), replace(members, periodic=True), spent)
+    _check_free(free, members, free=key[0] in _FREE)
+    run = members.run(tree, members.index)
+    parts = tuple(place_at(tree, {members.index: k}, members, spent) for k in run)
+    return Call(function="vector", arguments=parts, start=tree.start, end=tree.end)
 
 
-def _check_free(whole: Node, members: Members, *, free: bool) -> None:
+def find_free(tree: Node, members: Members) -> dict[str, Node]:
+    """Indices that no sum around them counts, each where it stands first."""
+    free: dict[str, Node] = {}
+    pending: list[tuple[Node, frozenset[str]]] = [(tree, frozenset())]
+    while pending:
+        node, bound = pending.pop()
+        index = node.index if isinstance(node, Member) else ""
+        if isinstance(node, Name) and node.name == members.index:
+            index = node.name
+        if index and index not in (*bound, members.number):
+            free.setdefault(index, node)
+        if isinstance(node, Sum):
+            bound |= {*node.indices}
+        elif _is_band(node):
+            bound |= {members.index}
+        pending.extend((each, bound) for each in reversed(children(node)))
+    return free
+
+
+def _check_free(found: Mapping[str, Node], members: Members, *, free: bool = True) -> None:
     """Outside of sums there is the declared index alone, and only where it may be free."""
-    for node in walk(whole):
-        if isinstance(node, Member) and (not free or node.index != members.index):
-            problem = f"the index {node.index!r} is not that of a sum around it"
-            expected = f"{node.name}[{members.index}] inside sum({members.index}, ...)"
-            raise fault_at(node, problem, node.index, expected)
+    for index, node in found.items():
+        if not free or index != members.index:
+            name = node.name if isinstance(node, Member) else members.index
+            problem = f"the index {index!r} is not that of a sum around it"
+            expected = f"{name}[{members.index}] inside sum({members.index}, ...)"
+            raise fault_at(node, problem, index, expected)
 
 
-def add_up(node: Sum, members: Members) -> Node:
-    """A sum as what it adds up."""
-    term = node.term
-    _check_sum(node, members)
-    places: Iterator[Sequence[int]]
-    if len(node.indices) == 1:
-        places = ((k,) for k in members.run(term))
+def _is_band(node: Node) -> bool:
+    return isinstance(node, Call) and node.function == "tridiagonal"
+
+
+def _below(node: Node) -> tuple[Node, ...]:
+    """What is placed before a node: nothing inside a sum, whose index is not known yet."""
+    return () if isinstance(node, Sum) or _is_band(node) else children(node)
+
+
+def place_at(
+    term: Node,
+    members_of: Mapping[str, int],
+    members: Members,
+    spent: Counter[str] | None = None,
+) -> Node:
+    """A term in which indices stand for certain members, and sums for what they add up.
+
+    Args:
+        term: With indices.
+        members_of: The places of the members by their indices.
+        members: How many there are.
+        spent: Parts that were written out before, of the same formula.
+
+    Raises:
+        ExpressionError: A quantity lies beyond the end, has an index of none, or there are too many
+            parts.
+    """
+    spent = Counter() if spent is None else spent
+
+    def place(node: Node, below: list[Node]) -> Node:
+        _count(node, spent)
+        match node:
+            case Sum():
+                return add_up(node, members_of, members, spent)
+            case Call(function="tridiagonal"):
+                return write_band(node, members)
+            case Component() if isinstance(below[0], Name):
+                return Index(
+                    name=below[0].name, indices=node.indices, start=node.start, end=node.end
+                )
+            case Name():
+                return _place_name(node, members_of, members)
+            case Index(name=name, indices=indices) if name in members.names:
+                return _find_member(node, name, indices, members)
+            case Member():
+                return _place_member(node, members_of, members)
+            case Entry():
+                return _place_entry(node, below, members)
+        return _work_out(rebuild(node, below))
+
+    return fold(term, place, _below)
+
+
+def _count(node: Node, spent: Counter[str], more: int = 1) -> None:
+    """Refuse to write out too much, before it is done."""
+    spent["WRITTEN_PARTS"] += more
+    if spent["WRITTEN_PARTS"] > limits.WRITTEN_PARTS:
+        problem = "written out for all members, the expression has too many parts"
+        raise fault_at(node, problem, str(spent["WRITTEN_PARTS"]), limit="WRITTEN_PARTS")
+
+
+def _place_name(node: Name, members_of: Mapping[str, int], members: Members) -> Node:
+    """A name, or the number that it stands for."""
+    where: dict[str, Any] = {"start": node.start, "end": node.end}
+    if node.name in members.names:
+        raise _without_index(node, members)
+    if node.name in members_of:
+        return Number(Fraction(members.first + members_of[node.name]), **where)
+    if members.number and node.name == members.number:
+        return Number(Fraction(members.count), **where)
+    return node
+
+
+def _place_member(node: Member, members_of: Mapping[str, int], members: Members) -> Node:
+    """A quantity of a member, or an entry of a quantity that all share."""
+    if node.name in members.scalars:
+        problem = f"{node.name!r} has no index"
+        expected = "a variable or parameter that is declared with an index"
+        hint = f'Write {node.name}, or add index = "{members.index}" where it is declared.'
+        raise fault_at(node, problem, node.name, expected, hint)
+    if abs(node.shift) > limits.NEIGHBOURS:
+        problem = f"the neighbour is {abs(node.shift)} members away"
+        raise fault_at(node, problem, str(node.shift), limit="NEIGHBOURS")
+    if node.index in members_of:
+        number = members.first + members_of[node.index]
+    elif node.index and node.index == members.number:
+        number = members.count
     else:
-        places = iter(combinations(range(members.count), 2))
-    terms = [place_at(term, dict(zip(node.indices, at, strict=True)), members) for at in places]
+        return node
+    return _find(node, node.name, (number + node.shift, *node.indices), members)
+
+
+def _place_entry(node: Entry, below: Sequence[Node], members: Members) -> Node:
+    """A quantity whose subscripts are worked out."""
+    numbers = list[int]()
+    for each in below:
+        if not isinstance(each, Number) or each.value.denominator != 1:
+            problem = f"a subscript of {node.name!r} is not a whole number"
+            expected = "indices of the sums around it, whole numbers and their number"
+            raise fault_at(each, problem, node.name, expected)
+        numbers.append(int(each.value))
+    return _find(node, node.name, tuple(numbers), members)
+
+
+def _find(node: Node, name: str, numbers: tuple[int, ...], members: Members) -> Node:
+    """A quantity by its subscripts, of which the first is a member if it has an index."""
+    if name in members.names:
+        return _find_member(node, name, numbers, members)
+    where = {"start": node.start, "end": node.end}
+    if numbers[0] < 1 and not members.first:
+        problem = f"the subscript {numbers[0]} of {name!r} is out of range"
+        hint = f"Components are counted from 1: write {name}[{members.index}+1], or begin with "
+        hint += f"member 1, [index] {members.index} = {{ first = 1 }}."
+        raise fault_at(node, problem, str(numbers[0]), "1 or more", hint)
+    return Index(name=name, indices=numbers, within=node.within, **where)
+
+
+def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Members) -> Node:
+    """A quantity of the member of a number."""
+    at, where = members.place(numbers[0] - members.first), {"start": node.start, "end": node.end}
+    if at is None:
+        problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
+        last = members.first + members.count - 1
+        raise fault_at(node, problem, str(numbers[0]), f"members {members.first} to {last}")
+    own = member_name(name, members.first + at)
+    if numbers[1:]:
+        return Index(name=own, indices=numbers[1:], within=node.within, **where)
+    return Name(own, within=node.within, **where)
+
+
+def _work_out(node: Node) -> Node:
+    """A node, or the number that it is if all below it are numbers."""
+    numbers = [each.value for each in children(node) if isinstance(each, Number)]
+    if not numbers or len(numbers) < len(children(node)):
+        return _as_power(node)
+    value: Fraction | None = None
+    match node:
+        case Negate():
+            value = -numbers[0]
+        case Binary(operator="/"):
+            value = numbers[0] / numbers[1] if numbers[1] else None
+        case Binary(operator=operator):
+            value = _OPERATORS[operator](*numbers)
+        case Call(function=function) if (
+            function in _OF_NUMBERS and len(numbers) > len(function) // 3
+        ):
+            value = _OF_NUMBERS[function](*numbers)
+        case Call(function="pow"):
+            return _work_out(power) if isinstance(power := _as_power(node), Power) else node
+        case Power(exponent=exponent) if numbers[0] or exponent >= 0:
+            value = numbers[0] ** exponent if abs(exponent) <= limits.EXPONENT else None
+    return node if value is None else Number(value, start=node.start, end=node.end)
+
+
+def _as_power(node: Node) -> Node:
+    """A power whose exponent has turned out to be a whole number."""
+    match node:
+        case Call(function="pow", arguments=(base, Number(value=value))):
+            if value.denominator == 1 and abs(value) <= limits.EXPONENT:
+                return Power(base=base, exponent=int(value), start=node.start, end=node.end)
+    return node
+
+
+def add_up(node: Sum, members_of: Mapping[str, int], members: Members, spent: Counter[str]) -> Node:
+    """A sum as what it adds up."""
+    _check_sum(node, members_of, members)
+    term, runs = node.term, [members.run(node.term, index) for index in node.indices]
+    _count(node, spent, prod(map(len, runs)))
+    terms = list[Node]()
+    for places in product(*runs):
+        at = {**members_of, **dict(zip(node.indices, places, strict=True))}
+        if _holds(node, at, members, spent):
+            terms.append(place_at(term, at, members, spent))
     if not terms:  # of the shape that the sum has
-        wrapped = replace(members, periodic=True)
-        nothing = place_at(term, dict.fromkeys(node.indices, 0), wrapped)
+        at = {**members_of, **dict.fromkeys(node.indices, 0)}
+        nothing = place_at(term, at, replace(members, periodic=True), spent)
         zero = Number(Fraction(0), start=node.start, end=node.end)
-        return Binary(operator="*", left=zero, right=nothing, start=node.start, end=node.end)
+        return _work_out(
+            Binary(operator="*", left=zero, right=nothing, start=node.start, end=node.end)
+        )
     return reduce(
-        lambda a, b: Binary(operator="+", left=a, right=b, start=node.start, end=node.end), terms
+        lambda a, b: _work_out(
+            Binary(operator="+", left=a, right=b, start=node.start, end=node.end)
+        ),
+        terms,
     )
+
+
+def _holds(node: Sum, at: Mapping[str, int], members: Members, spent: Counter[str]) -> bool:
+    """Whether the condition of a sum holds for some members."""
+    values = list[Fraction]()
+    for side in node.sides:
+        value = place_at(side, at, members, spent)
+        if not isinstance(value, Number):
+            problem = "the condition of the sum is not one of its indices"
+            expected = "indices, numbers and their number, as i < j or j == i + 1"
+            raise fault_at(side, problem, expected=expected)
+        values.append(value.value)
+    return not node.sign or _SIGNS[node.sign](*values)
 
 
 def write_band(node: Call, members: Members) -> Node:
@@ -153,7 +385,8 @@ def write_band(node: Call, members: Members) -> Node:
         problem = "a ring has no tridiagonal matrix" if members.periodic else "three are needed"
         expected = "tridiagonal(below, diagonal, above) of an open chain"
         raise fault_at(node, problem, str(len(node.arguments)), expected)
-    _check_free(node, members, free=True)
+    for each in node.arguments:
+        _check_free(find_free(each, members), members)
     start, end, rows = node.start, node.end, list[Node]()
     for row in range(members.count):
         entries: list[Node] = []
@@ -168,142 +401,49 @@ def write_band(node: Call, members: Members) -> Node:
     return Call(function="rows", arguments=tuple(rows), start=start, end=end)
 
 
-def place_at(term: Node, members_of: Mapping[str, int], members: Members) -> Node:
-    """A term in which indices stand for certain members."""
-
-    def place(node: Node, below: list[Node]) -> Node:
-        if isinstance(node, Component) and isinstance(below[0], Name):
-            return Index(name=below[0].name, indices=node.indices, start=node.start, end=node.end)
-        if not isinstance(node, Member) or node.index not in members_of:
-            return rebuild(node, below)
-        at = members.place(members_of[node.index] + node.shift)
-        if at is None:
-            problem = f"{node.name}[{node.index}{node.shift:+d}] lies beyond the end of the chain"
-            raise fault_at(node, problem, str(node.shift), "members of the chain")
-        name, where = member_name(node.name, at), {"start": node.start, "end": node.end}
-        if node.indices:
-            return Index(name=name, indices=node.indices, within=node.within, **where)
-        return Name(name, within=node.within, **where)
-
-    return fold(term, place)
-
-
-def _check_member(node: Member, members: Members) -> None:
-    """A quantity with an index has one, and no neighbour is too far."""
-    if node.name not in members.names:
-        problem = f"{node.name!r} has no index"
-        expected = "a variable or parameter that is declared with an index"
-        hint = f'Write {node.name}, or add index = "{members.index}" where it is declared.'
-        raise fault_at(node, problem, node.name, expected, hint)
-    if abs(node.shift) > limits.NEIGHBOURS:
-        problem = f"the neighbour is {abs(node.shift)} members away"
-        raise fault_at(node, problem, str(node.shift), limit="NEIGHBOURS")
-
-
 def _without_index(node: Name | Index, members: Members) -> Exception:
     problem = f"{node.name!r} is one quantity of each member"
     expected = f"{node.name}[{members.index}] inside sum({members.index}, ...)"
-    hint = "The second subscript is a component" if isinstance(node, Index) else ""
-    hint += f": {node.name}[{members.index}, 1]." if hint else ""
-    return fault_at(node, problem, node.name, expected, hint)
+    return fault_at(node, problem, node.name, expected)
 
 
-def _check_sum(node: Sum, members: Members) -> None:
-    """A sum is over the declared index, its pairs know no neighbours, its term has a member."""
-    index, parts = members.index, list(walk(node.term))
-    if node.indices[0] != index:
-        problem, found = f"there is no index {node.indices[0]!r}", node.indices[0]
-        raise fault_at(node, problem, found, f"the declared index {index!r}")
+def _check_sum(node: Sum, members_of: Mapping[str, int], members: Members) -> None:
+    """The indices of a sum have free names and are used, the declared one around the others."""
+    index, first = members.index, node.indices[0]
+    if index not in members_of and first != index:
+        problem = f"there is no index {first!r}"
+        raise fault_at(node, problem, first, f"the declared index {index!r}")
     if len(set(node.indices)) < len(node.indices):
         problem = "the two indices of a pair have one name"
         raise fault_at(node, problem, index, f"sum({index}, j, {index} < j, ...)")
-    inside = [part for part in parts if isinstance(part, Member)]
-    for part in inside:
-        if part.index not in node.indices:
-            problem = f"the index {part.index!r} is not that of a sum around it"
-            raise fault_at(part, problem, part.index, f"one of {', '.join(node.indices)}")
-        if part.shift and len(node.indices) > 1:
-            problem = "a sum over pairs names a neighbour"
-            expected = f"{part.name}[{part.index}] without a shift"
-            hint = f"Write {part.name}[{part.index}]."
-            raise fault_at(part, problem, str(part.shift), expected, hint)
-    missing = set(node.indices) - {part.index for part in inside}
-    if missing:
-        problem = f"the term of the sum does not name a member {min(missing)!r}"
-        raise fault_at(node, problem, min(missing), "a quantity of each member in every term")
-    if not members.periodic and len(node.indices) == 1 and not members.run(node.term):
+    for each in node.indices:
+        if each in members.taken:
+            problem = f"the name of the index {each!r} is taken"
+            hint = "Count with another letter, as sum(k, ...)."
+            raise fault_at(node, problem, each, "a name that nothing else has", hint)
+    known = {*members_of, *node.indices}
+    for name, part in find_free(node.term, members).items():
+        if name not in known:
+            problem = f"the index {name!r} is not that of a sum around it"
+            raise fault_at(part, problem, name, f"one of {', '.join(node.indices)}")
+    _check_used(node, members)
+    alone = len(node.indices) == 1 and not node.sign
+    if not members.periodic and alone and not members.run(node.term, first):
         problem = f"an open chain of {members.count} has no member with these neighbours"
-        expected = f"at least {sum(reach(node.term)) + 1} members"
+        expected = f"at least {sum(reach(node.term, first, members.names)) + 1} members"
         raise fault_at(node, problem, str(members.count), expected, "Choose a larger size.")
 
 
-def split_sums(tree: Node) -> list[tuple[Sum, Node]]:
-    """Each sum of a tree that is linear in its sums, with the tree that it alone stands in.
-
-    Raises:
-        ExpressionError: The tree is not a sum of sums with constant factors.
-    """
-    sums = [node for node in walk(tree) if isinstance(node, Sum)]
-    for node in walk(tree):
-        _check_linear(node)
-    return [(each, _keep(tree, each)) for each in sums]
-
-
-def without_sums(tree: Node) -> Node:
-    """A tree with zeros in the place of its sums."""
-
-    def drop(node: Node, below: list[Node]) -> Node:
-        return Number(Fraction(0)) if isinstance(node, Sum) else rebuild(node, below)
-
-    return fold(tree, drop)
-
-
-def has_sum(tree: Node) -> bool:
-    """Whether a tree holds a sum over members."""
-    return any(isinstance(node, Sum) for node in walk(tree))
-
-
-def _check_linear(node: Node) -> None:
-    """A node does nothing to a sum but multiply it by a constant, or add to it."""
-    match node:
-        case Sum() | Negate() | Member():
-            return
-        case Binary(operator="*", left=left, right=right):
-            fits = not (has_sum(left) and has_sum(right))
-        case Binary(operator="/", right=right):
-            fits = not has_sum(right)
-        case Binary(left=left, right=right):
-            fits = has_sum(left) == has_sum(right)
-        case _:
-            fits = not has_sum(node)
-    if not fits:
-        problem = "a sum over members stands in an expression that is not linear in it"
-        expected = "sums of sums over members, each with a constant factor"
-        hint = "Put what stands around the sum into its term, or leave it out."
-        raise fault_at(node, problem, expected=expected, hint=hint)
-
-
-def _keep(tree: Node, only: Sum) -> Node:
-    """A linear tree with one of its sums, the others taken out."""
-    if tree is only or not has_sum(tree):
-        return tree
-    match tree:
-        case Negate(operand=operand):
-            return replace(tree, operand=_keep(operand, only))
-        case Binary(operator="+" | "-", left=left, right=right):
-            if any(node is only for node in walk(left)):
-                return _keep(left, only)
-            kept = _keep(right, only)
-            return kept if tree.operator == "+" else Negate(kept, start=tree.start, end=tree.end)
-        case Binary(left=left, right=right):
-            return replace(tree, left=_keep(left, only), right=_keep(right, only))
-    raise AssertionError(tree)
-
-
-def put_term(tree: Node, only: Sum) -> Node:
-    """The tree of one sum with the term of the sum in its place."""
-
-    def put(node: Node, below: list[Node]) -> Node:
-        return below[0] if isinstance(node, Sum) else rebuild(node, below)
-
-    return fold(tree, put)
+def _check_used(node: Sum, members: Members) -> None:
+    """Each index of a sum is named in its term, or in its condition."""
+    parts = [part for each in children(node) for part in walk(each)]
+    used = {part.index for part in parts if isinstance(part, Member)}
+    used |= {part.name for part in parts if isinstance(part, Name)}
+    missing = {*node.indices} - used
+    if missing:
+        problem = f"the term of the sum does not name a member {min(missing)!r}"
+        plain = [p for p in parts if isinstance(p, Index) and p.name in members.names]
+        name = plain[0].name if plain else ""
+        hint = f"The second subscript is a component: {name}[{members.index}, 1]." if plain else ""
+        expected = "a quantity of each member in every term"
+        raise fault_at(node, problem, min(missing), expected, hint)

@@ -8,6 +8,7 @@ Read next: `coadjoint.spec.sections.constraints`.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 from coadjoint.errors import CoadjointError
@@ -33,7 +34,7 @@ def read_relation(
     Raises:
         SpecError: No sign of those allowed, or two; sides of different shapes, or a fault in one.
     """
-    matches = list(_SIGN.finditer(text))
+    matches = list(_find_signs(text)) if source.members else list(_SIGN.finditer(text))
     if len(matches) != 1 or matches[0].group() not in signs:
         raise _no_relation(source, key, text, signs, matches)
     sign = matches[0]
@@ -54,6 +55,27 @@ def read_relation(
             key, problem, text, expected, at=source.within(key, sign.start(), sign.end())
         )
     return left, sign.group(), right
+
+
+def _find_signs(text: str) -> Iterator[re.Match[str]]:
+    """Signs that stand in no parentheses, as those in the condition of a sum do."""
+    for each in _SIGN.finditer(text):
+        before = text[: each.start()]
+        if before.count("(") <= before.count(")"):
+            yield each
+
+
+def split_sides(text: str) -> list[str]:
+    """What stands around the signs of a relation.
+
+    >>> split_sides("v[i] == sum(j, j <= i, q[j])")
+    ['v[i] ', ' sum(j, j <= i, q[j])']
+    """
+    sides, at = list[str](), 0
+    for sign in _find_signs(text):
+        sides.append(text[at : sign.start()])
+        at = sign.end()
+    return [*sides, text[at:]]
 
 
 def _no_relation(

@@ -20,11 +20,13 @@ _TOKEN = re.compile(
     r"(?P<space>[ \t\n]+)"
     r"|(?P<number>\d+(?:\.\d+)?)"
     r"|(?P<name>[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*)"
-    r"|(?P<operator>\*\*|[-+*/^(),<\[\]])",
+    r"|(?P<operator>\*\*|[<>=!]=|[-+*/^(),<>\[\]])",
     re.ASCII,
 )
 _SCIENTIFIC = re.compile(r"\d+(?:\.\d+)?[eE][-+]?\d{1,3}(?![\w.])", re.ASCII)
 
+#: What may stand between the two sides of the condition of a sum.
+RELATIONS = ("<", "<=", ">", ">=", "==", "!=")
 #: What people mean by characters that the language does not have.
 _MEANT = {
     "=": "Write only the right-hand side.",

@@ -74,11 +74,28 @@ class Member(Node):
 
 
 @dataclass(frozen=True)
+class Entry(Node):
+    """A quantity whose subscripts are worked out: ``M[i, j]``, ``theta[n - i]``."""
+
+    name: str
+    subscripts: tuple[Node, ...]
+
+
+@dataclass(frozen=True)
 class Sum(Node):
-    """A sum over members, ``sum(i, term)``, or over their pairs, ``sum(i, j, i < j, term)``."""
+    """A sum over members, ``sum(i, term)``, or over pairs of them, ``sum(i, j, i < j, term)``.
+
+    Attributes:
+        indices: Names that count through all members, each on its own.
+        term: What is added up.
+        sides: The two sides of the condition on the indices, if there is one.
+        sign: What stands between them: ``<``, ``<=``, ``>``, ``>=``, ``==`` or ``!=``.
+    """
 
     indices: tuple[str, ...]
     term: Node
+    sides: tuple[Node, ...] = ()
+    sign: str = ""
 
 
 @dataclass(frozen=True)
@@ -124,8 +141,10 @@ def children(node: Node) -> tuple[Node, ...]:
             return (base,)
         case Call(arguments=arguments):
             return arguments
-        case Sum(term=term):
-            return (term,)
+        case Sum(term=term, sides=sides):
+            return (*sides, term)
+        case Entry(subscripts=subscripts):
+            return subscripts
     return ()
 
 
@@ -141,7 +160,9 @@ def rebuild(node: Node, below: Sequence[Node]) -> Node:
         case Call():
             return replace(node, arguments=tuple(below))
         case Sum():
-            return replace(node, term=below[0])
+            return replace(node, term=below[-1], sides=tuple(below[:-1]))
+        case Entry():
+            return replace(node, subscripts=tuple(below))
     return node
 
 
@@ -154,8 +175,13 @@ def walk(node: Node) -> Iterator[Node]:
         pending.extend(reversed(children(node)))
 
 
-def walk_up(node: Node) -> Iterator[Node]:
-    """Every node below ``node`` and itself, children first and from left to right."""
+def walk_up(node: Node, below: Callable[[Node], Sequence[Node]] = children) -> Iterator[Node]:
+    """Every node below ``node`` and itself, children first and from left to right.
+
+    Args:
+        node: The root.
+        below: The nodes directly below one; none where a walk is to stop.
+    """
     pending = [(node, False)]
     while pending:
         node, seen = pending.pop()
@@ -163,21 +189,29 @@ def walk_up(node: Node) -> Iterator[Node]:
             yield node
         else:
             pending.append((node, True))
-            pending.extend((child, False) for child in reversed(children(node)))
+            pending.extend((child, False) for child in reversed(below(node)))
 
 
-def evaluate_nodes(tree: Node, value_of: Callable[[Node, list[Value]], Value]) -> dict[int, Value]:
+def evaluate_nodes(
+    tree: Node,
+    value_of: Callable[[Node, list[Value]], Value],
+    below: Callable[[Node], Sequence[Node]] = children,
+) -> dict[int, Value]:
     """The value of every node of a tree, by ``id``, from those of its children."""
     values: dict[int, Value] = {}
-    for node in walk_up(tree):
-        values[id(node)] = value_of(node, [values[id(child)] for child in children(node)])
+    for node in walk_up(tree, below):
+        values[id(node)] = value_of(node, [values[id(child)] for child in below(node)])
     return values
 
 
-def fold(tree: Node, value_of: Callable[[Node, list[Value]], Value]) -> Value:
+def fold(
+    tree: Node,
+    value_of: Callable[[Node, list[Value]], Value],
+    below: Callable[[Node], Sequence[Node]] = children,
+) -> Value:
     """The value of a tree, where that of each node follows from those of its children.
 
     >>> fold(Negate(Number(Fraction(2))), lambda node, below: 1 + sum(below))
     2
     """
-    return evaluate_nodes(tree, value_of)[id(tree)]
+    return evaluate_nodes(tree, value_of, below)[id(tree)]

@@ -15,6 +15,7 @@ from coadjoint.families import Index
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.reading import Reading, Table
+from coadjoint.spec.core.values import NAME_PATTERN
 
 
 class IndexPart(Part):
@@ -29,6 +30,12 @@ class IndexPart(Part):
         False,
         description="whether the last member is followed by the first; an open chain, the default, "
         "has two ends",
+    )
+    first: Annotated[int, Field(ge=0, le=1)] = Field(
+        0, description="the number of the first member in formulas: 0, or 1 as in most books"
+    )
+    count: Annotated[str, Field(pattern=NAME_PATTERN)] | None = Field(
+        None, description="what formulas call the number of members, as 'n'"
     )
 
 
@@ -47,7 +54,14 @@ def read_indices(reading: Reading, parts: Mapping[str, IndexPart]) -> tuple[Inde
             "one index",
             f"Remove {second}; a sum over pairs has a second index without a declaration.",
         )
-    return tuple(Index(name, part.size, part.periodic) for name, part in parts.items())
+    return tuple(make_index(name, part, part.size) for name, part in parts.items())
+
+
+def make_index(name: str, part: IndexPart, size: int | None) -> Index:
+    """An index of so many members."""
+    return Index(
+        name=name, size=size, periodic=part.periodic, first=part.first, count=part.count or ""
+    )
 
 
 INDEX = Table[tuple[Index, ...]](

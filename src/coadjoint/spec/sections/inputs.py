@@ -22,6 +22,9 @@ from coadjoint.spec.core.source import Source
 class InputPart(ArgumentPart):
     """What drives the system from outside, as a control or a measured signal."""
 
+    index: str | None = Field(
+        None, description="the index of [index] that counts the members that have it"
+    )
     rate: str | None = Field(
         None, description="the input that is its time derivative, where the motion needs this"
     )

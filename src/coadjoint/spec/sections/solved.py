@@ -124,7 +124,7 @@ def _parse(text: str, file: Any) -> Node | None:
     """A tree that may call the definitions with arguments; None where it cannot be read yet."""
     called = [key.split("(")[0].strip() for key in file.definitions if "(" in key]
     try:
-        return read_expression(text, called)
+        return read_expression(text, called, indexed=True)
     except ExpressionError:
         return None
 

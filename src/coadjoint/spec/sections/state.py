@@ -36,8 +36,8 @@ class Variable(Components):
         independent: Under constraints, whether a velocity is part of the state; None without any.
         turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
         given: The components that constraints give one by one; the others are state by themselves.
-        follows: Whether a Lagrangian of first order gives it in the state: a velocity, or a
-            coordinate or momentum that is declared to follow.
+        follows: Whether a singular Lagrangian gives it in the state, or those of its components
+            that are given: a velocity, or what is declared to follow.
     """
 
     name: str
@@ -72,7 +72,8 @@ class Variable(Components):
                 block=self.block[n : n + 1],
                 unit=units[n][0] if units else self.unit,
                 default=self.default and self.default[n : n + 1],
-                independent=name not in self.given,
+                independent=None if self.independent is None else name not in self.given,
+                follows=self.follows and name in self.given,
                 given=(),
             )
             for n, name in enumerate(self.components)

@@ -56,12 +56,12 @@ _OWN_KEYS = {
     "of": "velocities and momenta of coordinates",
     "form": "velocities, momenta, advected quantities and coordinates",
     "default": "quantities of the state",
-    "follows": "coordinates and momenta",
+    "follows": "coordinates, momenta and advected quantities",
 }
 _KEYS_OF = {
     "velocity": ("block", "of", "form", "default"),
     "momentum": ("block", "of", "form", "default", "follows"),
-    "advected": ("representation", "block", "form", "default"),
+    "advected": ("representation", "block", "form", "default", "follows"),
     "coordinate": ("shape", "form", "default", "follows"),
     "attitude": ("block", "default"),
     "quaternion": ("block", "default"),
@@ -114,10 +114,11 @@ class VariablePart(Part):
         description="the square matrix that it is in formulas: its components are the entries "
         "above the diagonal, those with the diagonal, or all, row by row",
     )
-    follows: bool | None = Field(
+    follows: bool | list[str] | None = Field(
         None,
-        description="true for a coordinate or momentum that the constraints of a singular "
-        "Lagrangian give in terms of the others, on the route first-order",
+        description="true for a coordinate, momentum or advected quantity that the constraints of "
+        "a singular Lagrangian give in terms of the others, on the route first-order; or a list of "
+        "those of its components that they give",
     )
     default: Numbers | None = Field(
         None,
@@ -160,7 +161,12 @@ def _read_variable(
         problem = f"{name!r} follows from constraints that only the route first-order finds"
         expected = 'routes = ["first-order"], or a coordinate of the state'
         raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
-    if part.default is not None and (follows or not _is_state(name, part, parts, solved)):
+    if part.follows and reading.file.poisson is not None:
+        problem = f"{name!r} follows, and the bracket of [poisson] is one of all coordinates"
+        expected = "a state of all of them, or no [poisson]"
+        raise source.fault((*key, "follows"), problem, "true", expected, "Remove follows.")
+    whole = follows and not isinstance(part.follows, list)
+    if part.default is not None and (whole or not _is_state(name, part, parts, solved)):
         raise _alien_key(source, (*key, "default"), part)
     turning = part.role if part.role in TURNING else ""
     if turning and algebra is not None:
@@ -224,7 +230,31 @@ def _read_variable(
         turning=turning,
         follows=follows,
     )
+    if isinstance(part.follows, list):
+        return _let_follow(reading, variable, part.follows)
     return variable if part.role != "velocity" else _bind(reading, variable, solved)
+
+
+def _let_follow(reading: Reading, variable: Variable, names: Sequence[str]) -> Variable:
+    """A variable of which constraints give some components.
+
+    Raises:
+        SpecError: It has no such component, or a default where it follows; or all follow.
+    """
+    key: KeyPath = ("variables", variable.name, "follows")
+    for name in names:
+        if name not in variable.components or not variable.shape:
+            has = variable.shape and f"the components {list_names(variable.components)}"
+            problem = f"{variable.name!r} has no component {name!a}"
+            expected = f"some of {list_names(variable.components)}" if has else "true, of a number"
+            hint = did_you_mean(name, variable.components) if has else "Write follows = true."
+            raise reading.fault(key, problem, name, expected, hint)
+    if {*names} == {*variable.components}:
+        problem = f"all components of {variable.name!r} follow"
+        raise reading.fault(key, problem, names[0], "true", "Write follows = true.")
+    given = tuple(x for x in variable.components if x in names)
+    _check_default(reading, variable, dict.fromkeys(given, "a constraint of the Lagrangian"))
+    return replace(variable, given=given)
 
 
 def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None) -> Variable:
@@ -236,17 +266,22 @@ def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None
     if solved is None:
         return variable
     given = tuple(x for x in variable.components if x in solved and variable.shape)
+    _check_default(reading, variable, {x: f"the constraint {solved[x][0]}" for x in given})
+    free = variable.name not in solved and given != variable.components
+    return replace(variable, independent=free, given=given)
+
+
+def _check_default(reading: Reading, variable: Variable, given: Mapping[str, str]) -> None:
+    """No component that follows has a default but 0; what gives it is known by its name."""
     for name, value in zip(variable.components, variable.default or (), strict=False):
         if name in given and value:
             raise reading.fault(
                 ("variables", variable.name, "default"),
-                f"{name} has the default {value}, and the constraint {solved[name][0]} gives it",
+                f"{name} has the default {value}, and {given[name]} gives it",
                 str(value),
                 f"0 in the place of {name}, which is not part of the state",
                 f"Write 0 in the place of {name}.",
             )
-    free = variable.name not in solved and given != variable.components
-    return replace(variable, independent=free, given=given)
 
 
 def _check_rolling(reading: Reading, key: KeyPath) -> None:
