@@ -9,7 +9,7 @@ import pytest
 
 from coadjoint.crosscheck.recurrences import run_recurrences
 from coadjoint.derive import derive
-from coadjoint.derive.mechanics import legendre, newton
+from coadjoint.derive.mechanics import iteration, legendre
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError, DerivationError, LimitError
 from coadjoint.lower.check import check_inverse
@@ -76,7 +76,7 @@ def test_a_quartic_body_is_proved_on_its_routes_and_moves_as_it_should():
     certificate = prove_claims(declared)
     assert certificate.holds, str(certificate)
     texts = [claim.statement for claim in certificate.claims]
-    assert any(f"Newton's iteration of {newton.STEPS} steps from rest" in each for each in texts)
+    assert any(f"Newton's iteration of {iteration.STEPS} steps from rest" in each for each in texts)
     rhs = lower(derive(declared))["rhs"]
     for size in (1e-9, 0.5, 40.0):
         omega = size * np.array([0.5, -0.25, 0.75])
@@ -118,8 +118,8 @@ def test_a_momentum_that_no_velocity_of_the_branch_has_is_not_computed(p):
 
 def test_an_iteration_that_has_not_come_to_its_end_is_no_number(monkeypatch):
     """With the same tolerance and too few steps; with enough of them it is one."""
-    monkeypatch.setattr(newton, "STEPS", 3)
-    monkeypatch.setattr(newton, "APPROACH", 0)
+    monkeypatch.setattr(iteration, "STEPS", 3)
+    monkeypatch.setattr(iteration, "APPROACH", 0)
     rhs = lower(derive(line(QUARTIC)))["rhs"]
     assert math.isnan(compute(rhs, 0.5, 10.0, 1.0, 1.0)[0])
     monkeypatch.undo()

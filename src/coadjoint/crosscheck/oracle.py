@@ -20,7 +20,7 @@ from typing import Any, Final, Protocol, TypeVar
 
 from mpmath import MPContext
 
-from coadjoint.derive.mechanics.newton import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, jump_of, slopes_of
 
 Value = TypeVar("Value")

@@ -26,7 +26,7 @@ from coadjoint.crosscheck.oracle import (
     is_inside,
     to_digits,
 )
-from coadjoint.derive.mechanics.newton import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE
 
 #: Evaluates rates in any arithmetic: values by name, numbers, functions.
 Rates = Callable[

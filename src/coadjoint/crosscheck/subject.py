@@ -20,7 +20,7 @@ from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
 from coadjoint.crosscheck.replay import Replayed
-from coadjoint.derive.mechanics.newton import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.derive.reference import Reference as Derived
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError

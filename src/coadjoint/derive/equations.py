@@ -20,7 +20,7 @@ from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
-from coadjoint.derive.mechanics.newton import Newton
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.derive.mechanics.projection import nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.mechanics.turning import turned_back, turning_residuals

@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
-from coadjoint.derive.mechanics.newton import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.derive.sloped import Sloped, add_slopes, scale
 from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.exact import Element

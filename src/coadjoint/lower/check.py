@@ -14,7 +14,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import rows_of
-from coadjoint.derive.mechanics.newton import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element

@@ -1,7 +1,7 @@
 """Guesses: Newton's iterations as statements, before the definitions that name what they find.
 
 Comes in: the graph of a Program in the making. Goes out: definitions of the guesses, and of what
-each step towards them gives. They are the operations of `coadjoint.derive.mechanics.newton`.
+each step towards them gives. They are the operations of `coadjoint.derive.mechanics.iteration`.
 Read next: `coadjoint.lower.lowering`.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from coadjoint.derive import Equations
-from coadjoint.derive.mechanics.newton import Newton, iterate_name, rate_name
+from coadjoint.derive.mechanics.iteration import Newton, iterate_name, rate_name
 from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel, solver_names
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import Literal, TypeVar
 
-from coadjoint.derive.mechanics.newton import is_guess
+from coadjoint.derive.mechanics.iteration import is_guess
 from coadjoint.elementary import ELEMENTARY
 
 Value = TypeVar("Value")

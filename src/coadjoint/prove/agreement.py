@@ -13,7 +13,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.charts import declared_charts
-from coadjoint.derive.mechanics.newton import STEPS
+from coadjoint.derive.mechanics.iteration import STEPS
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.charts import ChartMap, reach

@@ -19,7 +19,7 @@ from coadjoint.derive.mechanics.configuration import (
     coupled_blocks,
     mechanics,
 )
-from coadjoint.derive.mechanics.newton import Newton
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field

@@ -14,7 +14,7 @@ from functools import reduce
 from itertools import islice, pairwise
 from typing import Any
 
-from coadjoint.derive.mechanics.newton import is_guess
+from coadjoint.derive.mechanics.iteration import is_guess
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.mechanics.decided import Decided
-from coadjoint.derive.mechanics.newton import Newton
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.exact import Element, Field
 
 #: A name and its value, in terms of state, parameters and names defined before.
