@@ -5,7 +5,8 @@ minus the other, then those of a contact of surfaces, then, for constrained moti
 pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
 accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A
 M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
-solution where the arguments of its roots are positive. It is one place for every route, since
+solution where the arguments of its roots are positive; where an iteration finds velocities, it
+needs positive pivots of the Hessian. It is one place for every route, since
 conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
@@ -115,7 +116,7 @@ def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
         for place, name in zip(solve.block, solve.names, strict=True):
             if solve.newton is not None:
                 pivot = field[pivot_name(place)]
-                pairs.append((Bound(name, "transform", True, _inputs(equations, pivot)), pivot))
+                pairs.append((Bound(name, "iteration", True, _inputs(equations, pivot)), pivot))
     for name, value in equations.exact.definitions:
         if name not in velocities or name not in bending or name in equations.kept:
             continue
@@ -156,4 +157,7 @@ def _inputs(equations: Equations, element: Element) -> tuple[str, ...]:
     for name, value in reversed(equations.exact.definitions):
         if name in reached:
             reached |= field.reach(value)
+    for newton in equations.iterations:
+        if reached.intersection(newton.names):
+            reached = reached.union(*map(field.reach, newton.elements))
     return tuple(name for name in names if name in reached)

@@ -4,7 +4,7 @@ Comes in: l as an element, a function of the velocities. Goes out: the momenta d
 velocities in terms of the momenta, and the energy. Where l is quadratic in the velocities, or a
 function of one quadratic form (`coadjoint.derive.mechanics.radial`), the inverse is written out, of
 up to `LARGEST_BLOCK` coupled velocities. More of them are solved for in the kernel, and so are
-those of any other l, by `coadjoint.derive.mechanics.iteration`; they keep their names everywhere else.
+those of any other l, by `coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
