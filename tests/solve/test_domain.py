@@ -44,13 +44,13 @@ def test_a_momentum_that_the_iteration_does_not_reach_is_refused_before_any_work
     assert bound == Bound("v", "iteration", strict=True, inputs=("p", "a"))
     rows = folded.domain(np.array([[0.0, 0.0], [0.375, 1.0]]), target="numpy")
     assert rows[0].tolist() == pytest.approx([0.25, np.nan], rel=1e-14, nan_ok=True)
-    with pytest.raises(KernelArgumentError, match=r"finds no v of these momenta.* is nan; .*p = 1"):
+    said = r"finds no v of these momenta.*: the pivot of v in d2l/dxi2 is nan; .*p = 1"
+    with pytest.raises(KernelArgumentError, match=said):
         simulate(folded, [0, 1], 1)
-    assert "pivot of v in d2l/dxi2" in simulate(folded, [-1, 0.375], 5).message
 
 
 def test_a_motion_whose_velocity_an_iteration_finds_keeps_its_energy():
-    """(3 v^2 + 1) v' = -q from q = 0, v = 2 on: 3 v^4/4 + v^2/2 + q^2/2 is 14, and q ends at rest."""
+    """(3 v^2 + 1) v' = -q from q = 0, v = 2 on: 3 v^4/4 + v^2/2 + q^2/2 stays 14."""
     quartic = built(LINE)
     for method in ("taylor", "dop853"):
         run = simulate(quartic, [0, 10], 3, method=method)
