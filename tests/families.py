@@ -70,6 +70,85 @@ Y = "sum(i, c[i]*y[i])"
 [claims]
 conserved = ["energy"]
 """
+DRAG = """
+title = "Particles that repel each other in a fluid"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+c = { index = "i", default = 1 }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, j, i < j, 1/(q[i] - q[j])^2)"
+[forces]
+p = "-c[i]*p[i]^3"
+[observables]
+P = "sum(i, p[i])"
+"""
+TOPS = """
+title = "Tops in a row"
+routes = ["lie-poisson"]
+[index]
+i = { size = 3 }
+[algebra]
+name = "so(3)"
+[variables]
+R = { role = "attitude", index = "i" }
+Pi = { role = "momentum", index = "i", default = [0, "0.3", 1] }
+[parameters]
+w = { index = "i", default = 1 }
+[hamiltonian]
+h = """
+TOPS += (
+    '"sum(i, Pi[i, 1]^2/2 + Pi[i, 2]^2/3 + Pi[i, 3]^2/4 - w[i]*R[i, 3, 3]) '
+    '- sum(i, trace(transpose(R[i])*R[i+1]))"'
+)
+TOPS += """
+[observables]
+J = "sum(i, R[i, 3, 1]*Pi[i, 1] + R[i, 3, 2]*Pi[i, 2] + R[i, 3, 3]*Pi[i, 3])"
+[claims]
+casimirs = ["det(R[i])"]
+conserved = ["energy", "J"]
+"""
+
+
+def write_drag(n):
+    """So many particles in a fluid."""
+    terms = [f"p_{k}^2/2" for k in range(n)]
+    terms += [f"1/(q_{a} - q_{b})^2" for a, b in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "D"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"c_{k} = {{ default = 1 }}" for k in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"\n[forces]',
+            *(f'p_{k} = "-c_{k}*p_{k}^3"' for k in range(n)),
+        ]
+    )
+
+
+def write_tops(n):
+    """The row with n tops."""
+    alone = [f"Pi_{k}[1]^2/2 + Pi_{k}[2]^2/3 + Pi_{k}[3]^2/4 - w_{k}*R_{k}[3, 3]" for k in range(n)]
+    bonds = [f" - trace(transpose(R_{k})*R_{k + 1})" for k in range(n - 1)]
+    blocks = [f'block = "rotation_{k + 1}"' for k in range(n)]
+    parts = ", ".join(['"so(3)"'] * n)
+    return "\n".join(
+        [
+            f'title = "T"\nroutes = ["lie-poisson"]\n[algebra]\ndirect_sum = [{parts}]',
+            "[variables]",
+            *(f'R_{k} = {{ role = "attitude", {blocks[k]} }}' for k in range(n)),
+            *(f'Pi_{k} = {{ role = "momentum", {blocks[k]} }}' for k in range(n)),
+            "[parameters]",
+            *(f"w_{k} = {{ default = 1 }}" for k in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(alone)}{"".join(bonds)}"',
+        ]
+    )
+
 
 #: R. Camassa and D. D. Holm, Physical Review Letters 71 (1993) 1661.
 PEAKONS = """
@@ -87,6 +166,26 @@ P = "sum(i, p[i])"
 [claims]
 conserved = ["energy", "P"]
 """
+BEADS = """
+title = "Beads with springs between neighbours, of which all repel each other"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+c = { index = "i", default = 1 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2) + sum(i, k[i]*(q[i+1] - q[i])^2/2)
+    + sum(i, j, i < j, c[i]*c[j]/(1 + (q[i] - q[j])^2))'''
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+NECKLACE = BEADS.replace("size = 6", "size = 6, periodic = true")
 
 
 def write_ring(n):
@@ -126,6 +225,28 @@ def write_chain(n):
             f'[hamiltonian]\nh = "{" + ".join(terms)}"',
         ]
     )
+
+
+def write_beads(n, *, periodic=False):
+    """So many beads in a row, or in a ring."""
+    terms = [f"p_{i}^2/2" for i in range(n)]
+    terms += [f"k_{i}*(q_{(i + 1) % n} - q_{i})^2/2" for i in range(n if periodic else n - 1)]
+    terms += [f"c_{i}*c_{j}/(1 + (q_{i} - q_{j})^2)" for i, j in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "B"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{i} = {{ role = "coordinate" }}' for i in range(n)),
+            *(f'p_{i} = {{ role = "momentum", of = "q_{i}" }}' for i in range(n)),
+            "[parameters]",
+            *(f"{c}_{i} = {{ default = 1 }}" for c in "kc" for i in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def write_necklace(n):
+    """So many beads in a ring."""
+    return write_beads(n, periodic=True)
 
 
 def write_vortices(n):

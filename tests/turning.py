@@ -53,3 +53,35 @@ l = "dot(Omega, diag(I)*Omega)/2 + m*dot(v, v)/2 - k*dot(s, s)/2"
 [claims]
 conserved = ["energy", "R*Pi + cross(x, R*P)"]
 """
+#: A body that does not turn about the vertical: Veselova's. Its constraint depends on its attitude.
+LEVEL = """
+title = "A body that does not turn about the vertical"
+routes = ["nonholonomic", "hamel", "nonholonomic-hamilton-pontryagin"]
+[algebra]
+name = "so(3)"
+[variables]
+R = { role = "attitude" }
+Omega = { role = "velocity", default = [1, 2, 0] }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+[lagrangian]
+l = "dot(Omega, diag(I)*Omega)/2"
+[constraints]
+level = "dot(transpose(R)*vector(0, 0, 1), Omega) == 0"
+[claims]
+conserved = ["energy"]
+"""
+#: A ball whose attitude is the state, turned about its third axis at random.
+SHAKEN = """
+title = "A ball by its attitude, turned at random"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+R = { role = "attitude" }
+Pi = { role = "momentum", default = [1, 2, 3] }
+[hamiltonian]
+h = "dot(Pi, Pi)/2"
+[noise]
+dW1 = "0.5*Pi[3]"
+"""

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from os import PathLike, fspath
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.budget import allowed_seconds
@@ -51,34 +52,40 @@ def derive_bounded(
     path: str | PathLike[str],
     route: str | None = None,
     *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
     seconds: float | None = None,
     memory: int = WORKER_BYTES,
 ) -> dict[str, Any]:
     """The derivation of a spec, step by step, made in a bounded child.
 
-    It follows one of the routes, by default the first; other arguments and errors are those of
-    `read_bounded`.
+    It follows one of the routes, by default the first; ``sizes`` says how many members an index
+    counts. Other arguments and errors are those of `read_bounded`.
 
     Returns:
         The fields of a `coadjoint.derive.document.Document`, for
         `coadjoint.render.document.render_document`.
     """
-    argument = {"path": fspath(path), "route": route}
+    argument = {"path": fspath(path), "route": route, "sizes": dict(sizes)}
     return _run("coadjoint.bounded:document_record", argument, seconds, memory)
 
 
 def prove_bounded(
-    path: str | PathLike[str], *, seconds: float | None = None, memory: int = WORKER_BYTES
+    path: str | PathLike[str],
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
 ) -> dict[str, Any]:
     """The certificate of a spec, made in a bounded child; what is refuted raises nothing.
 
-    Arguments and errors are those of `read_bounded`.
+    Arguments and errors are those of `derive_bounded`.
 
     Returns:
         What ``coadjoint prove --json`` prints: ``system``, ``holds``, and ``claims`` with
         statement, verdict and method of each.
     """
-    return _run("coadjoint.bounded:certificate_record", {"path": fspath(path)}, seconds, memory)
+    argument = {"path": fspath(path), "sizes": dict(sizes)}
+    return _run("coadjoint.bounded:certificate_record", argument, seconds, memory)
 
 
 def _run(
@@ -162,25 +169,26 @@ def describe_declared(spec: Spec) -> dict[str, Any]:
     }
 
 
-def document_record(argument: Mapping[str, str | None]) -> dict[str, Any]:
+def document_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """A derivation as plain JSON values; runs in a bounded child."""
     from coadjoint.derive import derive
     from coadjoint.derive.document import document
     from coadjoint.spec import read_spec
 
     report_progress("derive", 0, 1)
-    equations = derive(read_spec(Path(str(argument["path"]))), argument["route"])
+    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
+    equations = derive(spec, argument["route"])
     return asdict(document(equations))
 
 
-def certificate_record(argument: Mapping[str, str]) -> dict[str, Any]:
+def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """The certificate of a spec as JSON values, times included; runs in a bounded child."""
     from coadjoint.prove import prove
     from coadjoint.prove.certificate import failure_text
     from coadjoint.spec import read_spec
 
     report_progress("prove", 0, 1)
-    certificate = prove(read_spec(Path(argument["path"])))
+    certificate = prove(read_spec(Path(argument["path"]), argument.get("sizes", {})))
     entries = {
         name: [entry.as_record() | {"seconds": entry.seconds} for entry in group]
         for name, group in (("claims", certificate.claims), ("findings", certificate.findings))

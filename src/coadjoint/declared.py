@@ -98,6 +98,7 @@ class KernelFunction:
         doc: What a reader of a System is told beyond that.
         constrained: The summary of a system with constraints, where it is another one.
         turning: The summary of a system whose attitudes are moved back, where it is another one.
+        turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
         below: What follows the rows of the state in its first argument: what is reconstructed, or
             a vector with a row for each of them.
@@ -110,6 +111,7 @@ class KernelFunction:
     doc: str = ""
     constrained: str = ""
     turning: str = ""
+    turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
     below: Literal["", "reconstructed", "vector"] = ""
     looped: Literal["", "only", "never"] = ""
@@ -137,6 +139,8 @@ class KernelContext:
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
         turning: Names of the attitudes that the projection moves back to rotations.
+        written: The index of members that are all written out, and their number; else None.
+        is_bound: Whether there are constraints.
     """
 
     name: str
@@ -154,4 +158,6 @@ class KernelContext:
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"
+    written: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()
+    is_bound: bool = False

@@ -98,6 +98,8 @@ class Family:
         totals: The energy and the observables.
         small: The least N for which ``rates`` and ``ends`` hold: twice the range of an open chain,
             1 for a ring, in which members may be each other's neighbours more than once.
+        turned: The state of member i with its attitudes moved back to rotations; empty without any.
+        residuals: What is zero where they are rotations.
     """
 
     index: Index
@@ -112,3 +114,5 @@ class Family:
     ends: Mapping[int, tuple[Tree, ...]]
     totals: tuple[Total, ...]
     small: int
+    turned: tuple[Tree, ...] = ()
+    residuals: tuple[Tree, ...] = ()

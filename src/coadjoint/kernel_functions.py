@@ -82,21 +82,25 @@ Systems whose rates are loops over a table have no such matrix.""",
         name="constraint_residual",
         summary="Left minus right sides of the constraints",
         turning="How far attitudes are from rotations, products and determinants minus 1",
+        turning_bound="Left minus right sides of the constraints, then how far attitudes are from "
+        "rotations",
         shape="(c, *batch)",
         doc="""Rows follow the declared constraints. What a constraint gives a velocity is put in,
 so that its rows are 0; those of other constraints stay at the level of rounding along a
-trajectory that `simulate` follows. Of attitudes in a system without constraints the rows are those
-of ``R*transpose(R) - 1`` on and above the diagonal and ``det(R) - 1``, or ``dot(q, q) - 1``.""",
+trajectory that `simulate` follows. Of attitudes the rows are then those of
+``R*transpose(R) - 1`` on and above the diagonal and ``det(R) - 1``, or ``dot(q, q) - 1``.""",
     ),
     KernelFunction(
         name="projection",
         summary="State moved onto the constraints by the least change of velocities",
         turning="State with attitudes moved back to rotations by one step of Newton",
+        turning_bound="State with attitudes moved back to rotations, then moved onto the "
+        "constraints",
         shape="(n, *batch)",
-        doc="""Positions stay. Velocities change by the d of least kinetic energy ``d . M d / 2``
-with which all constraints hold to rounding. Only systems have it that keep a constraint, one that
-gives no velocity outright, and systems without constraints that have attitudes in the state. Those
-are moved by ``R -> (3 - R R^T) R/2`` and ``q -> (3 - |q|^2) q/2``.""",
+        doc="""Attitudes are moved first, by ``R -> (3 - R R^T) R/2`` and
+``q -> (3 - |q|^2) q/2``. Other positions stay. Then velocities change by the d of least kinetic
+energy ``d . M d / 2`` with which all constraints hold to rounding. Only systems have it that have
+attitudes in the state or keep a constraint, one that gives no velocity outright.""",
     ),
     KernelFunction(
         name="reconstruction",

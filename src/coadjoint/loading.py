@@ -14,8 +14,8 @@ from types import MappingProxyType
 
 from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
-from coadjoint.regenerate import Progress, regenerate
-from coadjoint.solve.family import lacks_size, resize
+from coadjoint.regenerate import Progress, is_written_out, regenerate
+from coadjoint.solve.family import lacks_size
 from coadjoint.solve.system import System, load_folder
 
 
@@ -33,8 +33,8 @@ def load(
 
     Args:
         path: A spec in TOML.
-        sizes: How many members an index counts, by its name: ``{"i": 1000}``. Kernels are the same
-            for all sizes.
+        sizes: How many members an index counts, by its name: ``{"i": 1000}``. Where kernels loop
+            over the members they are the same for all sizes; else each size is derived.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all.
@@ -50,10 +50,16 @@ def load(
     """
     source = Path(path)
     # One folder for each place of a spec, so that equal names of different people do not collide.
-    folder = cache_folder() / "systems" / digest(str(source.resolve()))[:16]
-    outcome = regenerate([source], folder, seconds=seconds, progress=progress)
+    place = str(source.resolve())
+    if sizes and is_written_out(source, sizes, seconds):
+        folder = cache_folder() / "systems" / digest([place, dict(sizes)])[:16]
+        own = sizes
+    else:
+        folder, own = cache_folder() / "systems" / digest(place)[:16], MappingProxyType({})
+    outcome = regenerate([source], folder, seconds=seconds, sizes=own, progress=progress)
     for error in outcome.failures.values():
         raise error
     note_use(folder)
     system = load_folder(folder / source.stem)
-    return resize(system, sizes) if sizes or lacks_size(system) else system
+    chosen = {} if own else sizes
+    return system.resize(chosen) if chosen or lacks_size(system) else system

@@ -74,6 +74,12 @@ class Rendered:
     texts: dict[str, str]
     family: RenderedFamily | None = None
 
+    @property
+    def pair_operations(self) -> int:
+        """Operations of a pair of equal members in ``rhs``; 0 without pairs."""
+        pairs = None if self.family is None else self.family.context.loops["rhs"].partners
+        return 0 if pairs is None else sum(pairs.program.operation_counts().values())
+
 
 def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     """Derive, prove, lower and render: the exact rungs, each of which raises what it refuses."""

@@ -12,10 +12,11 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint import limits
@@ -54,11 +55,13 @@ class Row:
         proved: Claims proved.
         supported: Claims that are numerically supported and not proved, as the spec accepts.
         claims: Claims in all.
-        operations: Floating-point operations of ``rhs`` for one member.
+        operations: Floating-point operations of ``rhs`` for one member; of equal members without
+            those of its pairs.
         k: Largest error against 50 digits, in units of 2^-53 times the envelope.
         targets: Targets that were checked.
         seconds: How long it took; 0 if nothing was to do.
         fresh: Whether the system was derived in this run.
+        pair_operations: Of equal members, those of a pair for both of them; 0 without pairs.
     """
 
     system: str
@@ -72,6 +75,7 @@ class Row:
     targets: tuple[str, ...]
     seconds: float
     fresh: bool
+    pair_operations: int = 0
 
 
 @dataclass(frozen=True)
@@ -93,6 +97,7 @@ class _Source:
 
     path: Path
     sha256: str
+    sizes: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -107,7 +112,8 @@ class _Source:
         """
         compiler = compiler_version()
         engine = engine_fingerprint()
-        return digest({"engine": engine, "compiler": compiler, "spec": [self.name, self.sha256]})
+        spec = [self.name, self.sha256, *([dict(self.sizes)] if self.sizes else [])]
+        return digest({"engine": engine, "compiler": compiler, "spec": spec})
 
 
 def regenerate(
@@ -117,6 +123,7 @@ def regenerate(
     jobs: int = 1,
     complete: bool = False,
     seconds: float | None = None,
+    sizes: Mapping[str, int] = MappingProxyType({}),
     progress: Progress = lambda *_: None,
     on_wait: Callable[[], None] = lambda: None,
 ) -> Outcome:
@@ -128,6 +135,7 @@ def regenerate(
         jobs: How many systems are worked on at a time.
         complete: Whether these are all the systems of the folder; others are then removed.
         seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
+        sizes: How many members an index counts, by its name, where all are written out.
         progress: Told of every stage of every system.
         on_wait: Called if another run holds the lock of the folder.
 
@@ -138,7 +146,7 @@ def regenerate(
         SpecError: A file cannot be read.
         OutputError: The folder cannot be written; what stood there is untouched.
     """
-    sources, allowed = _sources(paths), allowed_seconds(seconds)
+    sources, allowed = _sources(paths, sizes), allowed_seconds(seconds)
     rows = {source.name: row for source in sources if (row := _unchanged_row(source, output))}
     pending = [source for source in sources if source.name not in rows]
     keep = {source.name for source in sources} if complete else None
@@ -220,13 +228,48 @@ def _is_concerned(path: str, records: Mapping[str, Any]) -> bool:
     return "/" not in path or path.split("/")[0] in records
 
 
-def _sources(paths: Sequence[Path]) -> list[_Source]:
+def is_written_out(path: Path, sizes: Mapping[str, int], seconds: float | None = None) -> bool:
+    """Whether all members of a spec are written out, so that each size has kernels of its own.
+
+    What a spec says of that is read in a bounded child, and remembered.
+
+    Raises:
+        CoadjointError: The spec is not in order, or has no such size.
+    """
+    (source,) = _sources([path], sizes)
+    stamp = cache_folder() / "members" / f"{source.fingerprint}.json"
+    written = read_object(stamp).get("written")
+    if not isinstance(written, bool):
+        record = run_bounded(
+            "coadjoint.regenerate:tell_written",
+            {"path": str(path), "sizes": dict(sizes)},
+            seconds=allowed_seconds(seconds),
+            memory=limits.WORKER_BYTES,
+            subject=str(path),
+        )
+        written = bool(record["written"])
+        with suppress(OSError):
+            replace_file(stamp, json.dumps({"written": written}).encode("ascii"))
+    return written
+
+
+def tell_written(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """Whether all members of a spec are written out; runs in a bounded child."""
+    from coadjoint.spec import read_spec
+
+    report_progress("read", 0, 1)
+    return {"written": bool(read_spec(argument["path"], argument["sizes"]).written)}
+
+
+def _sources(
+    paths: Sequence[Path], sizes: Mapping[str, int] = MappingProxyType({})
+) -> list[_Source]:
     """Spec files with their hashes.
 
     Raises:
         SpecError: A file cannot be read, or two have one name.
     """
-    sources = [_Source(path, sha256(read_file(str(path))).hexdigest()) for path in paths]
+    sources = [_Source(path, sha256(read_file(str(path))).hexdigest(), sizes) for path in paths]
     names = [source.name for source in sources]
     doubled = sorted({name for name in names if names.count(name) > 1})
     if doubled:
@@ -326,7 +369,7 @@ def _build_all(
         try:
             records[source.name] = run_bounded(
                 "coadjoint.regenerate:build_record",
-                {"path": str(source.path)},
+                {"path": str(source.path), "sizes": dict(source.sizes)},
                 seconds=seconds,
                 memory=limits.WORKER_BYTES,
                 on_progress=report,
@@ -346,7 +389,7 @@ def _build_all(
     return records, failures
 
 
-def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
+def build_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """One system through the pipeline, as plain JSON values; runs in a bounded child."""
     # SymPy loads here, in the child, and never in the parent.
     from coadjoint import pipeline
@@ -354,7 +397,7 @@ def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
     from coadjoint.spec import read_spec
 
     start = perf_counter()
-    spec = read_spec(Path(argument["path"]))
+    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
     total = len(pipeline.STAGES)
 
     def progress(stage: str) -> None:
@@ -375,6 +418,7 @@ def build_record(argument: Mapping[str, str]) -> dict[str, Any]:
         targets=report.targets,
         seconds=perf_counter() - start,
         fresh=True,
+        pair_operations=rendered.pair_operations,
     )
     return {
         "row": asdict(row),

@@ -10,11 +10,15 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.document import document
-from coadjoint.errors import DerivationError
+from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
+    BEADS,
     CHAIN,
+    DRAG,
+    NECKLACE,
     RING,
+    TOPS,
     VORTICES,
     are_equal,
     check_rates,
@@ -23,8 +27,12 @@ from tests.families import (
     rates_of_members,
     read,
     value_of,
+    write_beads,
     write_chain,
+    write_drag,
+    write_necklace,
     write_ring,
+    write_tops,
     write_vortices,
 )
 from tests.specs import shipped
@@ -33,6 +41,10 @@ SYSTEMS = {
     "ring": (RING, write_ring, (2, 3, 4, 5)),
     "chain": (CHAIN, write_chain, (4, 5, 6)),
     "vortices": (VORTICES, write_vortices, (2, 3, 4)),
+    "beads": (BEADS, write_beads, (2, 3, 5)),
+    "necklace": (NECKLACE, write_necklace, (2, 4, 7)),
+    "tops": (TOPS, write_tops, (2, 3)),
+    "drag": (DRAG, write_drag, (2, 3)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -66,6 +78,12 @@ def spoil_end(family):
     return replace(family, ends={k: family.ends[-k - 1] for k in family.ends})
 
 
+def spoil_drag(family):
+    """No force acts."""
+    (c,) = family.indexed
+    return replace(family, rates=tuple(rate.subs(c, 0) for rate in family.rates))
+
+
 def spoil_pairs(family):
     """A partner pushes instead of pulling."""
     sums = tuple(replace(each, term=-each.term) for each in family.pair_sums)
@@ -79,6 +97,11 @@ def spoil_pairs(family):
         ("chain", 5, spoil_neighbour),
         ("chain", 5, spoil_end),
         ("vortices", 3, spoil_pairs),
+        ("beads", 4, spoil_end),
+        ("beads", 4, spoil_pairs),
+        ("necklace", 5, spoil_neighbour),
+        ("tops", 3, spoil_end),
+        ("drag", 2, spoil_drag),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
@@ -87,7 +110,10 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
         check_rates(spoil(families[name]), SYSTEMS[name][1](n), n)
 
 
-@pytest.mark.parametrize(("name", "n"), [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4)])
+@pytest.mark.parametrize(
+    ("name", "n"),
+    [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("beads", 4), ("tops", 3)],
+)
 def test_the_energy_is_that_of_all_members(families, name, n):
     """Sums begin and end where the energy that is written out has its terms."""
     energy = derive(read_spec_text(SYSTEMS[name][1](n), "whole.toml")).energy
@@ -171,6 +197,42 @@ def test_three_bodies_on_an_equilateral_triangle_turn_together():
         force = [float(each.subs(point)) for each in rates[3:]]
         expected = [-omega2 * masses[k] * (places[k][c] - centre[c]) for c in range(3)]
         assert force == pytest.approx(expected, abs=1e-12)
+
+
+ARROWS = """
+title = "Arrows"
+routes = ["lie-poisson"]
+[index]
+i = { size = 5, periodic = true }
+[algebra]
+name = "so(3)"
+[representations.turned]
+matrices.J1 = [[0, 0, 0], [0, 0, -1], [0, 1, 0]]
+matrices.J2 = [[0, 0, 1], [0, 0, 0], [-1, 0, 0]]
+matrices.J3 = [[0, -1, 0], [1, 0, 0], [0, 0, 0]]
+[variables]
+G = { role = "advected", representation = "turned", index = "i" }
+Pi = { role = "momentum", index = "i" }
+[hamiltonian]
+h = "sum(i, Pi[i, 1]^2/2 + Pi[i, 2]^2 + Pi[i, 3]^2/4) - sum(i, dot(G[i], G[i+1]))"
+"""
+
+
+def test_a_declared_representation_is_that_of_each_member():
+    """Vectors turn as those of space do; matrices that do not commute so are refused."""
+    known = 'representation = "turned"', 'representation = "vector"'
+    assert family_of(read(ARROWS)).rates == family_of(read(ARROWS, known)).rates
+    wrong = "matrices.J3 = [[0, -1, 0]", "matrices.J3 = [[0, 1, 0]"
+    with pytest.raises(AlgebraError, match="do not commute"):
+        read(ARROWS, wrong)
+    with pytest.raises(SpecError, match="'J4' is not in the basis"):
+        read(ARROWS, ("matrices.J3", "matrices.J4"))
+
+
+def test_the_number_of_the_first_member_is_that_of_formulas_alone():
+    """The generic member is the same, whether members are counted from 0 or from 1."""
+    one = family_of(read(RING, ("size = 6,", "size = 6, first = 1,")))
+    assert one.rates == family_of(read(RING)).rates
 
 
 def test_a_pair_counts_the_same_in_both_orders():

@@ -183,6 +183,10 @@ def test_text_shows_signs_numbers_and_functions():
     assert element_text(field, -x + 2 * y**3 / 3) == "-x + 2/3*y^3"
     assert element_text(field, field.call("exp", x - y) / (x * y**2)) == "exp(x - y)/(x*y^2)"
     assert element_text(field, field.zero) == "0"
+    turn = 4 * field.call("atan", field.one)
+    assert element_text(field, -x / (4 * turn)) == "-1/4*x/pi"
+    assert element_text(field, (x + y) / (turn**2 * y)) == "x/(y*pi^2) + 1/pi^2"
+    assert element_text(field, x * turn / 3) == "1/3*x*pi"
     assert element_text(field, field.one / (1 - x)) in ("-1/(x - 1)", "1/(1 - x)")
 
 

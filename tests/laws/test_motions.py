@@ -83,9 +83,15 @@ def gradients_of(equations, functions, point=None):
         rows = [slopes[x] for x in inner]
         return [dot(outer, [row[j] for row in rows]) for j in n]
 
+    functions = list(map(sympy.sympify, functions))
+    needed = set[sympy.Symbol]().union(*(function.free_symbols for function in functions))
+    for name in reversed(equations.kept):
+        if sympy.Symbol(name) in needed:
+            needed |= equations.velocities[name].free_symbols
     for name in equations.kept:
-        slopes[sympy.Symbol(name)] = chained(equations.velocities[name])
-    return [chained(sympy.sympify(function)) for function in functions]
+        if sympy.Symbol(name) in needed:
+            slopes[sympy.Symbol(name)] = chained(equations.velocities[name])
+    return list(map(chained, functions))
 
 
 def slopes_of(equations):

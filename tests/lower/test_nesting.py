@@ -8,7 +8,7 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.derive.formulas import rhs
 from coadjoint.lower import lowering
-from coadjoint.lower.nesting import ORDERS, Nest, Term, list_products, nest
+from coadjoint.lower.nesting import ORDERS, Nest, Term, complete, list_products, nest
 from coadjoint.lower.scales import cost
 from tests.specs import shipped
 
@@ -60,7 +60,45 @@ def test_all_that_terms_have_in_common_goes_in_front_at_once():
     assert list(list_products([found])) == [("@2", "x", "x"), ("y",), ("z",)]
 
 
-@pytest.mark.parametrize(("name", "most"), [("guiding_centre", 0.6), ("suslov_so5", 0.75)])
+def lacking(size, k="k"):
+    """``(k . w) w - (w . w) k`` by components, without the two products that cancel."""
+    axes = range(size)
+    return [
+        nest(
+            [
+                *(Term(1, (f"k{j}", f"w{i}", f"w{j}")) for j in axes if j != i),
+                *(Term(-1, (f"{k}{i}", f"w{j}", f"w{j}")) for j in axes if j != i),
+            ],
+            1,
+        )
+        for i in axes
+    ]
+
+
+def by_product(addends):
+    """Coefficients of the products of a nested sum, multiplied out."""
+    total = Counter()
+    for (sign, product), count in multiply_out(addends).items():
+        total[product] += sign * count
+    return {product: count for product, count in total.items() if count}
+
+
+def test_sums_that_lack_what_cancels_are_completed():
+    """Each component gets ``k . w`` and ``w . w``, and is the same sum as before."""
+    before = lacking(4)
+    after = complete(before)
+    assert len({frozenset(each.inner) for addends in before for each in addends}) == 8
+    assert len({each.inner for addends in after for each in addends}) == 2
+    assert [by_product(each) for each in after] == [by_product(each) for each in before]
+
+
+@pytest.mark.parametrize("sums", [lacking(4, "l"), lacking(4)[:2], lacking(2)])
+def test_sums_stay_where_nothing_cancels_or_too_few_agree(sums):
+    """Of ``(k . w) w - (w . w) l``, of two components of four, of sums of one product."""
+    assert complete(sums) == sums
+
+
+@pytest.mark.parametrize(("name", "most"), [("guiding_centre", 0.6), ("suslov_so5", 0.6)])
 def test_rates_with_many_common_factors_take_fewer_operations(name, most, monkeypatch):
     """Than without; where nothing is tried, the rates are what they were."""
     equations = derive(shipped(name))

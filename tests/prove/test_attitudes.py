@@ -9,10 +9,11 @@ import pytest
 from coadjoint.algebra import attitudes, catalogue
 from coadjoint.algebra.representation import Representation
 from coadjoint.derive import derive, equations
+from coadjoint.derive.mechanics import projection
 from coadjoint.errors import AlgebraError
 from coadjoint.spec import read_spec
 from tests.specs import prove_claims, spec
-from tests.turning import BY_QUATERNION, TIED, TOP
+from tests.turning import BY_QUATERNION, LEVEL, SHAKEN, TIED, TOP
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RIGHT = (
@@ -43,6 +44,14 @@ spinless = "Omega[3] == 0"
 [claims]
 conserved = ["dot(q, q)"]
 """
+#: One route is enough where routes are not the question.
+FEW = (', "hamel", "nonholonomic-hamilton-pontryagin"', "")
+#: What solvers do to an attitude R, and that a constraint is met at the moved one.
+MOVED_BACK = "the solvers move R back: R_gram = 1 + D becomes 1 + D^2 (D - 3)/4"
+FIRST_BACK = (
+    "the projection moves R back first, then the state onto the constraints at the moved R, and "
+    "this second move leaves R as it is"
+)
 
 
 def verdicts(declared, routes=()):
@@ -84,10 +93,17 @@ def verdicts(declared, routes=()):
         ),
         (
             spec(PUSHED),
-            ["dR/dt = R*hat(Omega)", "dq/dt = qmul(q, (0, Omega))/2", "dot(q, q) is conserved"],
+            [
+                "dR/dt = R*hat(Omega)",
+                "dq/dt = qmul(q, (0, Omega))/2",
+                "dot(q, q) is conserved",
+                "the solvers move q back: q_gram = 1 + D becomes 1 + D^2 (D - 3)/4",
+            ],
         ),
+        (spec(LEVEL), [FIRST_BACK, MOVED_BACK]),
+        (spec(SHAKEN), [MOVED_BACK]),
     ],
-    ids=["attitude", "quaternion", "pose", "right", "pushed"],
+    ids=["attitude", "quaternion", "pose", "right", "pushed", "level", "shaken"],
 )
 def test_attitudes_turn_with_the_body_and_stay_rotations(declared, laws):
     """On every route, next to forces, inputs and constraints."""
@@ -130,15 +146,44 @@ def test_a_quaternion_without_its_half_is_caught(monkeypatch):
 
 def test_a_wrong_step_back_is_caught(monkeypatch):
     """The residuals as the step is proved to leave them are not those of half the step."""
-    right = equations.turned_back
+    right = projection.turned_back
 
     def half(setting):
         return {name: (setting.field[name] + x) / 2 for name, x in right(setting).items()}
 
-    monkeypatch.setattr(equations, "turned_back", half)
+    monkeypatch.setattr(projection, "turned_back", half)
     found = verdicts(spec(TOP, *BY_QUATERNION))
     refuted = [statement for statement, verdict in found.items() if verdict == "refuted"]
     assert refuted == ["the solvers move q back: q_gram = 1 + D becomes 1 + D^2 (D - 3)/4"]
+
+
+def too_early(setting, onto):
+    """Velocities onto the constraints at the attitude before it is moved."""
+    moved = projection.turned_back(setting)
+    rates = zip(setting.state, onto.rates, strict=True)
+    return replace(onto, rates=tuple(moved.get(name, x) for name, x in rates))
+
+
+def twice_as_far(setting, onto):
+    """A velocity by twice what it lacks."""
+    whole = projection.back_then_onto(setting, onto)
+    name, value = onto.definitions[-1]
+    return replace(whole, definitions=(*whole.definitions[:-1], (name, 2 * value)))
+
+
+def turned_by_the_solve(setting, onto):
+    """A second move that turns R again."""
+    whole = projection.back_then_onto(setting, onto)
+    return replace(whole, rates=(whole.rates[1], *whole.rates[1:]))
+
+
+@pytest.mark.parametrize("wrong", [too_early, twice_as_far, turned_by_the_solve])
+def test_moves_in_the_wrong_order_are_caught(monkeypatch, wrong):
+    """Constraints at the attitude that was left, another solve, and an attitude that is undone."""
+    declared = spec(LEVEL, FEW)
+    assert verdicts(declared)[FIRST_BACK] == "proved"
+    monkeypatch.setattr(equations, "back_then_onto", wrong)
+    assert verdicts(declared)[FIRST_BACK] == "refuted"
 
 
 def test_a_torque_of_the_wrong_sign_is_caught(monkeypatch):

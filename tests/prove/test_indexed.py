@@ -1,23 +1,32 @@
 """Claims of equal members say for which numbers of them they are proved, and false ones fail."""
 
+from dataclasses import replace
+
 import pytest
 import sympy
 
 from coadjoint.errors import ClaimError, LimitError, SpecError
 from coadjoint.prove import prove
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.indexed import extend
 from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES
 from tests.families import (
+    BEADS,
     CHAIN,
+    DRAG,
+    NECKLACE,
     PEAKONS,
     RING,
+    TOPS,
     VORTICES,
     are_equal,
     family_of,
     read,
     value_of,
+    write_beads,
     write_chain,
+    write_necklace,
     write_ring,
     write_vortices,
 )
@@ -50,6 +59,7 @@ def test_what_a_proof_leaves_out_is_said_of_all_members():
 
 
 CLAIM = 'conserved = ["energy"'
+LONG = NECKLACE.replace("size = 6", "size = 60")
 #: False claims, of a sum with a wrong sign, a wrong neighbour and a wrong end.
 FALSE = [
     (RING, (CLAIM, 'conserved = ["sum(i, S[i, 1])", "energy"')),
@@ -58,6 +68,14 @@ FALSE = [
     (CHAIN, (CLAIM, 'conserved = ["sum(i, p[i]) - sum(i, p[i+1])", "energy"')),
     (CHAIN, ("sum(i, p[i]^2/2) +", "sum(i, p[i]^2/2) + sum(i, q[i]^2) +")),
     (VORTICES, (CLAIM, 'conserved = ["sum(i, c[i]*x[i])", "Y"')),
+    (BEADS, (CLAIM, 'conserved = ["sum(i, c[i]*p[i])", "energy"')),
+    (BEADS, ("c[i]*c[j]/(1 + (q[i] - q[j])^2)", "c[i]*c[j]/(1 + q[i]^2*q[j]^2)")),
+    (NECKLACE, ("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + sum(i, q[i]*q[i+1])")),
+    (LONG, (CLAIM, 'conserved = ["sum(i, p[i]*p[i+1])", "energy"')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["energy"]\n[observables]')),
+    (DRAG, ("[observables]", '[claims]\nconserved = ["sum(i, p[i])"]\n[observables]')),
+    (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
+    (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
 ]
 
@@ -69,6 +87,41 @@ def test_a_false_claim_is_refuted(number):
     with pytest.raises(ClaimError, match=r"for every N >= \d") as caught:
         prove(read(text, *changes)).require()
     assert "refuted" in str(caught.value)
+
+
+#: Friction between neighbours in a ring; what one loses the other gains.
+FRICTION = '[forces]\np = "c*(p[i+1] - p[i]) - c*(p[i] - p[i-1])"\n[observables]'
+
+
+def test_forces_of_members_are_part_of_what_is_proved():
+    """Friction between neighbours keeps the momentum and changes the energy by its power."""
+    ring = ("size = 6", "size = 6, periodic = true"), ("[parameters]", "[parameters]\nc = {}")
+    claims = prove(
+        read(CHAIN, *ring, (CLAIM + ", ", "conserved = ["), ("[observables]", FRICTION))
+    ).require()
+    said = {each.statement: each.method for each in claims.claims}
+    assert "the motion by canonical is {x, h} and the forces, for every N >= 1" in said
+    power = said["the energy changes by the power of the forces, for every N >= 1"]
+    assert "antisymmetric" not in power
+    assert "P is conserved, for every N >= 1" in said
+    wrong = FRICTION.replace("- p[i-1]", "+ p[i-1]")
+    changes = (*ring, (CLAIM + ", ", "conserved = ["), ("[observables]", wrong))
+    with pytest.raises(ClaimError, match="refuted"):
+        prove(read(CHAIN, *changes)).require()
+
+
+def test_attitudes_of_members_stay_rotations_and_need_to_be_some():
+    """Each claim is about every member, and no name of a written-out one is left in it."""
+    said = [each.statement for each in prove(read(TOPS)).require().claims]
+    where = "where R[i]*transpose(R[i]) = 1, det(R[i]) = 1"
+    assert f"J is conserved {where}, for every N >= 2" in said
+    assert "R[i]*transpose(R[i]) is conserved, for every N >= 2" in said
+    law = "dR[i]/dt = R[i]*hat((dh/dPi1[i], dh/dPi2[i], dh/dPi3[i])), for every N >= 2"
+    assert law in said
+    moved = "the solvers move R[i] back: R[i]*transpose(R[i]) = 1 + D becomes 1 + D^2 (D - 3)/4"
+    assert f"{moved}, for every N >= 2" in said
+    assert not any("_0" in each or "_1" in each for each in said)
+    assert len(said) == len(set(said))
 
 
 def test_a_false_casimir_is_refuted():
@@ -84,6 +137,8 @@ def test_a_false_casimir_is_refuted():
         (RING, write_ring, 3, "S_0[3] + S_1[3] + S_2[3]"),
         (RING, write_ring, 6, " + ".join(f"S_{k}[3]" for k in range(6))),
         (CHAIN, write_chain, 6, " + ".join(f"p_{k}" for k in range(6))),
+        (BEADS, write_beads, 7, " + ".join(f"p_{k}" for k in range(7))),
+        (NECKLACE, write_necklace, 7, " + ".join(f"p_{k}" for k in range(7))),
     ],
 )
 def test_what_is_proved_for_all_holds_where_all_are_written_out(text, write, n, claim):
@@ -101,6 +156,42 @@ def test_vortices_in_a_plane_without_walls_keep_their_impulse():
     claim = " + ".join(f"c_{k}*x_{k}" for k in range(4))
     text = write_vortices(4).replace(" + x_0^2 + x_1^2 + x_2^2 + x_3^2", "")
     assert prove(read_spec_text(f'{text}\n[claims]\nconserved = ["{claim}"]', "w.toml")).holds
+
+
+@pytest.mark.parametrize(("text", "numbers"), [(BEADS, (2, 3, 4)), (NECKLACE, (4, 5, 6))])
+def test_pairs_and_neighbours_are_proved_for_three_numbers_of_members(text, numbers):
+    """Springs with span 1 and the momentum: w = 1. The reason is that of two new members."""
+    (claim,) = (c for c in prove(read(text)).require().claims if c.statement.startswith("P is"))
+    said = "with {}, with {} and with {} members; two more members far from each other"
+    assert claim.statement == f"P is conserved, for every N >= {numbers[0]}"
+    assert said.format(*numbers) in claim.method
+
+
+def test_a_ring_with_pairs_that_is_too_short_is_written_out():
+    """Three beads in a ring: an ordinary system, as a short open chain is."""
+    short = read(NECKLACE, sizes={"i": 3})
+    assert short.family is None
+    assert len(short.state) == 6
+    with pytest.raises(SpecError, match="at least 2 for pairs"):
+        read(NECKLACE, sizes={"i": 1})
+
+
+def test_three_windows_see_what_two_do_not():
+    """A rate that is 0 for two numbers of members, and not for the third, is refuted."""
+    spec = read(NECKLACE)
+    small, middle, large = prove_windows(spec)
+    (wrong,) = (c for c in large.claims if c.statement == "P is conserved")
+    refuted = replace(wrong, verdict=Verdict.REFUTED)
+    claims = tuple(refuted if c is wrong else c for c in large.claims)
+    certificate = extend(spec, [small, middle, replace(large, claims=claims)])
+    (found,) = (c for c in certificate.claims if c.statement.startswith("P is conserved"))
+    assert found.verdict is Verdict.REFUTED
+    assert found.method.endswith("with 6 members")
+
+
+def prove_windows(spec):
+    """The certificates of the windows."""
+    return [prove(window) for window in spec.family.windows]
 
 
 LOADED = (CLAIM, 'conserved = ["sum(i, S[i, 3])^2", "energy"')

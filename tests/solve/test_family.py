@@ -9,10 +9,11 @@ from coadjoint import load, pipeline
 from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
 from coadjoint.solve import family as families
 from coadjoint.solve.choices import Choice
+from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.system import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import RING, VORTICES
+from tests.families import NECKLACE, RING, TOPS, VORTICES
 from tests.specs import shipped
 
 
@@ -82,6 +83,33 @@ def test_rates_are_those_of_the_equations(ring, size, target):
     S, D = source.normal(size=(3, size)), source.uniform(1, 2, size)
     rates = system.rhs({"S": S}, {"J": 0.7, "D": D}, target=target)
     np.testing.assert_allclose(rates.reshape(3, size), turn(S, 0.7, D), rtol=1e-13, atol=1e-14)
+
+
+@pytest.fixture(scope="module")
+def necklace():
+    """Beads on a ring, with springs between neighbours, of which all repel each other."""
+    with load_texts(pipeline.render(read_spec_text(NECKLACE, "necklace.toml")).texts) as system:
+        yield system
+
+
+def pull(q, k, c):
+    """The forces on beads, typed by hand."""
+    apart = q[:, np.newaxis] - q
+    repelled = 2 * np.outer(c, c) * apart / (1 + apart**2) ** 2
+    springs = k * (np.roll(q, -1) - q)
+    return springs - np.roll(springs, 1) + repelled.sum(axis=1)
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "python"])
+@pytest.mark.parametrize("size", [4, 39, 40, 53])
+def test_springs_and_all_pairs_act_together(necklace, size, target):
+    """In a kernel whose vectors end where a ring closes; with blocks of members and without."""
+    system, source = necklace.resize({"i": size}), np.random.default_rng(size)
+    q, p = source.normal(size=(2, size))
+    k, c = source.uniform(1, 2, (2, size))
+    found = system.rhs({"q": q, "p": p}, {"k": k, "c": c}, target=target)
+    np.testing.assert_allclose(found[:size], p)
+    np.testing.assert_allclose(found[size:], pull(q, k, c), rtol=1e-12, atol=1e-12)
 
 
 def test_a_batch_has_the_bits_of_its_members(ring):
@@ -206,6 +234,58 @@ def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):
     assert run.status == "NONFINITE"
 
 
+@pytest.fixture(scope="module")
+def tops():
+    """Texts of tops in a row, whose attitudes are part of the state."""
+    return pipeline.render(read_spec_text(TOPS, "tops.toml")).texts
+
+
+@pytest.mark.parametrize(("method", "step"), [("rk4", 0.05), ("dop853", 0.05), ("dop853", None)])
+def test_attitudes_of_members_stay_rotations(tops, method, step):
+    """All steps move them back, in C, fixed ones among it, with the bits of the twin."""
+    with load_texts(tops) as system:
+        start = np.array([system.STATE.defaults[name] for name in system.STATE.components])
+        start[system.STATE.rows("Pi")] += np.linspace(0, 1, 9)
+        named = {"method": method, "step": step, "progress": False, "samples": 5}
+        runs = [system.simulate(start, (0, 20), target=t, **named) for t in ("c", "numpy")]
+        assert np.array_equal(*(np.asarray(run.state) for run in runs))
+        end = np.asarray(runs[0].state)[:, -1]
+        assert np.abs(system.constraint_residual(end)).max() < 1e-14
+        assert not np.allclose(end[:27], start[:27])
+        R = end[:27].reshape(3, 3, 3).transpose(2, 0, 1)
+        np.testing.assert_allclose(R @ R.transpose(0, 2, 1), [np.eye(3)] * 3, atol=1e-14)
+
+
+def test_a_start_that_is_no_rotation_is_refused_by_member(tops):
+    """The message names the member; roundings are moved back."""
+    with load_texts(tops) as system:
+        start = np.array([system.STATE.defaults[name] for name in system.STATE.components])
+        off = start.copy()
+        off[system.STATE.components.index("R11[2]")] = 1.1
+        with pytest.raises(KernelArgumentError, match=r"of member 2, does not hold") as caught:
+            system.simulate(off, (0, 1), target="numpy", progress=False)
+        assert "R[i]*transpose(R[i]) == 1" in str(caught.value)
+        assert "R11[2] = 1:" in str(caught.value)
+        near = start + 1e-12
+        run = system.simulate(near, (0, 0.1), target="numpy", progress=False)
+        first = np.asarray(run.state)[:, 0]
+        assert np.abs(system.constraint_residual(first, target="numpy")).max() < 1e-15
+
+
+@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dop853", 8)])
+def test_steps_that_leave_attitudes_are_not_taken(tops, tmp_path, method, order):
+    """An object that forgets to move them back is refused."""
+    kept = "memcpy(moved, state, run->rows * run->count * sizeof *moved);"
+    spoiled = tops["solver.c"].replace(
+        "    run->projection(", f"    {kept}\n    if (0) run->projection("
+    )
+    assert spoiled != tops["solver.c"]
+    for file, text in (tops | {"solver.c": spoiled}).items():
+        (tmp_path / file).write_text(text)
+    with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
+        load_steps(load_folder(tmp_path), Choice(method, order), "c")
+
+
 FIELDS = [[0, 0, k] for k in range(6)]
 
 
@@ -224,6 +304,41 @@ def test_defaults_may_differ_from_member_to_member(default, expected, resized):
         known = system.PARAMETERS.defaults
         assert [known[f"B{c}[{i}]"] for c in (1, 2, 3) for i in range(6)] == expected
         assert ("B1[0]" in system.resize({"i": 7}).PARAMETERS.defaults) == resized
+
+
+def test_spins_begin_as_a_wave_of_any_number_of_waves():
+    """It turns with the frequency 2 J cos(theta) (1 - cos(k)), k = pi/4 and cos(theta) = 4/5."""
+    with load_texts(pipeline.render(shipped("heisenberg_lattice")).texts) as system:
+        waves = system.resize({"i": 24})
+        start = np.array(list(waves.STATE.defaults.values())).reshape(3, 24)
+        rates = waves.rhs(start.ravel(), target="numpy").reshape(3, 24)
+        assert not system.resize({"i": 12}).STATE.defaults
+    frequency = 1.6 * (1 - np.sqrt(0.5))
+    np.testing.assert_allclose(start[0], 0.6 * np.cos(np.pi * np.arange(24) / 4), atol=1e-14)
+    wave = [frequency * start[1], -frequency * start[0], 0 * start[2]]
+    np.testing.assert_allclose(rates, wave, atol=1e-14)
+
+
+def test_the_drift_of_what_begins_at_zero_is_told_as_it_is():
+    """Momentum of the figure eight: a ratio to its own roundings says nothing."""
+    with load_texts(pipeline.render(shipped("n_body")).texts) as system:
+        start = [system.STATE.defaults[name] for name in system.STATE.components]
+        run = system.simulate(start, (0.0, 1.0), target="numpy", samples=5)
+        many = system.simulate(np.transpose([start] * 2), (0.0, 1.0), target="numpy", samples=5)
+        for solution in (run, many):
+            told = {name: tell_drift(solution, name) for name in solution.conserved}
+            assert told["P"].endswith("e-16 absolute") or told["P"] == "0.0e+00"
+            assert float(told["energy"]) == float(f"{np.max(solution.drift['energy']):.1e}") > 0
+
+
+@pytest.mark.parametrize(("text", "pair"), [(VORTICES, 18), (RING, 0)])
+def test_operations_of_a_pair_are_counted(text, pair):
+    """Those of both members together, and none where there are no pairs."""
+    rendered = pipeline.render(read_spec_text(text, "sample.toml"))
+    assert rendered.pair_operations == pair
+    assert (
+        "Operations per pair of members, for both of them" in rendered.texts["kernel.c"]
+    ) == bool(pair)
 
 
 def test_starts_may_differ_from_member_to_member():

@@ -266,6 +266,66 @@ def rods_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
     }
 
 
+# -- four links that hang from each other ----------------------------------------------------------
+
+LINKS = range(4)
+
+
+def links_parts(state: Vector, parameters: Vector) -> tuple[list[list[Any]], list[Any]]:
+    """``M_ij = m l^2 (5 - max(i, j)) cos(theta_i - theta_j)`` and what accelerations balance."""
+    theta, omega, (m, length, g) = state[:4], state[4:], parameters
+    masses = [[m * (4 - max(i, j)) for j in LINKS] for i in LINKS]
+
+    def turned(function: str, i: int, j: int) -> Any:
+        return length**2 * masses[i][j] * circular(function, theta[i] - theta[j])
+
+    pulls = [
+        -sum(turned("sin", i, j) * omega[j] ** 2 for j in LINKS)
+        - g * length * masses[i][i] * circular("sin", theta[i])
+        for i in LINKS
+    ]
+    return [[turned("cos", i, j) for j in LINKS] for i in LINKS], pulls
+
+
+def links_rates(state: Vector, parameters: Vector) -> list[Any]:
+    """``sum_j M_ij theta_j'' = pull_i``, by elimination in the order of the links."""
+    matrix, pulls = links_parts(state, parameters)
+    rows = [[*row, pull] for row, pull in zip(matrix, pulls, strict=True)]
+    for n in LINKS:
+        rows[n] = [each / rows[n][n] for each in rows[n]]
+        for k in set(LINKS) - {n}:
+            rows[k] = minus(rows[k], times(rows[k][n], rows[n]))
+    return [*state[4:], *(row[4] for row in rows)]
+
+
+def links_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
+    """Energy and angular momentum, from the positions and velocities of the masses."""
+    theta, omega, (m, length, g) = state[:4], state[4:], parameters
+    arms = [(length * circular("sin", each), -length * circular("cos", each)) for each in theta]
+    moved = [(-y * w, x * w) for (x, y), w in zip(arms, omega, strict=True)]
+    places, speeds = (
+        [[sum(arm[k] for arm in given[: n + 1]) for k in (0, 1)] for n in LINKS]
+        for given in (arms, moved)
+    )
+    about = [m * (p[0] * v[1] - p[1] * v[0]) for p, v in zip(places, speeds, strict=True)]
+    return {
+        "energy": sum(
+            m * ((v[0] ** 2 + v[1] ** 2) / 2 + g * p[1])
+            for p, v in zip(places, speeds, strict=True)
+        ),
+        "x": places[3][0],
+        "y": places[3][1],
+        "L": sum(about),
+    }
+
+
+def links_tensor(state: Vector, parameters: Vector) -> list[list[Any]]:
+    """``{theta_i, p_i} = 1``."""
+    unit = [[int(i == j) for j in LINKS] for i in LINKS]
+    above = [[0] * 4 + row for row in unit]
+    return [*above, *([*times(-1, row), 0, 0, 0, 0] for row in unit)]
+
+
 # -- balls that roll: Fasso and Sansonetto (2016), Routh (1905) ------------------------------------
 
 
@@ -354,6 +414,7 @@ RATES = {
     "roller_racer": racer_rates,
     "appell_machine": appell_rates,
     "double_spherical_pendulum": rods_rates,
+    "n_link_chain": links_rates,
     "ball_on_turntable": turntable_rates,
     "ball_in_sphere": sphere_rates,
     "veselova_so4": planes.planes_rates,
@@ -363,6 +424,7 @@ OBSERVABLES = {
     "roller_racer": racer_observables,
     "appell_machine": appell_observables,
     "double_spherical_pendulum": rods_observables,
+    "n_link_chain": links_observables,
     "ball_on_turntable": turntable_observables,
     "ball_in_sphere": sphere_observables,
     "veselova_so4": planes.planes_observables,
@@ -372,6 +434,7 @@ TENSORS = {
     "suslov_so5": suslov_5_tensor,
     "roller_racer": racer_tensor,
     "appell_machine": appell_tensor,
+    "n_link_chain": links_tensor,
     "ball_in_sphere": sphere_tensor,
     "veselova_so4": planes.planes_tensor,
 }
@@ -383,6 +446,7 @@ STATES = {
     "double_spherical_pendulum": tuple(
         f"{name}_{n}" for name in ("gamma1", "gamma2", "v1", "v2") for n in (1, 2, 3)
     ),
+    "n_link_chain": tuple(f"{name}_{n}" for name in ("theta", "omega") for n in (1, 2, 3, 4)),
     "ball_on_turntable": (*TURNING, "x1", "x2"),
     "ball_in_sphere": (*TURNING, "n1", "n2", "n3"),
     "veselova_so4": planes.STATE,
@@ -392,11 +456,12 @@ PARAMETERS = {
     "roller_racer": ("m1", "m2", "I1", "I2", "d1", "d2"),
     "appell_machine": ("M", "m", "A", "C", "a", "b", "rho", "g"),
     "double_spherical_pendulum": ("m1", "m2", "l1", "l2", "g"),
+    "n_link_chain": ("m", "l", "g"),
     "ball_on_turntable": ("I", "m", "r", "W"),
     "ball_in_sphere": ("I", "m", "r", "a", "g"),
     "veselova_so4": planes.PARAMETERS,
 }
 #: With sines and cosines of the state, typed to 80 digits.
-CONFIGURATIONS = ("roller_racer",)
+CONFIGURATIONS = ("roller_racer", "n_link_chain")
 #: Whose rates are quotients in the state.
 QUOTIENTS = ("double_spherical_pendulum", "ball_in_sphere", "veselova_so4")

@@ -83,6 +83,24 @@ def test_the_rods_of_a_double_pendulum_keep_their_length():
     assert max(motion.drift.values()) < 1e-6
 
 
+def test_a_chain_of_links_hangs_with_the_roots_of_laguerre():
+    """Squares of the frequencies are ``(g/l)`` times the roots of ``L_4``, from a table."""
+    slopes = system("n_link_chain").jacobian(np.zeros(8), {"m": 1.3, "l": 0.7, "g": 9.0})
+    squares = np.sort(np.linalg.eigvals(-slopes[4:, :4]).real)
+    roots = [0.322547689619392, 1.745761101158347, 4.536620296921128, 9.395070912301133]
+    assert np.allclose(squares, np.array(roots) * 9.0 / 0.7, rtol=1e-12)
+
+
+def test_a_chain_of_links_without_weight_keeps_its_angular_momentum():
+    """``sum_ij M_ij theta_j'``; with weight it does not."""
+    start = [0.3, 1.0, -0.4, 2.0, 1.0, -0.5, 0.2, 0.7]
+    free, heavy = (
+        system("n_link_chain").simulate(start, (0, 5), {"g": g}, samples=51)["L"] for g in (0, 9.81)
+    )
+    assert np.ptp(free) < 1e-9 * np.abs(free).max()
+    assert np.ptp(heavy) > 1
+
+
 def test_a_ball_on_a_turntable_goes_round_a_circle():
     """At 2/7 of the rate of the table if it is solid; the moving energy is kept, the energy not."""
     m, r, W = 1.5, 0.2, 3.0

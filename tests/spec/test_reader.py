@@ -190,6 +190,11 @@ SHIPPED = {
         "m1 m2 l1 l2 g",
         CONSTRAINED,
     ),
+    "n_link_chain": (
+        "theta_1 theta_2 theta_3 theta_4 omega_1 omega_2 omega_3 omega_4",
+        "m l g",
+        ("euler-lagrange",),
+    ),
     "ball_on_turntable": ("omega1 omega2 omega3 x1 x2", "I m r W", CONSTRAINED),
     "ball_in_sphere": ("omega1 omega2 omega3 n1 n2 n3", "I m r a g", CONSTRAINED),
     "heavy_top_damped": (

@@ -5,8 +5,9 @@ import pytest
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.members import Members, reach, write_out
-from tests.conftest import FAMILIES
-from tests.families import CHAIN, RING, VORTICES, read
+from coadjoint.spec.reader import read_spec
+from tests.conftest import FAMILIES, WRITTEN
+from tests.families import BEADS, CHAIN, NECKLACE, RING, VORTICES, read
 from tests.specs import RIGID_BODY, shipped
 
 MOMENTA = 'S = { role = "momentum", index = "i" }'
@@ -99,6 +100,19 @@ BAD = [
     (RING, ("size = 6", "size = 0"), "greater than or equal to 1"),
     (RING, ('D = { index = "i"', 'D = { index = "k"'), "there is no index 'k'"),
     (RING, ('D = { index = "i", default = 1', 'D = { index = "i", default = [1, 2]'), "6 entries"),
+    (
+        RING,
+        (
+            'D = { index = "i", default = 1',
+            'D = { index = "i", repeats = true, default = [1, 2, 3, 4]',
+        ),
+        "and 6 a multiple of their number",
+    ),
+    (
+        RING,
+        ('D = { index = "i", default = 1', 'D = { index = "i", repeats = true, default = 1'),
+        "one default for all members, which repeats",
+    ),
     (VORTICES, ("size = 6", "size = 1"), "at least 2 for pairs"),
     (
         VORTICES,
@@ -130,6 +144,28 @@ def test_limits_of_neighbours_and_members():
         read(RING, sizes={"i": 10**9})
 
 
+@pytest.mark.parametrize(
+    ("text", "change", "numbers"),
+    [
+        (VORTICES, None, (2, 3)),
+        (BEADS, None, (2, 3, 4)),
+        (NECKLACE, None, (4, 5, 6)),
+        (NECKLACE, ('P = "sum(i, p[i])', 'P = "sum(i, p[i]*p[i+1])'), (8, 9, 10)),
+        (BEADS, ("q[i+1] - q[i]", "q[i+2] - q[i]"), (4, 5, 6)),
+        (
+            RING.replace('"energy", "M"', '"energy"'),
+            (M, 'M = "sum(i, j, i < j, dot(S[i], S[j]))"'),
+            (4, 5, 6),
+        ),
+    ],
+)
+def test_windows_have_the_numbers_of_members_of_the_proof(text, change, numbers):
+    """4 w and two more in a ring, 2 w and two more in a chain; w is the span of both sums."""
+    spec = read(text, *([change] if change else []), ("size = 6", "size = 60"))
+    found = [len(each.state) // len(spec.family.variables) for each in spec.family.windows]
+    assert tuple(found) == numbers
+
+
 @pytest.mark.parametrize("size", [0, -3, 2.5, True, "6"])
 def test_a_chosen_size_is_a_positive_integer(size):
     """And nothing else."""
@@ -157,6 +193,22 @@ def test_shipped_families_have_units_docs_and_defaults(name):
     assert all(each.doc for each in (*spec.variables, *spec.parameters))
     assert all(each.default is not None for each in spec.parameters)
     assert "energy" in [each.everywhere for each in spec.conserved]
+
+
+def test_systems_whose_members_are_written_out():
+    """They have an index, all their members, and the size in each statement."""
+    for name in WRITTEN:
+        found = shipped(name)
+        assert found.written
+        assert found.family is None
+        assert found.index[0].size in (4, 8)
+
+
+def test_what_counts_components_has_the_size_of_the_spec():
+    """Another one would leave out entries of the matrix."""
+    path = shipped("so8_body").path
+    with pytest.raises(SpecError, match="which counts components"):
+        read_spec(path, {"i": 5})
 
 
 def names_in(text, count, *, periodic):

@@ -8,9 +8,10 @@ in the working folder, so that a command does not run code that lies there by ch
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -61,23 +62,26 @@ def spec_path(system: str) -> Path:
     return derivations_folder() / f"{system}.toml"
 
 
-def load_system(system: str, seconds: int | None = None) -> System:
+def load_system(
+    system: str, seconds: int | None = None, sizes: Mapping[str, int] = MappingProxyType({})
+) -> System:
     """The system of a word: a shipped one, or that of a spec, built if it has changed.
 
     Args:
         system: The word.
         seconds: Processor time that deriving may take; see `coadjoint.budget.allowed_seconds`.
+        sizes: How many members an index counts, by its name.
 
     Raises:
         CoadjointError: The spec is not in order, or the shipped system has not been generated.
     """
     path = spec_path(system)
-    if is_path(system):
+    if is_path(system) or sizes:
         from coadjoint.cli.output import progress_bars
         from coadjoint.loading import load
 
         with progress_bars() as progress:
-            return load(path, seconds=seconds, progress=progress)
+            return load(path, sizes=sizes, seconds=seconds, progress=progress)
     from coadjoint.solve.system import load_folder
 
     folder = systems_folder() / path.stem
@@ -116,6 +120,29 @@ def format_option(*formats: str) -> Callable[[Callable[..., Any]], Callable[...,
         "--format", "form", type=kind, default=formats[0], show_default=True, help=about
     )
 
+
+def _read_sizes(
+    _context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]
+) -> dict[str, int]:
+    """Each ``INDEX=12`` as a name and a number."""
+    sizes = {}
+    for text in given:
+        name, _, number = text.partition("=")
+        if not number.strip().isdecimal():
+            raise click.BadParameter(f"{text!r} is not of the form INDEX=12 with a whole number.")
+        sizes[name.strip()] = int(number)
+    return sizes
+
+
+#: The option ``--size`` of commands that derive one system.
+size_option = click.option(
+    "--size",
+    "sizes",
+    metavar="INDEX=N",
+    multiple=True,
+    callback=_read_sizes,
+    help="How many members an index counts, e.g. i=12. Default: that of the spec.",
+)
 
 #: The option ``--seconds`` of every command that derives.
 seconds_option = click.option(

@@ -11,15 +11,16 @@ from typing import Any
 
 import click
 
-from coadjoint.cli.arguments import seconds_option, spec_path, system_argument
+from coadjoint.cli.arguments import seconds_option, size_option, spec_path, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, say
 
 
 @click.command("prove")
 @system_argument
+@size_option
 @seconds_option
 @json_option
-def command(system: str, seconds: int | None, as_json: bool) -> int:
+def command(system: str, sizes: dict[str, int], seconds: int | None, as_json: bool) -> int:
     """Prove every claim about a system, or refute it.
 
     Jacobi identity, Casimirs, conserved quantities, and equality of the routes. The exit status is
@@ -27,7 +28,7 @@ def command(system: str, seconds: int | None, as_json: bool) -> int:
     """
     from coadjoint.bounded import prove_bounded
 
-    record = prove_bounded(spec_path(system), seconds=seconds)
+    record = prove_bounded(spec_path(system), sizes=sizes, seconds=seconds)
     if as_json:
         print_json(record)
     else:

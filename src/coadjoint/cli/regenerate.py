@@ -180,11 +180,20 @@ def _cells(row: Row) -> tuple[str, ...]:
         str(row.dimension),
         ", ".join(row.routes),
         proved_cell(row.proved, row.supported, row.claims),
-        str(row.operations),
+        operations_cell(row.operations, row.pair_operations),
         f"{row.k:.2f}",
         ", ".join(row.targets),
         f"{row.seconds:.1f} s" if row.fresh else "unchanged",
     )
+
+
+def operations_cell(own: int, pair: int) -> str:
+    """Operations of a member, and of a pair of members where there are pairs.
+
+    >>> operations_cell(4, 31)
+    '4 + 31 a pair'
+    """
+    return f"{own} + {pair} a pair" if pair else str(own)
 
 
 def proved_cell(proved: int, supported: int, claims: int) -> str:

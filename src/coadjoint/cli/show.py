@@ -14,6 +14,7 @@ from coadjoint.cli.arguments import (
     format_option,
     output_option,
     seconds_option,
+    size_option,
     spec_path,
     system_argument,
 )
@@ -25,13 +26,19 @@ from coadjoint.cli.output import show_text
 @click.option("--route", help="One of the spec's routes. Default: the first, which is emitted.")
 @format_option("text", "latex", "html")
 @output_option
+@size_option
 @seconds_option
 def command(
-    system: str, route: str | None, form: str, output: Path | None, seconds: int | None
+    system: str,
+    route: str | None,
+    form: str,
+    output: Path | None,
+    sizes: dict[str, int],
+    seconds: int | None,
 ) -> None:
     """Show a derivation, step by step."""
     from coadjoint.bounded import derive_bounded
     from coadjoint.render.document import render_document
 
-    record = derive_bounded(spec_path(system), route, seconds=seconds)
+    record = derive_bounded(spec_path(system), route, sizes=sizes, seconds=seconds)
     show_text(render_document(record, form), output)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.arguments import load_system, seconds_option, system_argument
+from coadjoint.cli.arguments import load_system, seconds_option, size_option, system_argument
 from coadjoint.cli.events import describe_events, events_options, print_events, take_events
 from coadjoint.cli.members import (
     Members,
@@ -132,6 +132,7 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     help="Table of the trajectory to write, e.g. top.csv.",
 )
 @events_options
+@size_option
 @seconds_option
 @json_option
 def command(
@@ -144,6 +145,7 @@ def command(
     plot: Path | None,
     trace: Path | None,
     table: Path | None,
+    sizes: dict[str, int],
     seconds: int | None,
     as_json: bool,
     time: float,
@@ -155,7 +157,7 @@ def command(
     asked.check()
     if members is not None and (plot or trace):
         raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
-    loaded = load_system(system, seconds)
+    loaded = load_system(system, seconds, sizes)
     asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy
@@ -316,6 +318,8 @@ def _print(system: System, solution: Solution) -> None:
 
 def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:
     """First and last values as a table; of observables with the drift of those that are kept."""
+    from coadjoint.solve.drift import tell_drift
+
     columns = [kind, ">t = 0", f">t = {solution.time_reached:g}", "unit"]
     rows = [
         [name, f"{first:.12g}", f"{last:.12g}", solution.unit(name)]
@@ -324,7 +328,7 @@ def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str 
     if kind == "observable":
         columns.append(">drift")
         for row in rows:
-            row.append(f"{solution.drift[row[0]]:.1e}" if row[0] in solution.drift else "")
+            row.append(tell_drift(solution, row[0]) if row[0] in solution.drift else "")
     if len(rows) > SHOWN:
         rows[SHOWN // 2 : -SHOWN // 2] = [["...", *("" for _ in columns[1:])]]
     print_table(columns, rows, title=title)

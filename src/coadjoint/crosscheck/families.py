@@ -35,6 +35,7 @@ from coadjoint.crosscheck.oracle import (
     oracle,
 )
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
+from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
@@ -46,6 +47,7 @@ from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import compare_steps, load
 from coadjoint.spec.core.members import member_name
+from coadjoint.spec.spatial import turning_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,6 +78,7 @@ class _Window:
         state: Names of its components in the order of a family: component after component.
         parameters: Likewise.
         totals: Names of the rows of the function ``observables``.
+        residuals: Those of the function ``constraint_residual``.
     """
 
     reference: Reference
@@ -83,12 +86,14 @@ class _Window:
     state: tuple[str, ...]
     parameters: tuple[str, ...]
     totals: tuple[str, ...]
+    residuals: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
         known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        turning = {each.name: each for each in spec.turning}
         size = len(spec.state) // len(declared.variables)
 
         def rows(names: Sequence[str]) -> tuple[str, ...]:
@@ -108,6 +113,16 @@ class _Window:
             state=rows(declared.variables),
             parameters=(*shared, *rows(declared.indexed)),
             totals=tuple(each.name for each in family.totals),
+            residuals=tuple(
+                name
+                for each in declared.variables
+                if member_name(each, 0) in turning
+                for same in zip(
+                    *(turning_rows(spec, turning[member_name(each, k)]) for k in range(size)),
+                    strict=True,
+                )
+                for name in same
+            ),
         )
 
     def evaluate(self, function: str, state: Array, parameters: Array) -> list[Any]:
@@ -120,13 +135,17 @@ class _Window:
             vector = state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
         values = oracle(self.reference, function, inputs)
-        if function in ("rhs", "jacobian_vector"):
+        if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
             values = [by_name[name] for name in self.state]
         if function == "observables":
             labels = [label for label, _ in self.reference.equations.exact.observables]
             by_name = dict(zip(labels, values, strict=True))
             values = [by_name[name] for name in self.totals]
+        if function == "constraint_residual":
+            rows = turning_residuals(self.reference.equations.setting)
+            by_name = dict(zip((name for name, _ in rows), values, strict=True))
+            values = [by_name[name] for name in self.residuals]
         return values
 
 

@@ -21,9 +21,8 @@ from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.iteration import Newton
-from coadjoint.derive.mechanics.projection import nearest_state
+from coadjoint.derive.mechanics.projection import back_then_onto, nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
-from coadjoint.derive.mechanics.turning import turned_back, turning_residuals
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import Setting
@@ -181,31 +180,19 @@ class Equations:
         return field.sum(slope * self.close(force) for slope, force in pairs if slope and force)
 
     @cached_property
-    def projection(self) -> Equations | None:
+    def onto_constraints(self) -> Equations | None:
         """The nearest state on the constraints that are kept, in place of the rates."""
         nearest = nearest_state(self.setting, self.distribution, self.exact)
         return None if nearest is None else replace(self, exact=nearest, steps=())
 
     @cached_property
-    def turning_back(self) -> Equations | None:
-        """The state with its attitudes moved back to rotations, in place of the rates.
-
-        Under constraints, and where noise acts, attitudes are left as they are.
-        """
-        setting = self.setting
-        if not self.spec.turns_back:
-            return None
-        moved = turned_back(setting)
-        state = tuple(moved.get(name, setting.field[name]) for name in setting.state)
-        nearest = Exact(
-            definitions=(),
-            rates=state,
-            energy=None,
-            emitted=(),
-            poisson_tensor=None,
-            residuals=tuple(turning_residuals(setting)),
-        )
-        return replace(self, exact=nearest, steps=())
+    def projection(self) -> Equations | None:
+        """Where solvers move a state: attitudes back to rotations, then onto the constraints."""
+        onto = self.onto_constraints
+        if not self.spec.turning:
+            return onto
+        moved = back_then_onto(self.setting, None if onto is None else onto.exact)
+        return replace(self, exact=moved, steps=())
 
     @cached_property
     def intermediates(self) -> frozenset[str]:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
+from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -123,14 +124,14 @@ def noise(equations: Equations) -> Rows | None:
 
 
 def constraint_residual(equations: Equations) -> Rows | None:
-    """What vanishes on the constraints, or where attitudes are rotations."""
-    residuals = (equations.turning_back or equations).exact.residuals
+    """What vanishes on the constraints, then what vanishes where attitudes are rotations."""
+    residuals = [*equations.exact.residuals, *turning_residuals(equations.setting)]
     return _rows(equations, residuals) if residuals else None
 
 
 def projection(equations: Equations) -> Rows | None:
-    """The nearest state on the constraints, or with rotations, by equations of its own."""
-    own = equations.projection or equations.turning_back
+    """The nearest state with rotations and on the constraints, by equations of its own."""
+    own = equations.projection
     if own is None:
         return None
     nearest = _rows(own, zip(own.setting.state, own.exact.rates, strict=True))

@@ -16,7 +16,7 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -26,6 +26,8 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.turning import step_back, turning_residuals
+from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.families import Family, Sum, Total
@@ -34,7 +36,8 @@ from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import Members, member_name, place_at, reach
 from coadjoint.spec.core.totals import put_term, split_sums
-from coadjoint.spec.model import Windows
+from coadjoint.spec.model import Variable, Windows
+from coadjoint.spec.spatial import turning_rows
 
 
 def derive_family(equations: Equations) -> Family:
@@ -49,10 +52,9 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
-    small = 2 * declared.reach
+    small = max(1 if declared.index.periodic else 2 * declared.reach, 2 if declared.pairs else 1)
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
-    rates = reader.rates_with_pairs if declared.pairs else reader.rates_of(reader.middle)
-    rates = tuple(rates)
+    rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
     named |= {
@@ -73,7 +75,9 @@ def derive_family(equations: Equations) -> Family:
         pair_sums=pairs,
         ends=reader.ends,
         totals=totals,
-        small=2 if declared.pairs else 1 if declared.index.periodic else max(small, 1),
+        small=small,
+        turned=reader.turned,
+        residuals=reader.residuals,
     )
 
 
@@ -91,6 +95,11 @@ class _Reader:
         family = self.equations.spec.family
         assert family is not None, self.equations.spec.name
         return family
+
+    @cached_property
+    def written(self) -> Written:
+        """What the spec says, not multiplied out."""
+        return Written(self.equations)
 
     @cached_property
     def members(self) -> Members:
@@ -175,12 +184,29 @@ class _Reader:
                 new |= zip(old, seen, strict=True)
         return new
 
-    def see(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
-        """An expression of the window in generic symbols.
+    def see(
+        self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
+    ) -> tuple[sympy.Expr, ...]:
+        """Expressions of the window in generic symbols.
+
+        Args:
+            values: As the exact field has them.
+            new: The generic symbols.
+            written: The same as the spec writes them, if that is known.
 
         Raises:
-            DerivationError: It depends on members that are not seen.
+            DerivationError: They depend on members that are not seen.
         """
+        plain = [self._rename(value, new) for value in values]
+        seen = [value.xreplace(new) for value in written]
+        short = choose(plain, seen, most=0.5)  # to tidy up what is multiplied out takes long
+        if short:
+            return short
+        plain = [tidy(value, self.groups) for value in plain]
+        return choose(plain, seen) or tuple(plain)
+
+    def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
+        """An expression in generic symbols."""
         left = value.free_symbols - set(new) - set(map(sympy.Symbol, self.shared))
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
@@ -190,7 +216,7 @@ class _Reader:
                 "as sums over members.",
                 found=names,
             )
-        return tidy(value.xreplace(new), self.groups)
+        return value.xreplace(new)
 
     @cached_property
     def groups(self) -> list[list[sympy.Symbol]]:
@@ -210,22 +236,52 @@ class _Reader:
         return 0 if self.declared.index.periodic else self.declared.reach
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
-        """The rates of a member in generic symbols."""
-        reach = self.declared.reach
+        """The rates of a member in generic symbols, and in those of sums over its partners."""
+        if self.declared.pairs:
+            return tuple(self._rates_with_pairs(member))
+        reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
         new = self.rename(member, reach, reach)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
-        return tuple(
-            self.see(by_name[name], new) for name in self.names_of(self.declared.variables, member)
-        )
+        return self.see((by_name[name] for name in names), new, self.written.rates(names))
 
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
         """The rates of the members of an open chain that lack neighbours."""
-        if self.declared.index.periodic or self.declared.pairs:
+        if self.declared.index.periodic:
             return {}
         reach, count = self.declared.reach, self.members.count
         starts = {k: self.rates_of(k) for k in range(reach)}
         return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+
+    # -- attitudes ----------------------------------------------------------------------
+
+    @cached_property
+    def turning(self) -> list[Variable]:
+        """The attitudes of the member in the middle."""
+        names = {member_name(name, self.middle) for name in self.declared.variables}
+        return [each for each in self.equations.spec.turning if each.name in names]
+
+    @property
+    def turned(self) -> tuple[sympy.Expr, ...]:
+        """The state of a member with its attitudes moved back; empty without attitudes."""
+        back, new = self.equations.projection, self.rename(self.middle, 0, 0)
+        if back is None:
+            return ()
+        known = dict(zip(back.variables, back.rates, strict=True))
+        written = {name: sympy.Symbol(name) for name in back.variables}
+        for each in self.turning:
+            symbols = [written[name] for name in each.components]
+            written |= zip(each.components, step_back(each, symbols), strict=True)
+        names = self.names_of(self.declared.variables, self.middle)
+        return self.see((known[name] for name in names), new, (written[name] for name in names))
+
+    @property
+    def residuals(self) -> tuple[sympy.Expr, ...]:
+        """What is zero where the attitudes of a member are rotations."""
+        known = dict(turning_residuals(self.equations.setting))
+        new = self.rename(self.middle, 0, 0)
+        rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
+        return self.see((self.write(known[name]) for name in rows if known), new)
 
     # -- sums ---------------------------------------------------------------------------
 
@@ -275,7 +331,7 @@ class _Reader:
         ):
             yield Total(component, sympy.Add(*(each.symbol for each in parts)), tuple(parts))
 
-    def _terms(self, each: tree.Sum, term: tree.Node) -> list[sympy.Expr]:
+    def _terms(self, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
         """The components of the term of a sum, in generic symbols."""
         if len(each.indices) > 1:
             return [self._see_pair(value) for value in self.value(self._place_pair(each, term))]
@@ -283,7 +339,8 @@ class _Reader:
         at = 0 if self.members.periodic else before
         placed = place_at(term, {each.indices[0]: at}, self.members)
         new = self.rename(at, before, after)
-        return [self.see(self.write(value), new) for value in self.value(placed)]
+        written = entries(self.written.value(placed))
+        return self.see(map(self.write, self.value(placed)), new, written)
 
     # -- pairs --------------------------------------------------------------------------
 
@@ -299,7 +356,7 @@ class _Reader:
         new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
         others = [self.partners[each] for each in own]
         new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
-        return self.see(self.write(value), new)
+        return self.see([self.write(value)], new)[0]
 
     @cached_property
     def pair_energies(self) -> list[Element]:
@@ -328,13 +385,13 @@ class _Reader:
             terms.append(value)
         return terms
 
-    def _flow(self, energy: Element) -> list[Element]:
-        """The brackets of the first member's state with a function."""
+    def _flow(self, energy: Element, member: int = 0) -> list[Element]:
+        """The brackets of a member's state with a function."""
         tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
         assert tensor is not None, self.equations.route
         state = self.equations.variables
         slopes = field.gradient(energy, state)
-        rows = [state.index(name) for name in self.names_of(self.declared.variables, 0)]
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
         return [
             field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
             for row in rows
@@ -344,30 +401,42 @@ class _Reader:
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
         """What the partners add to the rates of a member, by the components to which they add."""
         field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
-        flows = zip(*map(self._flow, self.pair_energies), strict=True)
-        for state, parts in zip(self.states, flows, strict=True):
-            term = field.sum(parts)
+        flows = [self._flow(energy) for energy in self.pair_energies]
+        for n, state in enumerate(self.states):
+            term = field.sum(flow[n] for flow in flows)
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
                 sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
         return sums
 
-    @property
-    def rates_with_pairs(self) -> Iterator[sympy.Expr]:
-        """The rates of a member with sums over its partners.
-
-        What the energy of one member gives is the member's own share.
-        """
-        spec, field = self.equations.spec, self.equations.setting.field
+    @cached_property
+    def own_energy(self) -> Element:
+        """What the sums over members give to the energy of the window."""
+        spec, values = self.equations.spec, list[Element]()
         assert spec.hamiltonian is not None, spec.name
-        own = [field.zero for _ in self.states]
         for each, term in self.sums_of(spec.hamiltonian):
             if len(each.indices) == 1:
-                placed = place_at(term, {each.indices[0]: 0}, self.members)
-                flow = self._flow(*self.value(placed))
-                own = [a + b for a, b in zip(own, flow, strict=True)]
-        new = self.rename(0, 0, 0)
-        for state, value in zip(self.states, own, strict=True):
-            total = self.see(self.write(value), new)
+                before, after = (0, 0) if self.members.periodic else reach(each.term)
+                for at in range(before, self.members.count - after):
+                    values += self.value(place_at(term, {each.indices[0]: at}, self.members))
+        return self.equations.setting.field.sum(values)
+
+    def _forces(self, member: int) -> list[Element]:
+        """What forces add to the rates of a member."""
+        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
+        zero = self.equations.setting.field.zero
+        return [known.get(name, zero) for name in self.names_of(self.declared.variables, member)]
+
+    def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:
+        """The rates of a member with sums over its partners.
+
+        What the energy of members and neighbours gives is the member's own share, and so are
+        forces.
+        """
+        width = self.declared.reach
+        new = self.rename(member, width, width)
+        flow, forces = self._flow(self.own_energy, member), self._forces(member)
+        own = (self.write(a + b) for a, b in zip(flow, forces, strict=True))
+        for state, total in zip(self.states, self.see(own, new), strict=True):
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

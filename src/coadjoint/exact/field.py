@@ -53,7 +53,7 @@ def refuse_call(function: str, *arguments: Any) -> NoReturn:
     raise AssertionError(f"{function}{arguments} in a function-free element")
 
 
-_SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ELEMENTARY}
+SYMPY_FUNCTIONS = {name: getattr(sympy, name) for name in ELEMENTARY}
 
 
 class Field(Rationals):
@@ -366,7 +366,7 @@ class Field(Rationals):
     def to_sympy(self, element: Element) -> sympy.Expr:
         """The element as a SymPy expression of plain symbols, for people to read and use."""
         functions = {
-            sympy.Symbol(generator): _SYMPY_FUNCTIONS[self.adjoined[generator].function](
+            sympy.Symbol(generator): SYMPY_FUNCTIONS[self.adjoined[generator].function](
                 *map(self.to_sympy, self.adjoined[generator].arguments)
             )
             for generator in self._calls_in(element)

@@ -6,6 +6,8 @@ of generated files and in documents.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.exact.element import Element
 from coadjoint.exact.field import Field
@@ -34,8 +36,10 @@ def element_text(field: Field, element: Element) -> str:
 
 def _fraction(field: Field, quotient: Written) -> str:
     """One quotient as text."""
-    top = _sum(field, quotient.monomials)
-    bottom = [_power(_bracket(field, d), e) for d, e in quotient.divisors]
+    turns = {d: e for d, e in quotient.divisors if _is_turn(field, d)}
+    scale = 4 ** sum(turns.values())  # 1/atan(1) is 4/pi
+    top = _sum(field, tuple(replace(m, number=m.number * scale) for m in quotient.monomials))
+    bottom = [_power("pi" if d in turns else _bracket(field, d), e) for d, e in quotient.divisors]
     if not bottom:
         return top
     lead = f"({top})" if len(quotient.monomials) > 1 else top
@@ -69,6 +73,11 @@ def _bracket(field: Field, element: Element) -> str:
     """A factor of a denominator: in brackets unless it is a single name."""
     text = element_text(field, element)
     return text if text.isidentifier() else f"({text})"
+
+
+def _is_turn(field: Field, divisor: Element) -> bool:
+    """Whether a divisor is an eighth of a turn, and nothing else."""
+    return any(_is_eighth(field, name) and divisor == field[name] for name in field.adjoined)
 
 
 def _is_eighth(field: Field, name: str) -> bool:

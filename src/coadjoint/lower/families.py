@@ -26,8 +26,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+import sympy
+
 from coadjoint.families import Family, Sum, Symbol, Total, Tree
-from coadjoint.lower.family_trees import Inserting, factor, factor_whole
+from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
@@ -38,6 +40,8 @@ LANES: Final = 8
 FEWEST: Final = 5 * LANES
 #: What the names of sums begin with; their number follows.
 SUM: Final = "_sum"
+#: Operations of a tree beyond which it is left as it is: to collect its terms takes seconds.
+COLLECTED: Final = 60
 
 
 @dataclass(frozen=True)
@@ -162,6 +166,9 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.totals("energy", energies, ()))
     if family.totals:
         functions.append(lowering.totals("observables", family.totals, (len(family.totals),)))
+    if family.turned:
+        functions.append(lowering.of_members("constraint_residual", family.residuals))
+        functions.append(lowering.of_members("projection", family.turned))
     return {each.name: each for each in functions}
 
 
@@ -259,6 +266,16 @@ class _Lowering:
         assert found.pair_sums <= len(family.states), name
         return found
 
+    def of_members(self, name: str, trees: Sequence[Tree]) -> Loops:
+        """A function of each member alone."""
+        return Loops(
+            name=name,
+            is_periodic=self.family.index.periodic,
+            blocks=len(self.family.states),
+            shape=None,
+            member=self._part(name, trees, {}),
+        )
+
     def totals(self, name: str, totals: Sequence[Total], shape: tuple[int, ...]) -> Loops:
         """Numbers of the whole system: sums first, then what follows from them."""
         groups: dict[tuple[str, int, int], list[Sum]] = {}
@@ -302,7 +319,9 @@ class _Lowering:
             of_pair: Whether both members of a pair have them: those of member j follow.
         """
         own, shared = self.family.states, self.family.shared
-        forms = ([form(tree, own, shared) for tree in trees] for form in (factor_whole, factor))
+        is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
+        ways = (leave,) if is_long else (factor_whole, factor, leave)
+        forms = ([form(tree, own, shared) for tree in trees] for form in ways)
         parts = [self._lower(name, form, sums, slopes, of_pair=of_pair) for form in forms]
         return min(parts, key=lambda part: sum(part.program.operation_counts().values()))
 

@@ -118,6 +118,9 @@ def _list_parts(
         assert len(ordered) == len(known), loops.name
         yield loops.finish, [total.formula for total in totals], ordered
         return
+    if loops.name in ("constraint_residual", "projection"):
+        yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
+        return
     sums = [each.symbol for each in family.pair_sums]
     terms = [each.term for each in family.pair_sums]
     places = [(loops.member, family.rates)]
@@ -167,7 +170,7 @@ def _are_equal(found: Tree, wanted: Tree) -> bool:
     """Whether two trees have one value."""
     difference = found - wanted
     if not difference.has(sympy.Function) and not difference.atoms(sympy.NumberSymbol):
-        return bool(sympy.cancel(sympy.together(difference)) == 0)
+        return difference.expand() == 0 or bool(sympy.cancel(sympy.together(difference)) == 0)
     names = sorted(difference.free_symbols, key=str)
     for n in range(1, _POINTS + 1):
         at = {s: sympy.Rational(7 * n + 3 * k + 1, 5 * n + k + 2) for k, s in enumerate(names)}

@@ -134,3 +134,8 @@ def factor(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
 def factor_whole(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
     """The same with what all terms share before the sum."""
     return sympy.factor_terms(factor(tree, own, shared))
+
+
+def leave(tree: Tree, own: Sequence[Symbol], shared: Sequence[Symbol]) -> Tree:
+    """The same as it is written."""
+    return tree

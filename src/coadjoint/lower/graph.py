@@ -83,7 +83,13 @@ class Graph:
         if self.kinds[a] == "negate" and self.kinds[b] == "negate":
             return self.negate(self.add(self.operands[a][0], self.operands[b][0]))
         if self.kinds[a] == "negate":  # b - a reads better than -a + b; the bits are the same
-            return self._intern("add", (b, a))
+            a, b = b, a
+        if ("add", (b, a), "") in self._numbers:
+            a, b = b, a
+        elif self.kinds[b] == "negate":  # b - a where there is a - b
+            opposite = self._numbers.get(("add", (self.operands[b][0], self.negate(a)), ""))
+            if opposite is not None:
+                return self.negate(opposite)
         return self._intern("add", (a, b))
 
     def multiply(self, a: int, b: int) -> int:

@@ -17,7 +17,7 @@ from coadjoint.derive import Equations
 from coadjoint.exact import Element, Field
 from coadjoint.exact.rationals import Written
 from coadjoint.lower.graph import Graph
-from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, list_products, nest
+from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, complete, list_products, nest
 from coadjoint.lower.products import Pair, Product, share_pairs
 from coadjoint.lower.scales import Scales
 
@@ -77,13 +77,16 @@ class Lowering:
         self._marks: set[Any] = set()
         self._numbers = equations.numbers
         self._kept: list[Element] = []
-        self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
+        self._products: dict[int, list[Sequence[Product]]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
+        self._nests: dict[int, Sum] = {}
         for element in elements:
             self._form(element, _MEMBER)
+        self._complete()
         self._coefficients_by_name = dict(self._coefficients.values())
         self._shared: dict[int, dict[Product, Product]] = {}
         self._pairs: dict[str, Pair] = {}
-        for level, products in self._products.items():
+        for level, listed in self._products.items():
+            products = [product for each in listed for product in each]
             over_pairs, pairs = share_pairs(products, f"_m{level}_{{}}".format)
             self._shared[level] = dict(zip(products, over_pairs, strict=True))
             self._pairs |= pairs
@@ -139,7 +142,9 @@ class Lowering:
         written = {mark: self._coefficient(by_mark[mark]) for mark in groups}
         nested = self._nest(groups, written) if self._nested and level == _MEMBER else ()
         plain = (product for members in groups.values() for _, product in members)
-        self._products[level] += list_products(nested) if nested else plain
+        if nested:
+            self._nests[len(self._products[level])] = nested
+        self._products[level].append([*(list_products(nested) if nested else plain)])
         return Ratio(
             tuple((written[mark], tuple(group)) for mark, group in groups.items()),
             tuple((self._form(divisor, level), power) for divisor, power in divisors),
@@ -157,6 +162,13 @@ class Lowering:
             lead = () if written[mark] == 1 else (name,)
             terms += [Term(sign, (*lead, *product)) for sign, product in members]
         return nest(terms, self._nested)
+
+    def _complete(self) -> None:
+        """The nested sums with what makes sums in them equal; their products in the old places."""
+        completed = complete([*self._nests.values()])
+        self._completed = dict(zip(map(id, self._nests.values()), completed, strict=True))
+        for place, nested in zip(self._nests, completed, strict=True):
+            self._products[_MEMBER][place] = [*list_products(nested)]
 
     def _signed_coefficient(self, coefficient: Element) -> tuple[int, Element, Any]:
         """Sign, what it multiplies, and a hashable mark that equal values share.
@@ -256,7 +268,7 @@ class Lowering:
         """The addends of a numerator."""
         graph, terms = self.graph, list[int]()
         if ratio.nested:
-            return self._addends(ratio.nested)
+            return self._addends(self._completed[id(ratio.nested)])
         for coefficient, members in ratio.groups:
             factor = self._build_coefficient(coefficient)
             products = [(sign, self._shared[level][product]) for sign, product in members]

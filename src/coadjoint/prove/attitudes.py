@@ -33,14 +33,12 @@ def about_attitudes(motion: Motion) -> Iterator[Examined]:
     for variable in motion.spec.turning:
         text = f"{gram_name(variable)} = {describe_gram(motion.spec, variable)} is conserved"
         yield text, "attitude", partial(_stays, motion, variable)
-        back = motion.equations.turning_back
-        if back is not None:
-            yield (
-                f"the solvers move {variable.name} back: {gram_name(variable)} = 1 + D becomes "
-                "1 + D^2 (D - 3)/4",
-                "attitude",
-                partial(_is_moved_back, back, variable),
-            )
+        yield (
+            f"the solvers move {variable.name} back: {gram_name(variable)} = 1 + D becomes "
+            "1 + D^2 (D - 3)/4",
+            "attitude",
+            partial(_is_moved_back, motion.equations, variable),
+        )
 
 
 def _moves_so(motion: Motion, expected: Mapping[str, Element]) -> Decision:
@@ -49,10 +47,12 @@ def _moves_so(motion: Motion, expected: Mapping[str, Element]) -> Decision:
     return decide_zero(rates, motion.field, motion.where)
 
 
-def _is_moved_back(back: Equations, variable: Variable) -> list[Element]:
+def _is_moved_back(equations: Equations, variable: Variable) -> list[Element]:
     """The product after the step minus what it is to be, row by row."""
+    back = equations.projection
+    assert back is not None, "there is an attitude"
     setting, before = back.setting, gram_matrix(back.setting, variable)
-    moved = dict(zip(setting.state, back.exact.rates, strict=True))
+    moved = dict(zip(setting.state, map(back.close, back.exact.rates), strict=True))
     after = [setting.field.substitute(x, moved) for row in before for x in row]
     one = identity(len(before))
     defect = subtract(before, one)

@@ -222,7 +222,8 @@ def _about_arm(motion: ConstrainedRates, touch: Touch) -> tuple[str, Callable[[]
 
 def _about_projection(motion: ConstrainedRates, touch: Touch) -> Iterator[Examined]:
     """That the projection is a step of Newton, and leaves a state that is in contact."""
-    first = motion.equations.projection
+    whole = motion.equations
+    first = whole.onto_constraints if whole.spec.turning else whole.projection
     if first is None:
         return
     field, names = motion.field, [name for name, _ in touch.missed]

@@ -60,8 +60,10 @@ def kernel_context(
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         unit_of_time=spec.units.time,
+        written=(spec.index[0].name, spec.index[0].size or 0) if spec.written else None,
         domain=tuple(bound for bound, _ in bounds(equations)),
-        turning=tuple(v.name for v in spec.turning if equations.turning_back is not None),
+        turning=tuple(v.name for v in spec.turning),
+        is_bound=bool(equations.exact.residuals),
     )
 
 
@@ -109,6 +111,7 @@ def family_context(
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
         },
+        repeating=declared.repeating,
         observables=tuple(
             _observable(equations, kept[name])
             for name in (

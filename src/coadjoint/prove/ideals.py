@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 from itertools import islice
 from operator import mul
 from typing import Any
@@ -373,7 +373,41 @@ class Ideal:
 
 
 def _groebner_basis(polynomials: Sequence[PolyElement]) -> list[PolyElement]:
-    """A Groebner basis; of one polynomial it is that polynomial."""
-    if len(polynomials) < 2:
-        return list(polynomials)
+    """A Groebner basis; of one polynomial it is that polynomial.
+
+    Of polynomials that share no symbol the bases together are one, since their leading monomials
+    have no common factor: attitudes of many bodies are looked at one by one.
+    """
+    basis = list[PolyElement]()
+    for symbols, part in _split_apart(polynomials):
+        whole, places = part[0].ring, sorted(symbols)
+        few = PolyRing([f"x{n}" for n in range(len(places))], whole.domain, whole.order)
+        given = (few.from_dict(_pick(each, places)) for each in part)
+        for found in _solve_part(tuple(given)) if len(part) > 1 else given:
+            rows = (dict(zip(places, exponents, strict=True)) for exponents in found)
+            spread = (tuple(row.get(n, 0) for n in range(whole.ngens)) for row in rows)
+            basis.append(whole.from_dict(dict(zip(spread, found.values(), strict=True))))
+    return basis
+
+
+def _pick(polynomial: PolyElement, places: Sequence[int]) -> dict[tuple[int, ...], Any]:
+    """A polynomial in the symbols at some places, which has no others."""
+    return {tuple(exponents[n] for n in places): x for exponents, x in polynomial.items()}
+
+
+@lru_cache(maxsize=16)
+def _solve_part(polynomials: tuple[PolyElement, ...]) -> list[PolyElement]:
+    """A Groebner basis; that of equal bodies is found once."""
     return list(groebner(list(polynomials), polynomials[0].ring))
+
+
+def _split_apart(polynomials: Sequence[PolyElement]) -> list[tuple[set[int], list[PolyElement]]]:
+    """Polynomials in groups that share no symbol, with the places of their symbols."""
+    groups: list[tuple[set[int], list[PolyElement]]] = []
+    for each in polynomials:
+        named = {n for exponents in each for n, e in enumerate(exponents) if e}
+        near = [group for group in groups if group[0] & named]
+        groups = [group for group in groups if group not in near]
+        symbols = named.union(*(group[0] for group in near))
+        groups.append((symbols, [*(p for group in near for p in group[1]), each]))
+    return groups

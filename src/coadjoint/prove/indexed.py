@@ -1,4 +1,4 @@
-"""Claims about every number of members, from proofs for two small numbers.
+"""Claims about every number of members, from proofs for two or three small numbers.
 
 A statement of one member, or of some next to each other, reads a bounded number of members: it
 holds for all as soon as it holds where that many are written out and keep apart. A total is a sum
@@ -9,16 +9,20 @@ over the members, and so is its rate:
   every F(N) does. A shorter ring is a longer one that repeats itself;
 * in an open chain, F(N+1) - F(N) is a function of the last w + 1 members: likewise from w on;
 * with pairs, the rate of a sum over members is a sum of terms of one member and of two. If it
-  vanishes for 2 members and for 3, both sums vanish for every N.
+  vanishes for 2 members and for 3, both sums vanish for every N;
+* with pairs and neighbours, what two new members far from each other add together, and not each
+  alone, is a function of them and the members near them, the same for every N. It vanishes if F
+  does for three numbers that follow one another; then F does for every larger one.
 
 The energy is kept since the bracket is antisymmetric for each member. Comes in: the certificates of
-two windows. Goes out: one certificate, in which each claim says for which N it holds.
+the windows. Goes out: one certificate, in which each claim says for which N it holds.
 Read next: `coadjoint.spec.windows`, which chooses the windows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter
 
@@ -27,8 +31,10 @@ from coadjoint.exact.dense import commutator
 from coadjoint.exact.text import WHILE
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import Decision, decide_zero, make_entry
+from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.model import Lax, Spec, Windows
+from coadjoint.spec.spatial import describe_gram, gram_name
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
@@ -50,9 +56,11 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     """
     family = spec.family
     assert family is not None, spec.name
-    first, second, *rest = (list(_keep_general(spec, each)) for each in certificates)
-    assert [c.statement for c in first] == [c.statement for c in second], spec.name
-    claims = [_join(family, both) for both in zip(first, second, strict=True)]
+    general = zip(list_windows(spec), certificates, strict=True)
+    kept = [_merge(_keep_general(family, *each)) for each in general]
+    windows, rest = kept[: len(family.windows)], kept[len(family.windows) :]
+    assert len({tuple(c.statement for c in each) for each in windows}) == 1, spec.name
+    claims = [_join(family, same) for same in zip(*windows, strict=True)]
     claims += [_examine_lax(family)] if family.lax else []
     if family.loaded is not None:
         own = {f"{each.formula.in_one_line} is conserved" for each in family.loaded.conserved}
@@ -115,28 +123,69 @@ def _decide_lax(spec: Spec, pair: Lax) -> Decision:
     return decide_zero(defects, field)
 
 
-def _keep_general(spec: Spec, certificate: Certificate) -> Iterator[Claim]:
+def _keep_general(family: Windows, window: Spec, certificate: Certificate) -> Iterator[Claim]:
     """The claims of a window that do not depend on its number of members, in general words."""
-    casimirs = {f"{each.in_one_line} is a Casimir" for each in spec.casimirs}
+    casimirs = {f"{each.in_one_line} is a Casimir" for each in window.casimirs}
+    words = _list_words(family, window)
     for claim in certificate.claims:
         if claim.kind == "algebra":
             yield replace(claim, statement=_ALGEBRA)
-        elif claim.kind in ("jacobi", "equivalence", "conserved") or claim.statement in casimirs:
+        elif claim.kind in ("conserved", "attitude"):
+            yield replace(claim, statement=_say_of_member(claim.statement, words))
+        elif claim.kind in ("jacobi", "equivalence") or claim.statement in casimirs:
             yield claim
 
 
-def _join(family: Windows, both: tuple[Claim, Claim]) -> Claim:
-    """One claim from the claims of two windows: the weaker verdict decides."""
+def _list_words(family: Windows, window: Spec) -> dict[str, str]:
+    """The names that texts have of what each member has, with those of member i for them."""
+    words, i = dict[str, str](), family.index.name
+    for each in window.variables:
+        generic = each.name.rpartition("_")[0]
+        own = component_names(generic, each.shape, each.form)
+        named = [(each.name, generic), *zip(each.components, own, strict=True)]
+        words |= {f"{d}{old}": f"{d}{new}[{i}]" for old, new in named for d in ("", "d")}
+        if each.turning:
+            words[gram_name(each)] = describe_gram(window, each).replace(
+                each.name, f"{generic}[{i}]"
+            )
+    return words
+
+
+def _say_of_member(statement: str, words: Mapping[str, str]) -> str:
+    """A statement about certain members, as one about each: ``... where R[i]*... = 1``."""
+    text = re.sub(r"[A-Za-z]\w*", lambda found: words.get(found[0], found[0]), statement)
+    claim, where, level = text.partition(" where ")
+    same, *rest = claim.split(" = ", 1)  # the product that stays has no name of its own
+    claim = rest[0] if rest and rest[0].startswith(f"{same} is") else claim
+    parts = re.split(r", (?![^()]*\))", level)
+    return f"{claim}{where}{', '.join(dict.fromkeys(parts))}"
+
+
+def _merge(claims: Iterable[Claim]) -> list[Claim]:
+    """Claims about one member each as one claim about every member: the weakest of them."""
+    merged = dict[str, Claim]()
+    for claim in claims:
+        known = merged.setdefault(claim.statement, claim)
+        worst = min(known, claim, key=lambda each: _ORDER.index(each.verdict))
+        if claim is not known:
+            worst = replace(worst, seconds=known.seconds + claim.seconds)
+        merged[claim.statement] = worst
+    return list(merged.values())
+
+
+def _join(family: Windows, same: Sequence[Claim]) -> Claim:
+    """One claim from the claims of all windows: the weakest verdict decides."""
     counts = [len(window.state) // len(family.variables) for window in family.windows]
-    worst = min(both, key=lambda claim: _ORDER.index(claim.verdict))
+    worst = min(same, key=lambda claim: _ORDER.index(claim.verdict))
     statement = f"{worst.statement}, for every N >= {family.least}"
     if worst.verdict is not Verdict.PROVED:
-        method = f"{worst.method}, with {counts[both.index(worst)]} members"
+        method = f"{worst.method}, with {counts[same.index(worst)]} members"
         return replace(worst, statement=statement, method=method)
     reason = _reason(family, worst)
-    method = f"{_generalise(worst.method)}, with {counts[0]} and with {counts[1]} members; {reason}"
+    several = f"{', with '.join(map(str, counts[:-1]))} and with {counts[-1]}"
+    method = f"{_generalise(worst.method)}, with {several} members; {reason}"
     return replace(
-        worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in both)
+        worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in same)
     )
 
 
@@ -147,13 +196,17 @@ def _generalise(method: str) -> str:
 
 
 def _reason(family: Windows, claim: Claim) -> str:
-    """Why two numbers of members are enough."""
-    if claim.statement.startswith("the energy"):
+    """Why so many numbers of members are enough."""
+    if claim.statement.startswith("the energy") and not family.windows[0].forces:
         return "the bracket of each member is antisymmetric"
     if claim.kind != "conserved" or claim.statement in family.of_members:
         if family.pairs:
+            if len(family.windows) > 2:
+                return "each of its terms reads members next to each other, or those and a partner"
             return "each of its terms reads one member or two"
         return "it reads one member and those next to it"
+    if len(family.windows) > 2:
+        return "two more members far from each other add the same terms for every N"
     if family.pairs:
         return "the rate is a sum over members and pairs"
     return "one more member adds the same terms for every N"

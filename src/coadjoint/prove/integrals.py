@@ -58,16 +58,20 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
 
 def _statement(motion: Motion, claim: Integral) -> str:
     """The claim, where it holds, and what inputs must do for it."""
-    where, setting, names = _vanishing(motion, claim), motion.setting, motion.emitted
+    where, setting, names = (
+        _vanishing(claim, _rotations(motion, claim)),
+        motion.setting,
+        motion.emitted,
+    )
     parts = (g for f in (claim.formula, *claim.where) for g in setting.components(f, names))
     held = while_constant(motion.equations, parts)
     return f"{claim.formula.in_one_line} is conserved" + (f" where {where}" if where else "") + held
 
 
-def _vanishing(motion: Motion, claim: Integral) -> str:
+def _vanishing(claim: Integral, rotations: Sequence[tuple[str, Sequence[Element]]]) -> str:
     """The level set of a claim: ``dot(Pi, Gamma) = 0``; of attitudes what makes them rotations."""
     level = [f"{formula.in_one_line} = 0" for formula in claim.where]
-    return ", ".join([*level, *(text for text, _ in _rotations(motion, claim))])
+    return ", ".join([*level, *(text for text, _ in rotations)])
 
 
 def _rotations(motion: Motion, claim: Integral) -> list[tuple[str, Sequence[Element]]]:
@@ -87,13 +91,13 @@ def _integral(motion: Motion, claim: Integral) -> Decision:
     The motion must stay on the level set, too: there the functions that define it keep the value 0.
     """
     setting, names = motion.setting, motion.emitted
-    parts = setting.components(claim.formula, names)
+    parts, rotations = setting.components(claim.formula, names), _rotations(motion, claim)
     level = [g for f in claim.where for g in setting.components(f, names)]
-    level += [defect for _, defects in _rotations(motion, claim) for defect in defects]
+    level += [defect for _, defects in rotations for defect in defects]
     kept, rates = (list(_list_rates(motion, functions)) for functions in (level, parts))
-    text = ", ".join(filter(None, (_vanishing(motion, claim), motion.where.text)))
+    text = ", ".join(filter(None, (_vanishing(claim, rotations), motion.where.text)))
     written = list(map(motion.in_state, parts))
-    if _rotations(motion, claim) and (seen := _look_at_rotations(motion, rates, written)):
+    if rotations and (seen := _look_at_rotations(motion, rates, written)):
         return seen
     where = motion.where.also(list(map(motion.in_state, level)), text)
     return _conserved_on(where, kept, rates, written)

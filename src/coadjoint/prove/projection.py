@@ -15,38 +15,74 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Distribution
-from coadjoint.derive.mechanics.kinematics import multiplier_name, shift_name
+from coadjoint.derive.mechanics.kinematics import moved_names, multiplier_name, shift_name
 from coadjoint.derive.mechanics.solver import solution_defects
+from coadjoint.derive.mechanics.turning import turned_back
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 
 
 def about_projection(first: Equations) -> Iterator[Examined]:
-    """Three claims where constraints are kept, none elsewhere."""
-    if first.projection is None:
+    """Three claims where constraints are kept, one more with attitudes; none elsewhere."""
+    onto = first.onto_constraints if first.spec.turning else first.projection
+    if onto is None:
         return
-    distribution = first.projection.distribution
+    turning = ", ".join(each.name for each in first.spec.turning)
+    if turning:
+        yield (
+            f"the projection moves {turning} back first, then the state onto the constraints at "
+            f"the moved {turning}, and this second move leaves {turning} as it is",
+            "constraint",
+            partial(_composition, first),
+        )
+    distribution = onto.distribution
     assert distribution is not None
     if not distribution.kept:  # points of contact: see `coadjoint.prove.rolling`
         return
     names = ", ".join(equation.name for equation, _ in distribution.kept)
+    then = f"once {turning} is moved back, " if turning else ""
     arrives = f"the projection moves every state onto {names}, where its equations are regular"
-    yield arrives, "constraint", partial(_arrival, first.projection)
+    yield then + arrives, "constraint", partial(_arrival, onto)
     least = "the kinetic energy of the change is stationary: the least one where kinetic energy is"
     if mechanics(distribution.setting).bending:
         least = "d . M d of the change d is stationary, M being d2l_c/deta2 before it: the least "
         least += "one where M is"
     yield (
-        f"the projection changes velocities alone, and {least} positive",
+        f"{then}the projection changes velocities alone, and {least} positive",
         "constraint",
-        partial(_least, first.projection),
+        partial(_least, onto),
     )
     yield (
-        "the projection leaves a state on the constraints",
+        f"{then}the projection leaves a state on the constraints",
         "constraint",
-        partial(_rest, first.projection),
+        partial(_rest, onto),
     )
+
+
+def _composition(first: Equations) -> list[Element]:
+    """All that is computed minus what each of the two moves computes, by the names before.
+
+    Also what the second move changes of attitudes, and those before that it still reads.
+    """
+    whole, onto, field = first.projection, first.onto_constraints, first.setting.field
+    assert whole is not None, "there is an attitude"
+    assert onto is not None, "asked for only where constraints are kept"
+    back, names = turned_back(first.setting), moved_names(first.spec)
+    given = {moved: field[name] for name, moved in names.items()}
+    made = [*whole.exact.definitions, *zip(first.setting.state, whole.exact.rates, strict=True)]
+    wanted = [(names[name], value) for name, value in back.items()]
+    count = len(wanted)
+    wanted += [*onto.exact.definitions, *zip(first.setting.state, onto.exact.rates, strict=True)]
+    if [name for name, _ in made] != [name for name, _ in wanted]:
+        return [field.one]
+    left = dict(zip(onto.setting.state, onto.exact.rates, strict=True))
+    moved = [x if n < count else field.substitute(x, given) for n, (_, x) in enumerate(made)]
+    return [
+        *(x - y for x, (_, y) in zip(moved, wanted, strict=True)),
+        *(left[name] - field[name] for name in names),
+        *(field[name] for _, x in made[count:] for name in names if name in field.reach(x)),
+    ]
 
 
 def _arrival(projection: Equations) -> list[Element]:

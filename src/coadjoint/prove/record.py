@@ -14,6 +14,7 @@ from typing import Any
 from coadjoint.derive.setting import Declared
 from coadjoint.prove.certificate import Certificate
 from coadjoint.spec import Spec
+from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
 
@@ -37,16 +38,28 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
     if spec.observables:  # claims name them
         record["observables"] = {each.name: each.formula.in_one_line for each in spec.observables}
-    if spec.constraints:  # in the order of the rows of the function constraint_residual
-        record["constraints"] = {
-            name: each.in_one_line for each in spec.constraints for name in each.components
-        }
-    if spec.turns_back:
-        record["constraints"] = {
-            name: text for each in spec.turning for name, text in turning_rows(spec, each).items()
-        }
+    kept = {name: each.in_one_line for each in spec.constraints for name in each.components}
     if spec.rolling is not None and spec.rolling.contact is not None:
-        record["constraints"] |= spec.rolling.contact.texts
+        kept |= spec.rolling.contact.texts
+    kept |= _list_rotations(spec)
+    if kept:  # in the order of the rows of the function constraint_residual
+        record["constraints"] = kept
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"
+
+
+def _list_rotations(spec: Spec) -> dict[str, str]:
+    """What makes attitudes rotations by name; of equal members once, with their index."""
+    family = spec.family
+    if family is None:
+        return {n: text for each in spec.turning for n, text in turning_rows(spec, each).items()}
+    generic = {member_name(name, 0): name for name in family.variables}
+    return {
+        name.replace(each.name, generic[each.name], 1): text.replace(
+            each.name, f"{generic[each.name]}[{family.index.name}]"
+        )
+        for each in spec.turning
+        if each.name in generic
+        for name, text in turning_rows(spec, each).items()
+    }

@@ -262,7 +262,8 @@ class FamilyContext:
         observables: Quantities that the function ``observables`` returns, in order.
         loops: The functions by name.
         defaults: Of quantities that differ from member to member: component after component
-            a number for each of the members of the declared size.
+            a number for each of the members of the declared size, or of some that repeat.
+        repeating: Names of the quantities of which they repeat.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
     """
@@ -280,6 +281,7 @@ class FamilyContext:
     observables: tuple[Quantity, ...]
     loops: dict[str, Loops]
     defaults: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    repeating: tuple[str, ...] = ()
     supported: int = 0
     unit_of_time: str = "s"
 
@@ -318,6 +320,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "licence": tell_licence(context.license),
         "id": identity,
         "lanes": LANES,
+        "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
@@ -336,7 +339,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
         },
-        "shapes": [f"{quote(name)}: {loops.shape}" for name, loops in context.loops.items()],
+        "shapes": [
+            f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
+        ],
         "system": [
             quote(context.name),
             "__file__",
@@ -345,6 +350,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
+            *([f"repeating={context.repeating!r}"] * bool(context.repeating)),
         ],
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -358,18 +364,28 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     ]
 
 
+def tell_shape(loops: Loops, context: FamilyContext) -> str:
+    """The shape of a result: None of one like the state, or rows for each member."""
+    if loops.member is None:
+        return str(loops.shape)
+    rows = len(loops.member.program.outputs)
+    return str(None if rows == sum(len(each.components) for each in context.state) else rows)
+
+
 def tell_summary(loops: Loops) -> str:
     """One sentence on a function."""
     rows = "rows * N" if loops.shape is None else ", ".join(map(str, loops.shape))
     if loops.member:
         rows = f"{len(loops.member.program.outputs)} * N"
     shape = ", ".join([rows, "..."] if rows else ["..."])
-    return f"{KERNEL_FUNCTIONS[loops.name].summary}, shape ({shape})."
+    function = KERNEL_FUNCTIONS[loops.name]
+    return f"{function.turning or function.summary}, shape ({shape})."
 
 
 def count_costs(loops: Loops) -> list[str]:
     """What a call costs, for each member or pair."""
-    told = [("pair of members", loops.partners), ("member", loops.member)]
+    told = [("pair of members, for both of them", loops.partners)]
+    told += [("member without its pairs" if loops.partners else "member", loops.member)]
     told += [
         ("member" if each.over == "members" else "pair of members", each.part)
         for each in loops.totals

@@ -234,6 +234,9 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     present = [f"{name}={name.upper()}" for name in _optional(context)]
     if context.unit_of_time != "s":
         present.append(f"unit_of_time={quote(context.unit_of_time)}")
+    if context.written is not None:
+        index, size = context.written
+        present.append(f"written=({quote(index)}, {size})")
     return [quote(context.name), *tables, quote(identity), *domain, *present]
 
 
@@ -330,9 +333,9 @@ def _summary(context: KernelContext, program: Program) -> str:
     """One sentence on a function."""
     shape = ", ".join([*map(str, program.shape), "..."])
     function = KERNEL_FUNCTIONS[program.name]
-    constrained = any(other.name == "constraint_residual" for other in context.programs)
-    kind = function.turning if context.turning else constrained and function.constrained
-    text = kind or function.summary
+    text = context.is_bound and context.turning and function.turning_bound
+    text = text or (context.is_bound and function.constrained)
+    text = text or (context.turning and function.turning) or function.summary
     return f"{text}, shape ({shape})."
 
 

@@ -146,6 +146,7 @@ def rebuild(
         stepwise=said.get("stepwise", ""),
         seed=int(said["seed"]) if "seed" in said else None,
         keeps=said.get("keeps", ""),
+        projection=said.get("projection", ""),
         codes=None if codes is None else codes.reshape(status.shape),
         **_read_course(said["course"], path),
     )

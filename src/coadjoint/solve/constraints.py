@@ -35,6 +35,23 @@ SETTLING = 20
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
 
 
+def describe_projection(system: System, method: str) -> str:
+    """Onto what states are moved, and when; "" for a System whose states are not.
+
+    Args:
+        system: The System.
+        method: As `Course.method` has it.
+    """
+    if "projection" not in system.functions:
+        return ""
+    kept = dict.fromkeys(system.certificate.get("constraints", {}).values())
+    name = method.removeprefix("scipy:")
+    when = "at each sample"
+    if name == method or name in ONE_STEP:
+        when = f"after each step and {when}"
+    return f"{when}, onto {', '.join(kept) or 'the constraints'}"
+
+
 def find_excess(
     system: System, state: Array, residuals: Callable[[Array], Array], atol: float
 ) -> Array:
@@ -50,15 +67,16 @@ def find_excess(
         atol: What the run takes for nothing.
     """
     units = np.array([q.unit_of(name) for q in system.STATE.values() for name in q.components])
-    sizes = np.array([np.abs(state[units == unit]).max(axis=0) for unit in units])
-    steps = 2.0**-20 * np.where(sizes > 0, sizes, 1.0)
+    largest = {unit: np.abs(state[units == unit]).max(axis=0) for unit in dict.fromkeys(units)}
     here = residuals(state)
     with np.errstate(invalid="ignore"):
         off = np.abs(here)
-        for row, step in enumerate(steps):
+        for row in range(0, len(state), system.members):  # equal members have equal units
+            size = largest[units[row]]
+            step = 2.0**-20 * np.where(size > 0, size, 1.0)
             moved = state.copy()
-            moved[row] += step
-            off -= np.abs(residuals(moved) - here) / step * (TYPED * sizes[row] + atol)
+            moved[row : row + system.members] += step
+            off -= np.abs(residuals(moved) - here) / step * (TYPED * size + atol)
     return off
 
 
@@ -158,7 +176,9 @@ class Constraints:
         """What is wrong with a start, and where it would be right."""
         residual = float(self._residuals(state)[row])
         listed = list(self.system.certificate.get("constraints", {}).items())
-        constraint = " {}, {},".format(*listed[row]) if row < len(listed) else f" {row + 1}"
+        kind, member = divmod(row, self.system.members)
+        constraint = " {}, {},".format(*listed[kind]) if kind < len(listed) else f" {row + 1}"
+        constraint += f" of member {member}," if self.system.members > 1 else ""
         return KernelArgumentError(
             f"{self.system.name}: the constraint{constraint} does not hold at the given state: "
             f"left minus right is {residual:.6g}; expected 0.{self._advise(time, state)}",

@@ -58,7 +58,9 @@ class Course:
         driven: Inputs there, ``(m, *batch)``; None if they are constant.
         stepwise: Why Python led the steps; empty where a solver made them all.
         seed: Of the noise; None without any.
-        keeps: What the method keeps of what each path of a motion with noise keeps; empty without.
+        keeps: What the method keeps of what each path of a motion with noise keeps, by its own
+            update; empty without noise.
+        projection: Onto what states are moved, and when; empty where they are not.
         start: Where the trajectories began, if no sample has it.
     """
 
@@ -77,6 +79,7 @@ class Course:
     stepwise: str = ""
     seed: int | None = None
     keeps: str = ""
+    projection: str = ""
     start: Start | None = None
 
     def tell_stepwise(self) -> str:

@@ -48,11 +48,23 @@ def find_attitude_drift(solution: Solution) -> dict[str, float]:
     }
 
 
+def tell_drift(solution: Solution, name: str) -> str:
+    """The drift of an observable as text; of a batch the largest.
+
+    A change that is larger than the value at the start is told as it is, since its ratio to values
+    says nothing: that of what begins at 0 is 1.
+    """
+    axes = len(solution.batch)
+    moved, first = (_find_size(x, axes) for x in (solution.change(name), solution.first(name)))
+    if np.any(moved > first):
+        return f"{np.max(moved):.1e} absolute"
+    return f"{float(np.max(solution.drift[name])):.1e}"
+
+
 def describe_drift(solution: Solution) -> list[str]:
     """A line for each conserved observable and attitude; of a batch the largest drift."""
     most = " up to" if solution.batch else ""
-    values = ((name, float(np.max(value))) for name, value in solution.drift.items())
-    lines = [f"  drift of {name}:{most} {value:.1e}" for name, value in values]
+    lines = [f"  drift of {name}:{most} {tell_drift(solution, name)}" for name in solution.drift]
     turning = solution.attitude_drift.items()
     return lines + [f"  |{name}|^2 - 1: {value:.1e}" for name, value in turning]
 
@@ -69,7 +81,11 @@ def _compare_each(change: Array, values: Array, axes: int) -> Array:
 
     NaN, where a trajectory did not come, is left out; the first sample of each is a number.
     """
-    lead = tuple(range(values.ndim - axes - 1))
-    most = np.fmax.reduce(np.abs(change), axis=-1, initial=0.0).max(axis=lead)
-    size = np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead)
+    most, size = _find_size(change, axes), _find_size(values, axes)
     return np.asarray(np.divide(most, size, out=np.zeros(np.shape(most)), where=size > 0))
+
+
+def _find_size(values: Array, axes: int) -> Array:
+    """The largest number in size at all times, of each trajectory of a batch of so many axes."""
+    lead = tuple(range(values.ndim - axes - 1))
+    return np.asarray(np.fmax.reduce(np.abs(values), axis=-1, initial=0.0).max(axis=lead))

@@ -55,28 +55,29 @@ class FamilySystem(System):
         shared: Quantities,
         indexed: Quantities,
         observables: Quantities,
-        functions: Mapping[str, tuple[int, ...] | None],
+        functions: Mapping[str, tuple[int, ...] | int | None],
         elementary: Sequence[str],
         identity: str,
         unit_of_time: str = "s",
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
+        repeating: Sequence[str] = (),
     ) -> None:
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
-        self._defaults = defaults
+        self._defaults, self._repeating = defaults, repeating
         size = self.index.size or self.small
         check_memory(name, self.index, size * (state.size + indexed.size))
+        self.members = size
         super().__init__(
             name,
             file,
-            Quantities(*(_repeat(each, size, defaults.get(each.name)) for each in state.values())),
-            Quantities(
-                *shared.values(),
-                *(_repeat(each, size, defaults.get(each.name)) for each in indexed.values()),
-            ),
+            Quantities(*(self._repeat(each, size) for each in state.values())),
+            Quantities(*shared.values(), *(self._repeat(each, size) for each in indexed.values())),
             observables,
             {
-                function: (state.size * size,) if shape is None else shape
+                function: shape
+                if isinstance(shape, tuple)
+                else ((state.size if shape is None else shape) * size,)
                 for function, shape in functions.items()
             },
             elementary,
@@ -121,7 +122,27 @@ class FamilySystem(System):
             self.id,
             unit_of_time=self.unit_of_time,
             defaults=self._defaults,
+            repeating=self._repeating,
         )
+
+    def _repeat(self, quantity: Quantity, size: int) -> Quantity:
+        """A quantity of a member as one of all members, component after component.
+
+        Where its default differs from member to member, there is none for another number of them,
+        unless those of some members repeat.
+        """
+        components = tuple(f"{name}[{i}]" for name in quantity.components for i in range(size))
+        default = quantity.default and tuple(v for v in quantity.default for _ in range(size))
+        own = self._defaults.get(quantity.name)
+        if own is not None:
+            some = len(own) // len(quantity.components)
+            fits = size % some == 0 if quantity.name in self._repeating else size == some
+            starts = range(0, len(own), some)
+            default = (
+                tuple(own[k + i % some] for k in starts for i in range(size)) if fits else None
+            )
+        shape = (*quantity.shape, size)
+        return replace(quantity, shape=shape, components=components, default=default)
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Pickled by reference, and its size."""
@@ -132,22 +153,6 @@ class FamilySystem(System):
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
         return f"<System {self.name}: {members}; state {state}; parameters {parameters or 'none'}>"
-
-
-def resize(system: System, sizes: Mapping[str, int]) -> FamilySystem:
-    """A system with other numbers of members, by the name of their index.
-
-    Raises:
-        KernelArgumentError: It has no such index, or too few members are asked for.
-        ResourceError: So many members do not fit into memory.
-    """
-    if isinstance(system, FamilySystem):
-        return system.resize(sizes)
-    raise KernelArgumentError(
-        f"sizes of {system.name} are {dict(sizes)!r}, and it has no index; expected none. Leave "
-        "sizes out, or declare [index] in the spec.",
-        found=list(sizes),
-    )
 
 
 def lacks_size(system: System) -> bool:
@@ -161,22 +166,6 @@ def _find_resized(
     """What `FamilySystem.__reduce__` says."""
     system: System = find(*given).resize(sizes)
     return system
-
-
-def _repeat(quantity: Quantity, size: int, own: tuple[float, ...] | None = None) -> Quantity:
-    """A quantity of a member as one of all members, component after component.
-
-    Args:
-        quantity: Of a member.
-        size: N.
-        own: A default for each row, which differs from member to member; there is none for another
-            number of members.
-    """
-    components = tuple(f"{name}[{i}]" for name in quantity.components for i in range(size))
-    default = quantity.default and tuple(v for v in quantity.default for _ in range(size))
-    if own is not None:
-        default = own if len(own) == len(components) else None
-    return replace(quantity, shape=(*quantity.shape, size), components=components, default=default)
 
 
 def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -> int:

@@ -42,25 +42,34 @@ ROOM: Final = {"rk4": 5, "dop853": STAGES + 2}
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
-class _Run(ctypes.Structure):
-    """``NAME_solver_run`` of the header, field by field."""
+#: ``NAME_solver_run`` of the header, field by field, after the functions that it calls.
+_FIELDS: Final = (
+    ("rows", _SIZE),
+    ("count", _SIZE),
+    ("parameters", _PLACE),
+    ("parameters_stride", _SIZE),
+    ("sizes", _PLACE),
+    ("state", _PLACE),
+    ("work", _PLACE),
+    ("step", _DOUBLE),
+    ("steps", _SIZE),
+    ("rtol", _DOUBLE),
+    ("atol", _DOUBLE),
+    ("five", _DOUBLE),
+    ("three", _DOUBLE),
+)
 
-    _fields_ = (
-        ("rates", _PLACE),
-        ("rows", _SIZE),
-        ("count", _SIZE),
-        ("parameters", _PLACE),
-        ("parameters_stride", _SIZE),
-        ("sizes", _PLACE),
-        ("state", _PLACE),
-        ("work", _PLACE),
-        ("step", _DOUBLE),
-        ("steps", _SIZE),
-        ("rtol", _DOUBLE),
-        ("atol", _DOUBLE),
-        ("five", _DOUBLE),
-        ("three", _DOUBLE),
-    )
+
+class _Run(ctypes.Structure):
+    """``NAME_solver_run`` of a system."""
+
+    _fields_ = (("rates", _PLACE), *_FIELDS)
+
+
+class _TurningRun(ctypes.Structure):
+    """The same of a system with attitudes."""
+
+    _fields_ = (("rates", _PLACE), ("projection", _PLACE), *_FIELDS)
 
 
 class FamilyStepper(StepwiseStepper):
@@ -75,7 +84,9 @@ class FamilyStepper(StepwiseStepper):
 
     def __init__(self, system: System, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target, None)
-        self._rates_place = system._kernels.find(target, "rhs")
+        self._called = {"rates": system._kernels.find(target, "rhs")}
+        if "projection" in system.functions:
+            self._called["projection"] = system._kernels.find(target, "projection")
         self._march = library.take("solver_march")
         self._try = library.take("solver_try") if choice.name == "dop853" else None
         self.library, self._members = library, system.fixed["sizes"]
@@ -120,7 +131,7 @@ class FamilyStepper(StepwiseStepper):
 
     def _call(
         self, function: Any, run: Ensemble, state: Array, members: slice, step: float, steps: int
-    ) -> _Run:
+    ) -> Any:
         """Call a function of the solver for a state, which it may write to."""
         size = ROOM[self._choice.name] * state.size
         if self._work.size < size:
@@ -128,8 +139,8 @@ class FamilyStepper(StepwiseStepper):
         parameters = run.parameters
         if parameters.ndim > 1:
             parameters = np.ascontiguousarray(parameters[:, members])
-        given = _Run(
-            rates=self._rates_place,
+        given = (_TurningRun if "projection" in self._called else _Run)(
+            **self._called,
             rows=len(state),
             count=state.shape[1],
             parameters=parameters.ctypes.data,
@@ -229,8 +240,15 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     """A few trajectories at the start of twelve steps, with two samples on the way."""
     source = np.random.default_rng(0)
     end = 12 * (step or 2.0**-7)
+    state = source.uniform(0.5, 2.0, (system.STATE.size, members))
+    if "projection" in system.functions:  # far from rotations it leads away
+        near = [
+            quantity.default or (0.0,) * len(quantity.components)
+            for quantity in system.STATE.values()
+        ]
+        state = np.concatenate(near)[:, None] + 0.01 * state
     run = Ensemble(
-        state=source.uniform(0.5, 2.0, (system.STATE.size, members)),
+        state=state,
         parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
         inputs=Inputs(np.zeros(1), np.zeros((0, 1)), np.zeros((0, 1))),
         has_time=False,

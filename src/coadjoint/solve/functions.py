@@ -100,9 +100,12 @@ class Functions:
     Attributes:
         stepwise: Why generated methods make their steps in Python, as a clause; "" where they need
             not.
+        members: How many equal members there are, whose rows follow one another component after
+            component; what one is constrained to does not depend on the others.
     """
 
     stepwise: str = ""
+    members: int = 1
 
     @property
     def fixed(self) -> Mapping[str, Array]:

@@ -16,6 +16,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
@@ -103,12 +104,12 @@ def simulate(system: System, request: Request) -> Solution:
         march(stepper, run, request.start, threads, told, checkpoint, recording)
     if recording is not None:
         recording.finish()
-    course = _make_course(request, run, driven, below)
+    course = _make_course(system, request, run, driven, below)
     return _make_solution(system, request, run, course, driven, recording)
 
 
 def _make_course(
-    request: Request, run: Ensemble, signal: Signal | Array | None, below: Array
+    system: System, request: Request, run: Ensemble, signal: Signal | Array | None, below: Array
 ) -> Course:
     """How a run went; ``below`` is where what is reconstructed began, ``(k, *batch)``."""
     batch, n = request.state.shape[1:], len(request.state)
@@ -117,6 +118,7 @@ def _make_course(
         order=None if request.seed is not None else request.choice.order,
         seed=request.seed,
         keeps=KEEPS.get(request.choice.name, ""),
+        projection=describe_projection(system, request.choice.name),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,
         step=request.step,

@@ -16,7 +16,7 @@ from coadjoint.solve import generated
 from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.choices import GENERATED
-from coadjoint.solve.constraints import Constraints
+from coadjoint.solve.constraints import Constraints, describe_projection
 from coadjoint.solve.costs import SHARE
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import Trail
@@ -265,6 +265,7 @@ def _make_solution(
         rtol=request.rtol,
         atol=request.atol,
         step=None,
+        projection=describe_projection(system, request.method),
         start=start,
     )
     return Solution(

@@ -112,11 +112,22 @@ class Solution:
     def settings(self) -> dict[str, Any]:
         """How it was made: method, order, tolerances and step, as far as they apply.
 
-        Of a motion with noise there is its seed, and what the method keeps of what each path keeps.
+        Of a motion with noise there is its seed, and what the method keeps, by its own update, of
+        what each path keeps. ``projection`` says onto what states are moved in addition, and when.
         ``stepwise`` says why the steps of a generated method were made in Python.
         """
         course = self.course
-        names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed", "keeps")
+        names = [
+            "method",
+            "order",
+            "rtol",
+            "atol",
+            "step",
+            "stepwise",
+            "seed",
+            "keeps",
+            "projection",
+        ]
         told = {name: getattr(course, name) for name in names}
         return {name: value for name, value in told.items() if value not in (None, "")}
 

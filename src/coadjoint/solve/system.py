@@ -22,7 +22,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.declared import Bound, Quantity
-from coadjoint.errors import OutputError, system_error
+from coadjoint.errors import KernelArgumentError, OutputError, system_error
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
@@ -63,6 +63,7 @@ class System(Functions):
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
         unit_of_time: The unit of the time, also where the system does not depend on it.
+        written: The index of members that are all written out, and their number; else None.
     """
 
     def __init__(
@@ -80,8 +81,10 @@ class System(Functions):
         inputs: Quantities | None = None,
         time: Quantities | None = None,
         unit_of_time: str = "s",
+        written: tuple[str, int] | None = None,
     ) -> None:
         self.name = name
+        self.written = written
         self.folder = Path(file).parent
         self.STATE = state
         self.PARAMETERS = parameters
@@ -94,6 +97,25 @@ class System(Functions):
         self.INPUTS = Quantities() if inputs is None else inputs
         self.TIME = Quantities() if time is None else time
         self.unit_of_time = unit_of_time
+
+    def resize(self, sizes: Mapping[str, int]) -> System:
+        """The system with another number of members, by the name of their index.
+
+        Raises:
+            KernelArgumentError: It has no index, or its kernels are those of one number.
+        """
+        expected, way = "none", "Leave sizes out, or declare [index] in the spec."
+        problem = "it has no index"
+        if self.written is not None:
+            index, size = self.written
+            if dict(sizes) == {index: size}:
+                return self
+            problem, expected = "its members are all written out", f"{{{index!r}: {size}}}"
+            way = f"Load its spec with them: coadjoint.load(path, sizes={dict(sizes)!r})."
+        raise KernelArgumentError(
+            f"sizes of {self.name} are {dict(sizes)!r}, and {problem}; expected {expected}. {way}",
+            found=list(sizes),
+        )
 
     # -- functions --------------------------------------------------------------------------------
 

@@ -28,6 +28,7 @@ from coadjoint.spec.core.values import POISSON_PATTERN
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra
 from coadjoint.spec.sections.matrices import block_places
+from coadjoint.spec.sections.turning import TURNING, advect
 
 #: Tables of quantities, each of which may have the index.
 QUANTITIES = ("variables", "parameters", "inputs")
@@ -73,8 +74,10 @@ def differs(file: Any, part: Any) -> bool:
     while isinstance(entry, list):
         depth, entry = depth + 1, entry[0] if entry else None
     whole = file.variables.get(getattr(part, "of", None), part)
-    along = getattr(whole, "role", "") in ("velocity", "momentum", "advected")
-    return depth > (1 if along else len(whole.shape or ()))
+    role = getattr(whole, "role", "")
+    matrix = role in ("attitude", "pose")
+    along = role in ("velocity", "momentum", "advected", "quaternion")
+    return depth > (2 if matrix else 1 if along else len(whole.shape or ()))
 
 
 class _Places:
@@ -124,6 +127,8 @@ class _Writer:
             update[table] = self._write_quantities(table)
         if file.algebra is not None and self.count > 1 and self._repeats_algebra:
             update["algebra"] = _repeat_algebra(file.algebra, self.count)
+        if file.representations and self._repeats_algebra:
+            update["representations"] = dict(self._write_representations())
         if file.poisson is not None:
             update["poisson"] = self._write_poisson()
         for table in ("forces", "newton"):
@@ -175,9 +180,20 @@ class _Writer:
                         update[key] = self.name(getattr(part, key), k)
                 if table == "variables":
                     update["block"] = blocks.of(name, part, k)
+                    if part.representation in self.file.representations and blocks.algebra:
+                        update["representation"] = member_name(part.representation, k)
                 written[own] = part.model_copy(update=update)
                 self.places.repeat((table, name), (table, own))
         return written
+
+    def _write_representations(self) -> Iterator[tuple[str, Any]]:
+        """The declared representations of each member's algebra; the others act as zero."""
+        blocks = _Blocks(self)
+        for name, part in self.file.representations.items():
+            for k in range(self.count):
+                own = member_name(name, k)
+                self.places.repeat(("representations", name), ("representations", own))
+                yield own, blocks.place(("representations", name), part, k)
 
     # -- what is there for each member --------------------------------------------------
 
@@ -301,10 +317,11 @@ class _Writer:
 
 
 class _Blocks:
-    """Which vectors of the basis the variables of a member span."""
+    """Which vectors of the basis the variables of a member span, or act on them."""
 
     def __init__(self, writer: _Writer) -> None:
         self.source, self.algebra, file = writer.source, None, writer.file
+        self.declared = frozenset(file.representations)
         if file.algebra is not None and writer._repeats_algebra:
             self.algebra = read_algebra(self.source, file.algebra, "member")
             whole = (
@@ -314,13 +331,32 @@ class _Blocks:
 
     def of(self, name: str, part: Any, member: int) -> Any:
         """Names of the basis, for the key ``block``."""
-        if self.algebra is None or part.role not in ("momentum", "velocity"):
+        if self.algebra is None or part.role not in _OVER_ALGEBRA:
             return part.block
+        if part.representation in self.declared:
+            return part.block
+        block = advect(part, self.algebra).block if part.role in TURNING else part.block
+        return self._name(("variables", name, "block"), block, member)
+
+    def _name(self, key: KeyPath, block: Any, member: int) -> list[str]:
+        """Names of the basis that a member has for a block, or for all of its algebra."""
+        assert self.algebra is not None, key
         own = tuple(range(self.algebra.dimension))
-        if part.block is not None:
-            own = block_places(self.source, ("variables", name, "block"), part.block, self.algebra)
+        if block is not None:
+            own = block_places(self.source, key, block, self.algebra)
         start = member * self.algebra.dimension
         return [self.basis[start + place] for place in own]
+
+    def place(self, key: KeyPath, part: Any, member: int) -> Any:
+        """A representation of one member's algebra as one of all members together."""
+        update = dict[str, Any]()
+        for side in ("left", "right"):
+            if getattr(part, side) is not None:
+                update[side] = self._name((*key, side), getattr(part, side), member)
+        if part.matrices is not None and self.algebra is not None:
+            names = dict(zip(self.algebra.basis, self._name(key, None, member), strict=True))
+            update["matrices"] = {names.get(n, n): rows for n, rows in part.matrices.items()}
+        return part.model_copy(update=update)
 
 
 def _repeat_algebra(part: Any, count: int) -> Any:

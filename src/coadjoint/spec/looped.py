@@ -25,11 +25,13 @@ from coadjoint.spec.core.tree import Index as Subscript
 TABLES = (
     "index",
     "algebra",
+    "representations",
     "poisson",
     "variables",
     "parameters",
     "definitions",
     "hamiltonian",
+    "forces",
     "lax",
     "observables",
     "claims",
@@ -60,19 +62,19 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
 
     energy = read(file.hamiltonian)
     observables = [tree for part in file.observables.values() for tree in read(part.expression)]
+    forces = read(file.forces)
     others = [tree for each in (file.poisson, file.lax, file.claims) for tree in read(each)]
+    others += forces
     for tree in (*energy, *observables, *others):
         yield from _examine(tree, members)
     for tree in (*energy, *observables):
         if not _is_total(tree):
             yield "the energy or an observable is not linear in sums over members"
+    if any(map(has_sum, forces)):
+        yield "a force has a sum over members"
     for tree in observables:
         if find_free(tree, members):
             yield "an observable has a value for each member"
-    pairs = any(isinstance(n, Sum) and len(n.indices) > 1 for t in energy for n in walk(t))
-    pairs |= any(isinstance(n, Sum) and len(n.indices) > 1 for t in observables for n in walk(t))
-    if pairs and any(reach(tree) != (0, 0) for tree in (*energy, *observables, *others)):
-        yield "there are sums over pairs, and sums that name neighbours"
 
 
 def _is_total(tree: Node) -> bool:
@@ -98,6 +100,8 @@ def _examine(tree: Node, members: Members) -> Iterator[str]:
                 yield f"{name} stands there of one member alone"
             case Member(name=name) if name not in (*members.names, *members.scalars):
                 yield f"{i} counts components of {name}"
+            case Sum(term=term, indices=[_, _, *_]) if reach(term) != (0, 0):
+                yield "a sum over pairs names neighbours"
             case Sum() if not is_plain(node):
                 yield "a sum goes over some members, or over pairs other than i < j"
             case Sum(term=term) if has_sum(term):

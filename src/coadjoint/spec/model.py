@@ -131,10 +131,11 @@ class Windows:
         indexed: Names of the parameters that each member has.
         defaults: Defaults of quantities that differ from member to member: of each
             component those of all members.
+        repeating: Names of those that have a default for some members, which are taken again.
         reach: How many members further the energy couples.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
-        windows: The spec written out for two numbers of members, the smaller first.
+        windows: The spec written out for two or three numbers of members, the smallest first.
         of_members: The claims of what each member conserves, as statements.
         lax: The spec and its Lax pair, written out for all numbers of members from the least one
             to that at which both ends of the matrices keep apart.
@@ -147,10 +148,11 @@ class Windows:
     shared: tuple[str, ...]
     indexed: tuple[str, ...]
     defaults: Mapping[str, tuple[tuple[Fraction, ...], ...]]
+    repeating: tuple[str, ...]
     reach: int
     pairs: bool
     least: int
-    windows: tuple[Spec, Spec]
+    windows: tuple[Spec, ...]
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
     lax: tuple[tuple[Spec, Lax], ...] = ()
@@ -293,11 +295,6 @@ class Spec:
     def turning(self) -> tuple[Variable, ...]:
         """The attitudes, quaternions and poses of the state."""
         return tuple(each for each in self.variables if each.turning)
-
-    @property
-    def turns_back(self) -> bool:
-        """Whether solvers move attitudes back to rotations."""
-        return bool(self.turning) and not (self.constraints or self.noise)
 
     @property
     def reduced_momenta(self) -> tuple[DerivedMomentum, ...]:

@@ -1,4 +1,4 @@
-"""Windows: a spec with an index, written out for two small numbers of members.
+"""Windows: a spec with an index, written out for two or three small numbers of members.
 
 Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
 spec has, with all that is known of the others in its attribute ``family``. What a generic member
@@ -8,7 +8,8 @@ The numbers are those from which the claims follow for every other number
 
 * a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
 * an open chain: w and w + 1, and enough for a member with all its neighbours;
-* pairs: 2 and 3.
+* pairs: 2 and 3;
+* pairs and neighbours: 4 w, 4 w + 1 and 4 w + 2 in a ring, and in a chain 2 w, 2 w + 1 and 2 w + 2.
 
 Read next: `coadjoint.derive.indexed`, then `coadjoint.prove.indexed`.
 """
@@ -19,6 +20,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from coadjoint import limits
@@ -40,6 +42,7 @@ from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.indices import make_index
 from coadjoint.spec.sections.lax import Lax
+from coadjoint.spec.sections.turning import TURNING, read_rotation
 
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
 
@@ -72,13 +75,18 @@ def read_windows(
     least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
-        if pairs:
+        if pairs and size < 2:
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         few = f"a chain of fewer than {least} has no member with all its neighbours"
+        if pairs:
+            few = f"with pairs and neighbours claims are proved for all from {least} members on"
         return _write_all(source, file, read, index, few)
+    index = replace(index, first=0)  # no formula names a member by its number
     bare = file.model_copy(update={"lax": None})
-    small, large = (read(*write_out_file(source, bare, index, first + more)) for more in (0, 1))
+    count = 3 if pairs and (reach or width) else 2
+    windows = tuple(read(*write_out_file(source, bare, index, first + n)) for n in range(count))
+    small = windows[0]
     last = first if file.lax is None else max(first, 2 * reach + width + 3)
     lax = tuple(
         _split_lax(source, read(*write_out_file(source, file, index, count)))
@@ -97,10 +105,13 @@ def read_windows(
             for table, name, part in _list_quantities(file)
             if part.index is not None and differs(file, part)
         },
+        repeating=tuple(
+            n for _, n, p in _list_quantities(file) if p.index is not None and _repeats(p)
+        ),
         reach=reach,
         pairs=pairs,
         least=least,
-        windows=(small, large),
+        windows=windows,
         lax=lax,
     )
     return _with_family(source, bare, read, family)
@@ -151,7 +162,7 @@ def _with_family(
     Raises:
         SpecError: A Casimir is neither of each member nor a sum over members.
     """
-    large, index = family.windows[1], family.index
+    large, index = family.windows[-1], family.index
     _check_casimirs(source, large)
     kinds = [_kind_of(large, claim) for claim in large.conserved]
     members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
@@ -161,14 +172,14 @@ def _with_family(
         loaded = _read_loaded(source, file, read, family, place)
         loaded = _select(loaded, [n for n, kind in enumerate(kinds) if kind == "other"])
     kept = [n for n, kind in enumerate(kinds) if kind != "other"]
-    small, large = (_select(each, kept) for each in family.windows)
+    windows = tuple(_select(each, kept) for each in family.windows)
     family = replace(
         family,
-        windows=(small, large),
+        windows=windows,
         of_members=frozenset(f"{each.formula.in_one_line} is conserved" for each in members),
         loaded=loaded,
     )
-    return replace(large, family=family, index=(index,))
+    return replace(windows[-1], family=family, index=(index,))
 
 
 def _select(spec: Spec, places: Sequence[int]) -> Spec:
@@ -250,9 +261,12 @@ def _read_loaded(
 
 
 def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
-    """The smaller of two numbers of members from which claims follow for all."""
-    if pairs:
+    """The smallest of the numbers of members from which claims follow for all."""
+    if pairs and not (reach or width):
         return 2
+    if pairs:
+        whole = reach + width
+        return 4 * whole if index.periodic else max(2 * whole, 2 * reach + width, 2)
     whole = reach + max(width, reach)
     return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
 
@@ -267,7 +281,12 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
         if isinstance(size, bool) or not isinstance(size, int) or size < 1:
             problem = f"the size {size!r} is chosen for {name!r}"
             raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
-    return make_index(name, part, sizes.get(name, part.size))
+    size = sizes.get(name, part.size)
+    if size != part.size and not any(each.index for _, _, each in _list_quantities(file)):
+        problem = f"a size is chosen for {name!r}, which counts components"
+        expected = f"the size {part.size} of the spec"
+        raise source.fault(("index", name), problem, size, expected)
+    return make_index(name, part, size)
 
 
 def _check(source: Source, file: Any, index: Index) -> None:
@@ -282,7 +301,11 @@ def _check(source: Source, file: Any, index: Index) -> None:
             problem = f"there is no index {part.index!a}"
             raise source.unknown(key, problem, part.index, [index.name])
         if part.index is not None and differs(file, part):
-            _check_count(source, index, (table, name), len(part.default))
+            _check_count(source, index, (table, name), part)
+        elif _repeats(part):
+            problem = f"{name!r} has one default for all members, which repeats"
+            expected = "a list with an entry for each of some members"
+            raise source.fault((table, name, "repeats"), problem, name, expected)
     if index.size is not None and index.size > limits.FAMILY_MEMBERS:
         problem = f"the index {index.name!r} counts {index.size} members"
         raise source.too_many(("index", index.name), problem, index.size, "FAMILY_MEMBERS")
@@ -295,9 +318,19 @@ def _list_quantities(file: Any) -> list[tuple[str, str, Any]]:
     ]
 
 
-def _check_count(source: Source, index: Index, key: tuple[str, str], count: int) -> None:
-    """A default that differs from member to member has an entry for each."""
-    if count != index.size:
+def _repeats(part: Any) -> bool:
+    """Whether the default of some members is taken again for others; inputs know no such key."""
+    return bool(getattr(part, "repeats", False))
+
+
+def _check_count(source: Source, index: Index, key: tuple[str, str], part: Any) -> None:
+    """A default that differs from member to member has an entry for each, or for some again."""
+    count = len(part.default)
+    if _repeats(part) and (not count or (index.size or 0) % count):
+        problem = f"the default of {key[1]!r} has {count} entries, which repeat"
+        expected = f"one entry or more, and {index.size or 'N'} a multiple of their number"
+        raise source.fault((*key, "default"), problem, count, expected)
+    if count != index.size and not _repeats(part):
         problem = f"the default of {key[1]!r} has {count} entries"
         expected = f"one for all members, or {index.size or 'N'} entries"
         raise source.fault((*key, "default"), problem, count, expected)
@@ -307,7 +340,9 @@ def _read_defaults(
     source: Source, key: tuple[str, str], part: Any, shape: Shape
 ) -> tuple[tuple[Fraction, ...], ...]:
     """The defaults of each component, of all members."""
-    members = (read_default(source, (*key, "default"), x, shape) or () for x in part.default)
+    role = getattr(part, "role", "")
+    read = partial(read_rotation, role=role) if role in TURNING else read_default
+    members = (read(source, (*key, "default"), x, shape) or () for x in part.default)
     return tuple(zip(*members, strict=True))
 
 
@@ -324,15 +359,11 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
 
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
-    reach = span(energy)
+    reach = span([*energy, *list_texts(file.forces)])
     width = span(
         [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
     )
     pairs = any(_PAIRS.search(text) for text in [*energy, *list_texts(file.observables)])
-    if pairs and (reach or width):
-        problem = "there are sums over pairs, and sums that name neighbours"
-        expected = "one of them in a spec"
-        raise source.fault(("hamiltonian",), problem, "pairs and neighbours", expected)
     most = limits.NEIGHBOURS
     if max(reach, width) > 2 * most:
         problem = f"members that are {max(reach, width)} apart stand in one formula"

@@ -47,6 +47,12 @@ def shift_name(place: int) -> str:
     return f"_s{place + 1}"
 
 
+def moved_names(spec: Spec) -> dict[str, str]:
+    """Names of the entries of attitudes that were moved back to rotations, by those before."""
+    turning = (name for each in spec.turning for name in each.components)
+    return {name: f"_v{n}" for n, name in enumerate(turning, 1)}
+
+
 def symbols(spec: Spec) -> tuple[str, ...]:
     """The names that the definitions of a motion over a frame need."""
     if not spec.in_frame and not _couples_many(spec):
@@ -67,6 +73,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         *solver_names(range(len(of.independent) + len(of.kept))),
         *map(multiplier_name, range(len(of.kept))),
         *map(shift_name, range(len(of.independent) if of.kept else 0)),
+        *(moved_names(spec).values() if of.kept or of.frame.touch else ()),
         *(equation.reaction for equation in of.equations),
     )
 

@@ -12,6 +12,8 @@ and velocities :math:`\eta + d`, with the least kinetic energy of the change d,
 
 the matrix of the accelerations, so that :math:`L D L^T` is shared with them. It is one step, since
 R is affine in the velocities. Points of contact are moved back onto surfaces by a step of Newton.
+Attitudes are moved back to rotations first. The nearest state is then that of the moved attitudes,
+which it leaves as they are, so that neither undoes the other.
 Comes in: exact equations with constraints that are kept. Goes out: exact equations with that state
 in place of the rates.
 Read next: `coadjoint.prove.projection`.
@@ -19,15 +21,19 @@ Read next: `coadjoint.prove.projection`.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.kinematics import (
     kinematics,
+    moved_names,
     multiplier_name,
     rate_name,
     shift_name,
 )
 from coadjoint.derive.mechanics.solver import Solve, definitions_under, solve_in_kernel
+from coadjoint.derive.mechanics.turning import turned_back
 from coadjoint.derive.records import Exact
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -75,6 +81,46 @@ def nearest_state(setting: Setting, of: Distribution | None, exact: Exact) -> Ex
         poisson_tensor=None,
         solves=solves,
         residuals=exact.residuals,
+    )
+
+
+def back_then_onto(setting: Setting, onto: Exact | None) -> Exact:
+    """Attitudes moved back to rotations, then the nearest state on the constraints at these.
+
+    Args:
+        setting: With attitudes in its state.
+        onto: The nearest state at given attitudes; None where no constraint is kept.
+    """
+    field, back = setting.field, turned_back(setting)
+    if onto is None:
+        return Exact(
+            definitions=(),
+            rates=tuple(back.get(name, field[name]) for name in setting.state),
+            energy=None,
+            emitted=(),
+            poisson_tensor=None,
+        )
+    names = moved_names(setting.spec)
+    at = {name: field[moved] for name, moved in names.items()}
+
+    def move(element: Element) -> Element:
+        return field.substitute(element, at)
+
+    solves = tuple(
+        replace(
+            solve,
+            matrix=tuple(tuple(map(move, row)) for row in solve.matrix),
+            known=tuple(map(move, solve.known)),
+        )
+        for solve in onto.solves
+    )
+    onto_definitions = ((name, move(value)) for name, value in onto.definitions)
+    return replace(
+        onto,
+        definitions=(*((names[name], x) for name, x in back.items()), *onto_definitions),
+        rates=tuple(map(move, onto.rates)),
+        solves=solves,
+        residuals=(),
     )
 
 

@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import Any
 
-from coadjoint.algebra import algebra_by_name, same_constants
+from coadjoint.algebra import algebra_by_name
 from coadjoint.algebra.attitudes import are_rotations
 from coadjoint.algebra.matrices import without_zero_places
 from coadjoint.derive.setting import Setting
@@ -76,16 +77,20 @@ def turned_back(setting: Setting) -> dict[str, Element]:
     moved = dict[str, Element]()
     for variable in setting.spec.turning:
         elements = setting.elements(variable.components)
-        if variable.turning == "quaternion":
-            share = (3 - dot(elements, elements)) / 2
-            moved |= zip(variable.components, scale(share, elements), strict=True)
-            continue
-        R = _turning_part(setting, variable)
-        turned = product(product(R, transpose(R)), R)
-        columns = variable.shape[1]
-        for i, (row, cubed) in enumerate(zip(R, turned, strict=True)):
-            for j, (x, y) in enumerate(zip(row, cubed, strict=True)):
-                moved[variable.components[i * columns + j]] = (3 * x - y) / 2
+        moved |= zip(variable.components, step_back(variable, elements), strict=True)
+    return moved
+
+
+def step_back(variable: Variable, entries: Sequence[Any]) -> list[Any]:
+    """One of Newton's steps, of entries of any kind; the position of a pose stays."""
+    if variable.turning == "quaternion":
+        return list(scale((3 - dot(entries, entries)) / 2, tuple(entries)))
+    (rows, columns), moved = variable.shape, list(entries)
+    R: Matrix = tuple(tuple(entries[i * columns : i * columns + rows]) for i in range(rows))
+    turned = product(product(R, transpose(R)), R)
+    for i, (row, cubed) in enumerate(zip(R, turned, strict=True)):
+        for j, (x, y) in enumerate(zip(row, cubed, strict=True)):
+            moved[i * columns + j] = (3 * x - y) / 2
     return moved
 
 
@@ -162,9 +167,8 @@ def _axes(variable: Variable) -> tuple[int, ...]:
     if variable.turning == "quaternion":
         return places
     if variable.turning == "pose":
-        moving = algebra_by_name("se(3)")
-        alike = len(places) == moving.dimension and same_constants(algebra, moving)
-        return places if alike and algebra.matrices == moving.matrices else ()
+        own = without_zero_places([algebra.matrices[i] for i in places])
+        return places if own == algebra_by_name("se(3)").matrices else ()
     return (
         places if are_rotations(without_zero_places([algebra.matrices[i] for i in places])) else ()
     )

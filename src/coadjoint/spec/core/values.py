@@ -88,13 +88,14 @@ def _entry(value: object) -> Fraction | str:
     return _number(value)
 
 
-def _numbers(value: object) -> Any:
-    """A number, or lists of numbers, nested at most twice."""
-    if isinstance(value, list):
-        return [
-            [_constant(entry) for entry in part] if isinstance(part, list) else _constant(part)
-            for part in value
-        ]
+#: How deep the lists of a default may be nested: matrices, one for each of equal members.
+_NESTED = 3
+
+
+def _numbers(value: object, depth: int = _NESTED) -> Any:
+    """A number, or lists of numbers."""
+    if isinstance(value, list) and depth:
+        return [_numbers(part, depth - 1) for part in value]
     return _constant(value)
 
 
@@ -106,23 +107,22 @@ def _block(value: object) -> str | list[str]:
 
 
 _NUMBER_OR_TEXT: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-_NUMBER_OR_LISTS: dict[str, Any] = {
-    "anyOf": [
-        *_NUMBER_OR_TEXT["anyOf"],
-        {
-            "type": "array",
-            "items": {
-                "anyOf": [*_NUMBER_OR_TEXT["anyOf"], {"type": "array", "items": _NUMBER_OR_TEXT}]
-            },
-        },
-    ]
-}
+
+
+def _describe_lists(depth: int) -> dict[str, Any]:
+    """The schema of a number, or of lists that are nested so deep."""
+    if not depth:
+        return _NUMBER_OR_TEXT
+    inner = {"type": "array", "items": _describe_lists(depth - 1)}
+    return {"anyOf": [*_NUMBER_OR_TEXT["anyOf"], inner]}
+
+
 _TEXTS: dict[str, Any] = {
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]
 }
 
 Entry = Annotated[Any, PlainValidator(_entry), WithJsonSchema(_NUMBER_OR_TEXT)]
-Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_NUMBER_OR_LISTS)]
+Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_describe_lists(_NESTED))]
 Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]
 Matrix = list[list[Entry]]
 Prose = Annotated[str, AfterValidator(_is_prose)]

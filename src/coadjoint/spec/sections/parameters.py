@@ -27,6 +27,11 @@ class ParameterPart(ArgumentPart):
         description="the index of [index] that counts the members that have it; its default is "
         "then one for all members, or a list with an entry for each",
     )
+    repeats: bool = Field(
+        False,
+        description="whether the entries of its default, of which N is a multiple, are taken again "
+        "and again along the members",
+    )
 
 
 @dataclass(frozen=True)

@@ -128,6 +128,11 @@ class VariablePart(Part):
     index: str | None = Field(
         None, description="the index of [index] that counts the members that have it"
     )
+    repeats: bool = Field(
+        False,
+        description="whether the entries of its default, of which N is a multiple, are taken again "
+        "and again along the members",
+    )
     unit: Unit = ""
     doc: Prose = Field("", description="what it is, for documents")
 
