@@ -65,7 +65,7 @@ class Bound:
     Attributes:
         name: Of the condition; of the acceleration, or of the reaction, whose pivot it is; of the
             velocity that a Legendre transform gives.
-        kind: ``condition``, ``acceleration``, ``reaction`` or ``transform``.
+        kind: ``condition``, ``acceleration``, ``reaction``, ``transform`` or ``iteration``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """
@@ -80,6 +80,8 @@ class Bound:
         """What the row is, for comments and messages."""
         if self.kind == "transform":
             return f"argument of a root in {self.name}"
+        if self.kind == "iteration":
+            return f"pivot of {self.name} in d2l/dxi2"
         return self.name if self.kind == "condition" else f"pivot of {self.name}"
 
 

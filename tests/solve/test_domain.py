@@ -11,6 +11,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.system import Bound
 from coadjoint.solve.tables import write_table
 from coadjoint.systems import relativistic_particle, rigid_body
+from tests.derive.test_newton import LINE
 from tests.solve.domains import BALL, BENT, DISK, KEPLER, STONE, SUSLOV, built
 
 #: Steps of 1e-10 and a bisection to 1e-12 of a step; a stone crosses a distance d in d/2 seconds.
@@ -34,6 +35,28 @@ def test_rows_are_the_larger_side_minus_the_other():
     turned = built(STONE, ('"h > 0"', '"0 < h"'), ('"m >= g"', '"g <= m"'))
     found = turned.domain(np.array([[3.0, -2.0], [0, 0]]), {"m": 5.0, "g": 7.0}, target="numpy")
     assert found.tolist() == rows.tolist()
+
+
+def test_a_momentum_that_the_iteration_does_not_reach_is_refused_before_any_work():
+    """P = v - v^3 has v = 1/2 for p = 3/8, and no v near rest for p = 1; d2l/dv2 = 1 - 3 v^2."""
+    folded = built(LINE, ("v^4/4 +", "-v^4/4 +"))
+    (bound,) = folded.DOMAIN
+    assert bound == Bound("v", "iteration", strict=True, inputs=("p", "a"))
+    rows = folded.domain(np.array([[0.0, 0.0], [0.375, 1.0]]), target="numpy")
+    assert rows[0].tolist() == pytest.approx([0.25, np.nan], rel=1e-14, nan_ok=True)
+    said = r"finds no v of these momenta.*: the pivot of v in d2l/dxi2 is nan; .*p = 1"
+    with pytest.raises(KernelArgumentError, match=said):
+        simulate(folded, [0, 1], 1)
+
+
+def test_a_motion_whose_velocity_an_iteration_finds_keeps_its_energy():
+    """(3 v^2 + 1) v' = -q from q = 0, v = 2 on: 3 v^4/4 + v^2/2 + q^2/2 stays 14."""
+    quartic = built(LINE)
+    for method in ("taylor", "dop853"):
+        run = simulate(quartic, [0, 10], 3, method=method)
+        q, p, v = run["q"], run["p"], run["v"]
+        assert v**3 + v == pytest.approx(p, rel=1e-12, abs=1e-12)
+        assert 3 * v**4 / 4 + v**2 / 2 + q**2 / 2 == pytest.approx(14, rel=1e-9)
 
 
 def test_a_momentum_that_no_velocity_has_is_refused_before_any_work():

@@ -20,6 +20,7 @@ from typing import Any, Final, Protocol, TypeVar
 
 from mpmath import MPContext
 
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, jump_of, slopes_of
 
 Value = TypeVar("Value")
@@ -90,6 +91,10 @@ class Bounded:
     def __neg__(self) -> Bounded:
         return Bounded(-self.value, self.envelope)
 
+    def settled(self) -> Bounded:
+        """The value as if it were given, however rounding errors came into it."""
+        return Bounded(self.value, abs(self.value))
+
 
 def exact(value: float | Fraction) -> Bounded:
     """A double or a rational constant in this arithmetic.
@@ -111,6 +116,8 @@ def call(function: str, *arguments: Bounded) -> Bounded:
         OutsideDomain: Rounding may move an argument out of the domain or across a jump, as that of
             a square root or logarithm below 0, or the value is one that no double holds.
     """
+    if function == SETTLE:
+        return arguments[0].settled()
     if function == "sqrt" and arguments[0].value == arguments[0].envelope == 0:
         return arguments[0]
     if not is_inside(function, arguments):

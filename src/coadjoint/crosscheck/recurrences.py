@@ -23,7 +23,7 @@ from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.series import Rates, solve
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Program, Symbol, evaluate, walk
+from coadjoint.lower.program import Program, Symbol, evaluate, settled, walk
 from coadjoint.render.solvers import Line, SolverText
 
 Value = TypeVar("Value")
@@ -101,7 +101,7 @@ class _Running:
         for line in lines:
             values = {name: self.known[_placed(name, k, m)] for name in self._names_in(line)}
             value = evaluate(line.value, values, self.number, self.apply)
-            self.known[_placed(line.name, k, m)] = value
+            self.known[_placed(line.name, k, m)] = settled(line.name, value)
 
     def _names_in(self, line: Line) -> frozenset[str]:
         """The names that a line reads."""

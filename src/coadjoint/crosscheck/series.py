@@ -26,6 +26,7 @@ from coadjoint.crosscheck.oracle import (
     is_inside,
     to_digits,
 )
+from coadjoint.derive.mechanics.iteration import SETTLE
 
 #: Evaluates rates in any arithmetic: values by name, numbers, functions.
 Rates = Callable[
@@ -75,6 +76,8 @@ def apply(function: str, *arguments: Series) -> Series:
     Raises:
         OutsideDomain: It has no value there, or no slope.
     """
+    if function == SETTLE:
+        return arguments[0]
     if not is_inside(function, tuple(Bounded(each.of[0], Decimal(0)) for each in arguments)):
         raise OutsideDomain
     digits, length = DIGITS_OF_MPMATH, len(arguments[0].of)

@@ -4,6 +4,7 @@ A kernel solves ``A x = b`` by ``L D L^T``, with names for all intermediates. Pe
 solution: by Cramer's rule, its determinants not multiplied out, for up to `LARGEST` unknowns. More
 of them would fill pages; then the equations themselves are given.
 Comes in: exact equations. Goes out: SymPy expressions by name, and the equations left over.
+Velocities that Newton's iteration finds keep their names.
 Read next: `coadjoint.derive.equations`.
 """
 
@@ -62,6 +63,8 @@ def closed_forms(
     """
     values, unsolved = dict[sympy.Symbol, sympy.Expr](), list[LinearEquations]()
     for solve in exact.solves:
+        if solve.newton is not None:  # they solve mu = dl/dxi, and keep their names
+            continue
         names = tuple(map(sympy.Symbol, solve.names))
         matrix = [[write(entry).xreplace(values) for entry in row] for row in solve.matrix]
         right = [write(entry).xreplace(values) for entry in solve.known]

@@ -5,7 +5,8 @@ minus the other, then those of a contact of surfaces, then, for constrained moti
 pivot of the solves in the kernel, with the sign that it has for a positive kinetic energy: plus for
 accelerations, minus for multipliers, since ``[[M, A^T], [A, 0]]`` has the pivots of M and of ``-A
 M^-1 A^T``. Where velocities are no linear functions of momenta, the Legendre transform has a
-solution where the arguments of its roots are positive. It is one place for every route, since
+solution where the arguments of its roots are positive; where an iteration finds velocities, it
+needs positive pivots of the Hessian. It is one place for every route, since
 conditions are the spec's, and pivots and roots those of the emitted motion.
 Claims are looked at in the same domain, which is a `Region` of the field.
 Read next: `coadjoint.lower.lowering`, and `coadjoint.solve.domain` for what becomes of it.
@@ -54,9 +55,26 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
     return replace(
         known,
         bounds=tuple(each for each in conditions if each not in known.conditions),
-        definitions=dict(equations.exact.definitions),
-        momenta=momenta,
+        definitions=_definitions(equations),
+        momenta=_definitions(equations) if equations.iterations else momenta,
     )
+
+
+def _definitions(equations: Equations) -> dict[str, Element]:
+    """The definitions; of velocities that iterations find, the other way round.
+
+    These are free, and momenta follow from them.
+    """
+    setting, given = equations.setting, dict[str, Element]()
+    for newton in equations.iterations:
+        names = [setting.velocities[place] for place in newton.block]
+        found = dict(zip(newton.names, setting.elements(names), strict=True))
+        given |= found
+        for place, slope in zip(newton.block, newton.slopes, strict=True):
+            at = setting.field.substitute(slope, found)
+            given[setting.momenta[place]] = at * setting.weights[place]
+    free = {setting.velocities[place] for newton in equations.iterations for place in newton.block}
+    return given | {n: value for n, value in equations.exact.definitions if n not in free}
 
 
 def _arguments(equations: Equations) -> list[Condition]:
@@ -94,8 +112,13 @@ def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
     if setting.spec.lagrangian is None or not setting.momenta or setting.spec.is_first_order:
         return []
     bending = {} if setting.spec.variational else mechanics(setting).bending
+    for solve in equations.exact.solves if bending else ():
+        for place, name in zip(solve.block, solve.names, strict=True):
+            if solve.newton is not None:
+                pivot = field[pivot_name(place)]
+                pairs.append((Bound(name, "iteration", True, _inputs(equations, pivot)), pivot))
     for name, value in equations.exact.definitions:
-        if name not in velocities or name not in bending:
+        if name not in velocities or name not in bending or name in equations.kept:
             continue
         for generator in sorted(field.functions_in(value) - seen):
             seen.add(generator)
@@ -134,4 +157,7 @@ def _inputs(equations: Equations, element: Element) -> tuple[str, ...]:
     for name, value in reversed(equations.exact.definitions):
         if name in reached:
             reached |= field.reach(value)
+    for newton in equations.iterations:
+        if reached.intersection(newton.names):
+            reached = reached.union(*map(field.reach, newton.elements))
     return tuple(name for name in names if name in reached)

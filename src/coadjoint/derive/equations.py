@@ -20,6 +20,7 @@ from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.derive.mechanics.projection import back_then_onto, nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.pairs import LaxPair
@@ -196,13 +197,25 @@ class Equations:
     @cached_property
     def intermediates(self) -> frozenset[str]:
         """Names of L, D, y and z of the solves in the kernel."""
-        return frozenset(name for each in self.exact.solves for name in solver_names(each.block))
+        names = {name for each in self.exact.solves for name in solver_names(each.block)}
+        return frozenset(names.union(self.guesses))
+
+    @property
+    def guesses(self) -> frozenset[str]:
+        """Names of what Newton's iterations in the kernel find."""
+        return frozenset(name for newton in self.iterations for name in newton.names)
+
+    @property
+    def iterations(self) -> list[Newton]:
+        """Newton's iterations in the kernel."""
+        return [each.newton for each in self.exact.solves if each.newton is not None]
 
     @cached_property
     def moving(self) -> frozenset[str]:
         """Names whose values depend on the member: state, inputs, time, and what rests on them."""
         names = {*self.setting.state, *self.setting.velocities, *self.setting.driving}
         names |= {name for each in self.spec.reconstruction for name in each.components}
+        names |= self.guesses
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:
                 names.add(name)

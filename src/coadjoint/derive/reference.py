@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 from typing import Any, TypeVar
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.derive.sloped import Sloped, add_slopes, scale
 from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.exact import Element
@@ -84,6 +85,10 @@ class Reference:
         def value(element: Element) -> Any:
             return field.evaluate(element, known, number, call, factors)
 
+        reached = set[str]().union(*(field.reach(each) for _, each in definitions))
+        for solve in self.equations.exact.solves:
+            if solve.newton is not None and reached.intersection(solve.newton.names):
+                known |= solve.newton.find(field, known, number, call, partial(_settle, call))
         implied = {solve.last: solve for solve in self._implicit_solves(function)}
         for name, definition in definitions:
             known[name] = value(definition)
@@ -123,6 +128,11 @@ class Reference:
         return [rate.slopes.get(j, zero) for rate in rates for j in range(columns)]
 
 
+def _settle(call: Apply[Value], _step: int, _place: int, value: Value) -> Value:
+    """A value that is taken as it is, however it came about."""
+    return call(SETTLE, value)
+
+
 def _apply(
     function: str,
     arguments: tuple[Sloped[Value], ...],
@@ -132,6 +142,8 @@ def _apply(
     """``f(u)`` with the slopes ``f'(u) u'``."""
     values = tuple(argument.value for argument in arguments)
     value = call(function, *values)
+    if function == SETTLE:
+        return Sloped(value, {})
     slopes = slopes_of(function, values, value, Arithmetic(number=number, call=call))
     parts = (scale(each.slopes, slope) for each, slope in zip(arguments, slopes, strict=True))
     return Sloped(value, reduce(add_slopes, parts))

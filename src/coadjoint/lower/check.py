@@ -14,6 +14,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import rows_of
+from coadjoint.derive.mechanics.iteration import SETTLE
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
@@ -159,4 +160,6 @@ def _call(function: str, *arguments: Residue, prime: int) -> Residue:
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
+    if function == SETTLE:
+        return arguments[0]
     return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)

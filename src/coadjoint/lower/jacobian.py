@@ -85,9 +85,10 @@ def jacobian(
     """
     graph, n = Graph(), len(rhs.state)
     definitions, values = _insert_definitions(
-        graph, rhs, {name for name, _ in equations.exact.definitions}
+        graph, rhs, {name for name, _ in equations.exact.definitions} | equations.guesses
     )
     slopes: dict[int, Slopes] = {graph.symbol(x): {} for x in rhs.names}
+    slopes |= {graph.symbol(x): {} for x in equations.guesses}
     slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}
     rows: dict[int, dict[str, int]] = {}
     for residual, node in zip(residuals, values[n:], strict=False):

@@ -32,14 +32,14 @@ def join(one: Program, other: Program) -> Program:
     known = {statement.value: statement.name for statement in statements}
     taken = {*other.names, *(statement.name for statement in statements)}
     for statement in other.statements:
-        value = _rename(statement.value, named)
+        value = rename(statement.value, named)
         if value not in known:
             name = statement.name if statement.name not in taken else _find_name(taken)
             taken.add(name)
             known[value] = name
             statements.append(Statement(name, value, statement.level))
         named[statement.name] = known[value]
-    rows = (Output(row.label, _rename(row.value, named)) for row in other.outputs)
+    rows = (Output(row.label, rename(row.value, named)) for row in other.outputs)
     outputs = (*one.outputs, *rows)
     return replace(
         other,
@@ -47,7 +47,18 @@ def join(one: Program, other: Program) -> Program:
         statements=tuple(sorted(statements, key=lambda each: each.level != "parameters")),
         outputs=outputs,
         shape=(len(outputs),),
+        factored=_join_forms(one, other),
     )
+
+
+def _join_forms(one: Program, other: Program) -> Program | None:
+    """The forms that carry velocities as state behind the rows of both; None without them."""
+    if one.factored is None or other.factored is None:
+        return None
+    joined, count = join(one.factored, other.factored), len(one.outputs)
+    carried, last = joined.outputs[count : len(one.factored.outputs)], len(one.factored.outputs)
+    outputs = (*joined.outputs[:count], *joined.outputs[last:], *carried)
+    return replace(joined, outputs=outputs, factored=None)
 
 
 def widen(program: Program, state: tuple[str, ...], *, moves: bool) -> Program:
@@ -63,11 +74,11 @@ def widen(program: Program, state: tuple[str, ...], *, moves: bool) -> Program:
     return replace(program, state=state, outputs=outputs, shape=(len(outputs),))
 
 
-def _rename(node: Node, named: dict[str, str]) -> Node:
+def rename(node: Node, named: dict[str, str]) -> Node:
     """A node with other names."""
     if isinstance(node, Symbol):
         return Symbol(named.get(node.name, node.name))
-    return with_children(node, (_rename(child, named) for child in children(node)))
+    return with_children(node, (rename(child, named) for child in children(node)))
 
 
 def _find_name(taken: set[str]) -> str:

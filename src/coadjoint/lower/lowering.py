@@ -18,6 +18,7 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.definitions import inline_single_uses, shorten
+from coadjoint.lower.guesses import insert_guesses, with_carried_velocities
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
@@ -62,6 +63,8 @@ def lower(equations: Equations) -> dict[str, Program]:
             programs[name] = _clear_hidden_zeros(equations, name, rows)
     if looped is None:
         programs["rhs"] = _choose(equations, _scale(equations, programs["rhs"]))
+    if equations.guesses:
+        programs |= _carry(equations, programs)
     return programs
 
 
@@ -86,6 +89,23 @@ def _loop(equations: Equations) -> Program | None:
     needed = [(name, lowering.graph.symbol(name)) for name, _ in definitions]
     program = _name(equations, "rhs", lowering, (named, needed), rows.shape, rows.state)
     return loop_over(program, rows, products)
+
+
+def _carry(equations: Equations, programs: Mapping[str, Program]) -> dict[str, Program]:
+    """What moves, with a form in which the velocities of iterations are state, for recurrences."""
+    carried, names = with_carried_velocities(equations)
+    state, moving = equations.setting.state, carried.exact.rates
+    lines = {"rhs": [*zip((*state, *names), moving, strict=True)]}
+    rows = {"rhs": (*state, *names)}
+    if "reconstruction" in programs:
+        lines["reconstruction"] = [*equations.followed]
+        rows["reconstruction"] = (*programs["reconstruction"].state, *names)
+    found = dict[str, Program]()
+    for name, own in lines.items():
+        labelled = [(f"d{label}/dt", rate) for label, rate in own]
+        form = _program(carried, "rhs", labelled, (len(own),), rows[name])
+        found[name] = set_factored(programs[name], form)
+    return found
 
 
 def _choose(equations: Equations, plain: Program) -> Program:
@@ -194,6 +214,7 @@ def _program(
     )
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in parts]
+    named = [*insert_guesses(equations, lowering.graph, definitions), *named]
     if solve is not None:
         lines, results = solve_by_minors(lowering.graph, solve, dict(results), outputs)
         named += lines

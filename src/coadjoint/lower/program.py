@@ -15,6 +15,7 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import Literal, TypeVar
 
+from coadjoint.derive.mechanics.iteration import is_guess
 from coadjoint.elementary import ELEMENTARY
 
 Value = TypeVar("Value")
@@ -342,6 +343,15 @@ def evaluate(
     return left / right  # type: ignore[operator, no-any-return]
 
 
+def settled(name: str, value: Value) -> Value:
+    """A value by its name: what an iteration finds is taken as it is, however it came about.
+
+    Arithmetics that know where a value came from, such as those of errors, forget it.
+    """
+    settle = getattr(value, "settled", None) if is_guess(name) else None
+    return value if settle is None else settle()
+
+
 def run(
     program: Program,
     inputs: Mapping[str, Value],
@@ -351,5 +361,6 @@ def run(
     """The outputs of a Program in any arithmetic: exact elements, fractions, 50 digits, floats."""
     values = dict(inputs)
     for statement in program.statements:
-        values[statement.name] = evaluate(statement.value, values, number, call)
+        value = evaluate(statement.value, values, number, call)
+        values[statement.name] = settled(statement.name, value)
     return [evaluate(output.value, values, number, call) for output in program.outputs]

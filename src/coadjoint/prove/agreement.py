@@ -13,6 +13,7 @@ from functools import partial
 
 from coadjoint.derive import Equations
 from coadjoint.derive.charts import declared_charts
+from coadjoint.derive.mechanics.iteration import STEPS
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -38,8 +39,7 @@ def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
             continue
         if equations.kept:
             yield (
-                f"the kernel solves for the velocities on the route {equations.route}: "
-                "L D L^T = d2l/dxi2",
+                _solve_text(equations),
                 "legendre",
                 partial(pulled.solution_defects, equations),
             )
@@ -54,6 +54,19 @@ def about_legendre(routes: Sequence[Equations]) -> Iterator[Examined]:
                 "legendre",
                 partial(pulled.velocity_defects, equations),
             )
+
+
+def _solve_text(equations: Equations) -> str:
+    """What the kernel does to find velocities."""
+    text = (
+        f"the kernel solves for the velocities on the route {equations.route}: L D L^T = d2l/dxi2"
+    )
+    if not equations.iterations:
+        return text
+    return (
+        f"{text}, in Newton's iteration of {STEPS} steps from rest and in the step after it, of "
+        "which the velocities at mu = dl/dxi are a fixed point"
+    )
 
 
 def about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:

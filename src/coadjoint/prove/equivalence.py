@@ -8,7 +8,7 @@ loses nothing where the transform is invertible; another claim says where that i
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +19,7 @@ from coadjoint.derive.mechanics.configuration import (
     coupled_blocks,
     mechanics,
 )
-from coadjoint.derive.mechanics.legendre import known_side
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.derive.mechanics.solver import Solve, solution_defects
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field
@@ -115,23 +115,39 @@ class LegendreMap:
         return Invertible(part, method)
 
     def solution_defects(self, equations: Equations) -> list[Element]:
-        """What vanishes if the kernel solves ``mass * xi = mu - dl/dxi(0)`` for its velocities."""
-        known = known_side(self.setting, self.slopes)
-        return [
-            defect
-            for block, matrix in self.blocks
-            if len(block) > LARGEST_BLOCK
-            for defect in solution_defects(
-                self.setting.field,
-                Solve(
-                    matrix=matrix,
-                    known=[known[i] for i in block],
-                    block=block,
-                    names=[self.setting.velocities[i] for i in block],
-                ),
-                dict(equations.exact.definitions),
-            )
-        ]
+        """What vanishes if the kernel solves for its velocities at ``mu = dl/dxi``."""
+        field = self.setting.field
+        defects, definitions = list[Element](), dict(equations.exact.definitions)
+        for solve in equations.exact.solves:
+            defects += solution_defects(field, solve, definitions)
+            guesses = [] if solve.newton is None else solve.newton.names
+            at = {n: field[name] for n, name in zip(guesses, solve.names, strict=False)}
+            for entries, known in zip(solve.matrix, solve.known, strict=True):
+                products = (
+                    field.substitute(entry, at) * field[name]
+                    for entry, name in zip(entries, solve.names, strict=True)
+                )
+                residual = field.substitute(known, at) - field.sum(products)
+                defects.append(field.substitute(residual, self.momenta))
+            if solve.newton is not None:
+                defects += self._guess_defects(solve, solve.newton, at)
+        return defects
+
+    def _guess_defects(
+        self, solve: Solve, newton: Newton, at: Mapping[str, Element]
+    ) -> list[Element]:
+        """What vanishes if the iteration has its end at ``mu = dl/dxi``, and H is d2l/dxi2."""
+        field, mass = self.setting.field, mechanics(self.setting).mass
+        defects = []
+        for i, mu, slope, row in zip(
+            newton.block, newton.sought, newton.slopes, newton.hessian, strict=True
+        ):
+            defects.append(field.substitute(mu - field.substitute(slope, at), self.momenta))
+            defects += [
+                field.substitute(entry, at) - mass[i][j]
+                for j, entry in zip(solve.block, row, strict=True)
+            ]
+        return defects
 
     def energy_defects(self, equations: Equations) -> list[Element]:
         """``h(dl/dxi, a) - (<dl/dxi, xi> - l)``."""

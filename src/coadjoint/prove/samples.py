@@ -252,12 +252,24 @@ class Samples:
         call = FunctionsAtPoint(self._experiment)
         call.learn({name: x for name, x in values.items() if name not in velocities})
         point = Point(self, values, call)
-        allowed = self._allow(point)
+        allowed = self._allow(point) | self._transform(point)
         point.update({name: x.value for name, x in allowed.items()})
         call.learn(values | allowed)
         for name, definition in self._needed:
             point[name] = point.value(definition)
         return point
+
+    def _transform(self, point: Point) -> Values:
+        """Velocities that iterations find, and the momenta that these have."""
+        setting, found = self.motion.setting, Values()
+        for newton in self.motion.equations.iterations:
+            for place, guess in zip(newton.block, newton.names, strict=True):
+                found[guess] = found[setting.velocities[place]] = self._draw()
+                point[guess] = found[guess].value
+            for place, slope in zip(newton.block, newton.slopes, strict=True):
+                weighted = slope * setting.weights[place]
+                found[setting.momenta[place]] = Residue(point.value(weighted), self.prime)
+        return found
 
     def _on_sphere(self, variable: Variable) -> list[Residue]:
         """A point of the unit sphere, by stereographic projection."""

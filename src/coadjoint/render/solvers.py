@@ -7,17 +7,18 @@ Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.steps`, the methods
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import reduce
 from itertools import islice, pairwise
 from typing import Any
 
+from coadjoint.derive.mechanics.iteration import is_guess
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
-from coadjoint.lower.joined import join, widen
+from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
@@ -158,7 +159,7 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     """
     rates = programs["rates"]
     if rates.table is None:
-        return _arrange(programs, make_jets(rates.factored or rates), ())
+        return _arrange(programs, make_jets(rates.factored or rates), (), _begin(rates))
     stars = find_stars(rates.table)
     jets, weights = make_looped_jets(rates, stars, is_written_out=is_written_out)
     names = tuple(statement.name for statement in jets.fixed[-len(rates.table.scaled) :])
@@ -172,10 +173,31 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
     )
 
 
-def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, ...]) -> SolverText:
-    """The lines of recurrences; weights come before them."""
+def _begin(rates: Program) -> list[Line]:
+    """Order 0 of what recurrences carry and the state does not have: velocities of iterations."""
+    form, lines = rates.factored or rates, list[Line]()
+    carried = form.state[len(rates.state) :]
+    names = {name: f"{name}[0]" for name in (*rates.state, *rates.inputs, *rates.time, *carried)}
+    if not carried:
+        return []
+    for statement in rates.statements_at("member"):
+        own = statement.name if is_guess(statement.name) else f"_s{statement.name}"
+        names.setdefault(statement.name, own)
+        lines.append(Line(names[statement.name], rename(statement.value, names)))
+    last = max(n for n, line in enumerate(lines) if line.name in {f"{each}[0]" for each in carried})
+    return lines[: last + 1]
+
+
+def _arrange(
+    programs: Mapping[str, Program],
+    jets: Jets,
+    weights: tuple[Line, ...],
+    begin: Sequence[Line] = (),
+) -> SolverText:
+    """The lines of recurrences; weights come before them, and what they begin with."""
     arrays = jets.kept.union(jets.state, jets.driving)
-    first = [*weights, *arrange_first(jets, arrays)]
+    carried = jets.state[len(programs["rates"].state) :]
+    first = [*weights, *begin, *arrange_first(jets, arrays)]
     stages = tuple(arrange_stages(jets, arrays, is_one_loop=bool(weights)))
     rates = tuple(
         Line(f"{name}[_k + 1]", _next(tail, arrays))
@@ -190,7 +212,7 @@ def _arrange(programs: Mapping[str, Program], jets: Jets, weights: tuple[Line, .
     fixed = tuple(Line(statement.name, statement.value) for statement in jets.fixed)
     return SolverText(
         fixed=fixed,
-        kept=tuple(cell.name for cell in jets.cells if cell.name in arrays),
+        kept=(*carried, *(cell.name for cell in jets.cells if cell.name in arrays)),
         first=tuple(first),
         stages=stages,
         rates=rates,

@@ -182,6 +182,8 @@ class Domain:
             return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
         if bound.kind == "transform":
             return f"no {bound.name} has these momenta: the Legendre transform has no solution"
+        if bound.kind == "iteration":
+            return f"Newton's iteration from rest finds no {bound.name} of these momenta"
         if bound.kind == "acceleration":
             return "the reduced mass matrix is singular, or not positive,"
         return f"{bound.name} is undetermined, since constraints vanish or depend on each other,"
@@ -191,7 +193,7 @@ class Domain:
         bound = self.bounds[row]
         if bound.kind == "condition":
             return f"the larger side of {bound.name} minus the other"
-        if bound.kind == "transform":
+        if bound.kind in ("transform", "iteration"):
             return f"the {bound.label}"
         return f"the pivot of {bound.name}"
 

@@ -82,5 +82,5 @@ def show_momenta(setting: Setting, title: str = "Momenta") -> Step:
 def show_velocities(setting: Setting) -> Step:
     """The step that solves for the velocities."""
     lines = legendre(setting).definitions
-    law = "xi solved from mu = dl/dxi"
+    law = f"xi solved from mu = dl/dxi{legendre(setting).iterations}"
     return write_step("Legendre transform", law, r"\xi = \xi(\mu, a)", lines)

@@ -1,9 +1,10 @@
 """The Legendre transform of a Lagrangian, exactly.
 
-Comes in: l as an element, quadratic in the velocities, or a function of one quadratic form
-(`coadjoint.derive.mechanics.radial`). Goes out: the momenta dl/dxi, the velocities in terms of the
-momenta, and the energy. Of up to `LARGEST_BLOCK` coupled velocities the inverse is written out;
-more of them are solved for in the kernel, and then keep their names everywhere else.
+Comes in: l as an element, a function of the velocities. Goes out: the momenta dl/dxi, the
+velocities in terms of the momenta, and the energy. Where l is quadratic in the velocities, or a
+function of one quadratic form (`coadjoint.derive.mechanics.radial`), the inverse is written out, of
+up to `LARGEST_BLOCK` coupled velocities. More of them are solved for in the kernel, and so are
+those of any other l, by `coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
@@ -23,6 +24,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
+from coadjoint.derive.mechanics.iteration import Newton, guess_name, rate_name, tell_iterations
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -33,12 +35,13 @@ from coadjoint.derive.mechanics.solver import (
     solver_names,
 )
 from coadjoint.derive.mechanics.variational import normal_extremals
-from coadjoint.derive.setting import Setting, calls_of, fault, once
+from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.exact.roots import simplify_roots
+from coadjoint.exact.signs import sign
 from coadjoint.limits import COUPLED_VELOCITIES
 from coadjoint.spec import Spec
 
@@ -65,6 +68,11 @@ class LegendreTransform:
     definitions: tuple[Definition, ...]
     solves: tuple[Solve, ...]
     curved: tuple[Definition, ...]
+
+    @property
+    def iterations(self) -> str:
+        """What a statement says of Newton's iterations, where there are some."""
+        return tell_iterations([each.newton for each in self.solves if each.newton is not None])
 
 
 @once
@@ -112,7 +120,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     """Transform l(xi, a), block by block of coupled velocities.
 
     Raises:
-        DerivationError: l has no transform in closed form, or no invertible one.
+        DerivationError: l has no invertible transform, or none that begins at rest.
         LimitError: l couples more velocities than docs/limits.md allows.
     """
     setting, mass = of.setting, of.mass
@@ -120,15 +128,18 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     try:
         known = known_side(setting, of.momenta)
     except ZeroDivisionError as error:  # a root of 0 at rest
-        raise _not_closed(of, next(iter(of.bending))) from error
+        raise _not_solved(of, [*of.bending], "momenta are not defined there") from error
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
     radial: list[Definition] = []
     for block in coupled_blocks(mass):
         own = tuple(tuple(mass[i][j] for j in block) for i in block)
         rest = [known[i] for i in block]
-        if names[block[0]] in of.bending:
-            radial += _solve_radially(of, known, block)
+        if any(names[i] in of.bending for i in block):
+            found = _solve_radially(of, known, block)
+            radial += found or []
+            if found is None:
+                solves.append(_iterate(of, block))
         elif len(block) <= LARGEST_BLOCK:
             velocities |= _invert_block(setting, own, rest, block)
         else:
@@ -171,9 +182,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
 
     Which velocities are coupled shows before there is a field; see `sampled_mechanics`.
     """
-    count = sum(len(variable.components) for variable in spec.having_role("velocity"))
-    called = calls_of(spec, "velocity")
-    if spec.lagrangian is None or spec.in_frame or (count <= LARGEST_BLOCK and not called):
+    if spec.lagrangian is None or spec.in_frame or not spec.having_role("momentum"):
         return ()
     try:
         known = sampled_mechanics(spec)
@@ -181,8 +190,8 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     names = list[str]()
     for block in coupled_blocks(known.mass):
-        if known.setting.velocities[block[0]] in known.bending:
-            names += map(forward_name, block)
+        if any(known.setting.velocities[i] in known.bending for i in block):
+            names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
     return tuple(names)
@@ -200,15 +209,43 @@ def _invert_block(
     return dict(zip(names, values, strict=True))
 
 
-def _solve_radially(
-    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
-) -> list[Definition]:
-    """Velocities of a block in which l is a function of one quadratic form.
-
-    They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
+def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
+    """Velocities of a block by Newton's iteration, its last step as an ordinary solve.
 
     Raises:
-        DerivationError: It is none, or one that is not solved in closed form.
+        DerivationError: The block is driven, or its Hessian at rest not positive for certain.
+    """
+    setting, names = of.setting, of.setting.velocities
+    _check_count(setting, block)
+    own = [names[i] for i in block]
+    field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
+    moved = {place: field.substitute(of.momenta[place], guess) for place in block}
+    hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
+    reached = frozenset[str]().union(*map(field.reach, moved.values()))
+    if driven := sorted(reached.intersection(setting.driving)):
+        raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
+    rest = dict.fromkeys(names, field.zero)
+    still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
+    for size in range(1, len(block) + 1):
+        minor = determinant(tuple(row[:size] for row in still[:size]))
+        if sign(field, minor) != 1:
+            raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
+    mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
+    products = [
+        field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
+        for row in hessian
+    ]
+    known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
+    newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
+    return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+
+
+def _solve_radially(
+    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
+) -> list[Definition] | None:
+    """Velocities of a block in which l is a function of one quadratic form; None where it is none.
+
+    They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
     """
     setting, names = of.setting, [of.setting.velocities[i] for i in block]
     field, still = setting.field, momenta_at_rest(setting, of.momenta)
@@ -217,38 +254,28 @@ def _solve_radially(
     y = {forward_name(i): known[i] for i in block} | {name: field[name] for name, _ in parts}
     invert = partial(inverse_in_blocks, field, refuse=of.refusal)
     found = radial_solution(field, moving, names, [*y.values()], invert)
-    if found is not None:
-        return [*parts, *zip(names, found, strict=True)]
-    raise _not_closed(of, names[0])
+    return None if found is None else [*parts, *zip(names, found, strict=True)]
 
 
-def _not_closed(of: Mechanics, name: str) -> DerivationError:
-    """What is wrong with a Lagrangian that is neither quadratic nor solved in closed form."""
-    spec, named = of.setting.spec, of.bending[name]
+def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> DerivationError:
+    """What is wrong with velocities that the kernel cannot solve for from rest on."""
+    spec = of.setting.spec
     route = "euler-lagrange" if spec.algebra is None else "nonholonomic"
     momenta = " and ".join(each.name for each in spec.having_role("momentum"))
     message = (
-        f"the Lagrangian is not quadratic in the velocities: its second derivative by {name} "
-        f"depends on {', '.join(named)}; expected a kinetic energy quadratic in the velocities, or "
-        "a function of one quadratic form whose Legendre transform has a closed form. Give "
+        f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
+        f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
+        "is certainly convex at rest, with momenta of the state and the parameters alone. Give "
         f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
         "velocities are the state."
     )
-    return _refusal(of.setting, message, named[0])
+    return _refusal(of.setting, message, names[0])
 
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
-    if len(block) > COUPLED_VELOCITIES:
-        refused = _refusal(
-            setting,
-            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
-            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            f"that decouple them, or give {_way_out(setting)}.",
-            names[0],
-        )
-        raise LimitError(str(refused), **refused.parts)
+    _check_count(setting, block)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -261,6 +288,20 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
         f"is positive for each. Give {_way_out(setting)} instead.",
         names[minors],
     )
+
+
+def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
+    """A block is not too large for the kernel."""
+    names = [setting.velocities[i] for i in block]
+    if len(block) > COUPLED_VELOCITIES:
+        refused = _refusal(
+            setting,
+            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
+            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
+            f"that decouple them, or give {_way_out(setting)}.",
+            names[0],
+        )
+        raise LimitError(str(refused), **refused.parts)
 
 
 def _way_out(setting: Setting) -> str:

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coadjoint.derive.mechanics.decided import Decided
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.exact import Element, Field
 
 #: A name and its value, in terms of state, parameters and names defined before.
@@ -89,6 +90,7 @@ class Solve:
         block: Places of the unknowns, which number the intermediates.
         names: Names of the unknowns.
         symmetric: Whether A is, so that it is read below the diagonal alone.
+        newton: What finds the guess that A and b name, where they name one.
     """
 
     matrix: Rows
@@ -96,6 +98,7 @@ class Solve:
     block: Sequence[int]
     names: Sequence[str]
     symmetric: bool = True
+    newton: Newton | None = None
 
     @property
     def mirrored(self) -> Rows:

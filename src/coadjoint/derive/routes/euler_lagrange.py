@@ -176,8 +176,8 @@ def _steps(
         ),
     ]
     if transform is not None:
-        solved = transform.definitions
-        steps.append(write_step("Velocities", "v solved from p = dl/dv", "v = v(q, p)", solved))
+        law = f"v solved from p = dl/dv{transform.iterations}"
+        steps.append(write_step("Velocities", law, "v = v(q, p)", transform.definitions))
     elif show_geometry and is_natural(known):
         steps += _geometry(known)
     latex = r"E = v \cdot \partial l / \partial v - l"
