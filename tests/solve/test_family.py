@@ -302,7 +302,9 @@ def tops():
     return pipeline.render(read_spec_text(TOPS, "tops.toml")).texts
 
 
-@pytest.mark.parametrize(("method", "step"), [("rk4", 0.05), ("dop853", 0.05), ("dop853", None)])
+@pytest.mark.parametrize(
+    ("method", "step"), [("rk4", 0.05), ("dop853", 0.05), ("dop853", None), ("taylor", None)]
+)
 def test_attitudes_of_members_stay_rotations(tops, method, step):
     """All steps move them back, in C, fixed ones among it, with the bits of the twin."""
     with load_texts(tops) as system:
@@ -332,6 +334,20 @@ def test_a_start_that_is_no_rotation_is_refused_by_member(tops):
         run = system.simulate(near, (0, 0.1), target="numpy", progress=False)
         first = np.asarray(run.state)[:, 0]
         assert np.abs(system.constraint_residual(first, target="numpy")).max() < 1e-15
+
+
+@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dop853", 8), ("taylor", 12)])
+def test_steps_that_leave_attitudes_are_not_taken(tops, tmp_path, method, order):
+    """An object that forgets to move them back is refused."""
+    kept = "memcpy(moved, state, run->rows * run->count * sizeof *moved);"
+    spoiled = tops["solver.c"].replace(
+        "    run->projection(", f"    {kept}\n    if (0) run->projection("
+    )
+    assert spoiled != tops["solver.c"]
+    for file, text in (tops | {"solver.c": spoiled}).items():
+        (tmp_path / file).write_text(text)
+    with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
+        load_steps(load_folder(tmp_path), Choice(method, order), "c")
 
 
 FIELDS = [[0, 0, k] for k in range(6)]

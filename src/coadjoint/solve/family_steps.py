@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -51,48 +51,46 @@ KEPT_NEAR: Final = 1 << 17
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
-class _Run(ctypes.Structure):
-    """``NAME_solver_run`` of the header, field by field."""
+#: ``NAME_solver_run`` of the header, field by field, after the functions that it calls.
+_RUN: Final = (
+    ("rows", _SIZE),
+    ("count", _SIZE),
+    ("parameters", _PLACE),
+    ("parameters_stride", _SIZE),
+    ("sizes", _PLACE),
+    ("state", _PLACE),
+    ("work", _PLACE),
+    ("step", _DOUBLE),
+    ("rtol", _DOUBLE),
+    ("atol", _DOUBLE),
+    ("five", _DOUBLE),
+    ("three", _DOUBLE),
+    ("path", _PLACE),
+    ("path_row", _SIZE),
+    ("path_order", _SIZE),
+)
+#: ``NAME_solver_ensemble``, likewise.
+_ENSEMBLE: Final = (
+    ("sizes", _PLACE),
+    *((name, _SIZE) for name in ("rows", "parameter_rows", "members", "first", "last")),
+    *((name, _PLACE) for name in ("state", "time", "step", "next", "steps", "rejected")),
+    ("status", _PLACE),
+    ("parameters", _PLACE),
+    ("parameters_stride", _SIZE),
+    ("samples", _PLACE),
+    ("sample_count", _SIZE),
+    ("out", _PLACE),
+    *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
+    ("max_steps", _SIZE),
+    ("work", _SIZE),
+    ("scratch", _PLACE),
+)
 
-    _fields_ = (
-        ("rates", _PLACE),
-        ("rows", _SIZE),
-        ("count", _SIZE),
-        ("parameters", _PLACE),
-        ("parameters_stride", _SIZE),
-        ("sizes", _PLACE),
-        ("state", _PLACE),
-        ("work", _PLACE),
-        ("step", _DOUBLE),
-        ("rtol", _DOUBLE),
-        ("atol", _DOUBLE),
-        ("five", _DOUBLE),
-        ("three", _DOUBLE),
-        ("path", _PLACE),
-        ("path_row", _SIZE),
-        ("path_order", _SIZE),
-    )
 
-
-class _Ensemble(ctypes.Structure):
-    """``NAME_solver_ensemble`` of the header, field by field."""
-
-    _fields_ = (
-        ("rates", _PLACE),
-        ("sizes", _PLACE),
-        *((name, _SIZE) for name in ("rows", "parameter_rows", "members", "first", "last")),
-        *((name, _PLACE) for name in ("state", "time", "step", "next", "steps", "rejected")),
-        ("status", _PLACE),
-        ("parameters", _PLACE),
-        ("parameters_stride", _SIZE),
-        ("samples", _PLACE),
-        ("sample_count", _SIZE),
-        ("out", _PLACE),
-        *((name, _DOUBLE) for name in ("rtol", "atol", "size")),
-        ("max_steps", _SIZE),
-        ("work", _SIZE),
-        ("scratch", _PLACE),
-    )
+def _make_structure(called: tuple[str, ...], fields: Any) -> type[ctypes.Structure]:
+    """A structure of the header that begins with the functions of the kernel that are called."""
+    functions = ((name, _PLACE) for name in called)
+    return type("_Given", (ctypes.Structure,), {"_fields_": (*functions, *fields)})
 
 
 class FamilyTwin(StepwiseStepper):
@@ -130,7 +128,10 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        self._rates_place = system._kernels.find(target, "rhs")
+        called = {"rates": "rhs"} | {n: n for n in ("projection",) if n in system.functions}
+        self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
+        self._run_type = _make_structure(tuple(called), _RUN)
+        self._ensemble_type = _make_structure(tuple(called), _ENSEMBLE)
         names = ("advance", "work", *FUNCTIONS[choice.name])
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
@@ -139,18 +140,18 @@ class FamilyStepper(FamilyTwin):
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
-        """As `Stepper.advance`; the twin leads steps that are recorded or moved back."""
-        if record is not None or "projection" in self._system.functions:
+        """As `Stepper.advance`; the twin leads steps that are recorded."""
+        if record is not None:
             return super().advance(ensemble, first, last, work, record)
         given = self._describe(ensemble, first, last)
         given.work = work
         given.scratch = self._provide(self._functions["work"](ctypes.byref(given)))
         return self._functions["advance"](ctypes.byref(given))
 
-    def _describe(self, run: Ensemble, first: int, last: int) -> _Ensemble:
+    def _describe(self, run: Ensemble, first: int, last: int) -> Any:
         """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
-        given = _Ensemble(
-            rates=self._rates_place,
+        given = self._ensemble_type(
+            **self._called,
             sizes=self._members.ctypes.data,
             rows=len(run.state),
             parameter_rows=len(run.parameters),
@@ -172,10 +173,10 @@ class FamilyStepper(FamilyTwin):
             setattr(given, name, array.ctypes.data)
         return given
 
-    def _give(self, state: Array, parameters: Array) -> _Run:
+    def _give(self, state: Array, parameters: Array) -> Any:
         """What every function of the solver takes."""
-        return _Run(
-            rates=self._rates_place,
+        return self._run_type(
+            **self._called,
             rows=len(state),
             count=state.shape[1],
             parameters=parameters.ctypes.data,
@@ -191,7 +192,7 @@ class FamilyStepper(FamilyTwin):
             room = self._own.room = np.empty(size)
         return room.ctypes.data
 
-    def _find_stages(self, run: Ensemble, state: Array, step: float) -> tuple[_Run, Array]:
+    def _find_stages(self, run: Ensemble, state: Array, step: float) -> tuple[Any, Array]:
         """The stages of a step of one trajectory, and its end below them."""
         parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
         given = self._give(state, parameters)
