@@ -1,7 +1,8 @@
 """Kernels of shipped systems under the address, undefined-behaviour and thread sanitizers.
 
 Two threads evaluate the halves of one batch, as users of kernels do. Solvers run under the same
-sanitizers in `tests.solve.test_steps`.
+sanitizers in `tests.solve.test_steps`, systems of equal members in
+`tests.render.test_sanitized_families`.
 """
 
 import math
@@ -15,11 +16,12 @@ from importlib import import_module
 import pytest
 
 from coadjoint import systems
+from tests.conftest import FAMILIES
 from tests.kernels import COMPILER, STRICT
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 SANITIZERS = ("address,undefined", "thread")
-NAMES = sorted(each.name for each in pkgutil.iter_modules(systems.__path__))
+NAMES = sorted({each.name for each in pkgutil.iter_modules(systems.__path__)} - {*FAMILIES})
 #: What every `make test` looks at: constraints, observables and a reconstruction.
 ALWAYS = "chaplygin_sleigh"
 
@@ -98,11 +100,17 @@ def write_driver(system):
 
 def run_under(sanitizers, system, main, folder):
     """The exit status of a driver, and what the sanitizers say."""
-    (folder / "main.c").write_text(main)
-    for file in ("kernel.c", "kernel.h"):
-        shutil.copy(system.folder / file, folder)
+    files = {file: (system.folder / file).read_text() for file in ("kernel.c", "kernel.h")}
+    return compile_and_run(sanitizers, files | {"main.c": main}, folder)
+
+
+def compile_and_run(sanitizers, files, folder, *options):
+    """The exit status of a program of some files, and what the sanitizers say."""
+    for file, text in files.items():
+        (folder / file).write_text(text)
     flags = ["-g", "-O1", f"-fsanitize={sanitizers}", "-fno-sanitize-recover=all", "-pthread"]
-    command = [shutil.which("gcc") or COMPILER, *STRICT, *flags, "main.c", "kernel.c"]
+    sources = [file for file in files if file.endswith(".c")]
+    command = [shutil.which("gcc") or COMPILER, *STRICT, *flags, *options, *sources]
     subprocess.run([*command, "-o", "main", "-lm"], cwd=folder, check=True, capture_output=True)
     environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # leaks need ptrace
     done = subprocess.run([str(folder / "main")], check=False, env=environment, capture_output=True)

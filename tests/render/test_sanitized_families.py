@@ -1,0 +1,159 @@
+"""Kernels and solvers of equal members under sanitizers of addresses, behaviour and threads.
+
+Several numbers of members, with whole blocks and without, one trajectory and some. Two threads
+share a batch, as in `simulate`. `tests.render.test_sanitizers` does the same for other systems.
+"""
+
+import re
+
+import pytest
+
+from coadjoint import pipeline
+from tests.conftest import FAMILIES
+from tests.families import TOPS, read
+from tests.kernels import COMPILER
+from tests.render.test_sanitizers import SANITIZERS, compile_and_run
+from tests.specs import shipped
+
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+
+MAIN = """#include "kernel.h"
+#include "solver.h"
+#include <pthread.h>
+#include <stdlib.h>
+enum { COMPONENTS = %(components)d, SHARED = %(shared)d, INDEXED = %(indexed)d, SMALL = %(small)d };
+enum { SAMPLES = 3, MAX_STEPS = 12 };
+static double *fill(size_t size, double first)
+{
+    double *array = malloc((size + 1) * sizeof *array);
+    for (size_t i = 0; i < size; ++i)
+        array[i] = first + 0.01 * (double)(i %% 97);
+    return array;
+}
+static void *advance(void *given)
+{
+    %(name)s_solver_ensemble *run = given;
+    run->scratch = malloc(%(name)s_solver_work(run) * sizeof(double));
+    while (%(name)s_solver_advance(run))
+        continue;
+    free(run->scratch);
+    return 0;
+}
+static void evaluate(size_t size, size_t count)
+{
+    const size_t rows = COMPONENTS * size, values = SHARED + INDEXED * size;
+    double *state = fill(2 * rows * count, 0.5), *parameters = fill(values * count, 1.0);
+    double sizes[1] = {(double)size};
+    for (size_t separate = 0; separate < 2; ++separate) {
+        const size_t stride = separate ? count : 0;
+        double *out = fill(OUT * count, 0.0);
+%(calls)s
+        free(out);
+    }
+    free(state), free(parameters);
+}
+static int simulate(size_t size, size_t members, double step)
+{
+    const size_t rows = COMPONENTS * size, values = SHARED + INDEXED * size;
+    double *state = fill(rows * members, 0.5), *parameters = fill(values, 1.0);
+    double *time = calloc(members, 8), *first = calloc(members, 8);
+    double *out = fill(rows * members * SAMPLES, 0.0), sizes[1] = {(double)size};
+    double samples[SAMPLES] = {0.001, 0.01, 0.02};
+    size_t *next = calloc(members, 8), *steps = calloc(members, 8), *rejected = calloc(members, 8);
+    int8_t *status = calloc(members, 1);
+    %(name)s_solver_ensemble run = {
+        .rates = %(name)s_rhs, %(projection)s .sizes = sizes, .rows = rows,
+        .parameter_rows = values, .members = members, .last = members, .state = state, .time = time,
+        .step = first, .next = next, .steps = steps, .rejected = rejected, .status = status,
+        .parameters = parameters, .samples = samples, .sample_count = SAMPLES, .out = out,
+        .rtol = 1e-6, .atol = 1e-6, .size = step, .max_steps = MAX_STEPS, .work = 3};
+    %(name)s_solver_ensemble rest = run;
+    rest.first = run.last = members / 2;
+    pthread_t thread;
+    if (pthread_create(&thread, 0, advance, &rest))
+        return 2;
+    advance(&run);
+    pthread_join(thread, 0);
+    int on = 0;
+    for (size_t n = 0; n < members; ++n)
+        on |= status[n] == 0 || steps[n] + rejected[n] == 0;
+    free(state), free(parameters), free(time), free(first), free(out);
+    free(next), free(steps), free(rejected), free(status);
+    return on;
+}
+int main(void)
+{
+    const size_t sizes[] = {SMALL, SMALL + 1, 7, 17, 43};
+    for (size_t k = 0; k < 5; ++k)
+        for (size_t count = 1; count < 13; count += 11) {
+            evaluate(sizes[k], count);
+            if (simulate(sizes[k], count, 0.005) || simulate(sizes[k], count, 0.0))
+                return 1;
+        }
+    return 0;
+}
+"""
+METHODS = {"rk4": "RK4", "dop853": "DOP853", "taylor": "ORDER=6"}
+
+
+def write(rendered, change=lambda main: main):
+    """The files of a family with a program that calls all of it."""
+    family, texts = rendered.family.family, rendered.texts
+    name = rendered.equations.spec.name
+    functions = re.findall(rf"void {name}_(\w+)\(\s*size_t count", texts["kernel.h"])
+    given = "count, state, count, parameters, stride, sizes, 0, out, count"
+    calls = "\n".join(f"        {name}_{each}({given});" for each in functions)
+    totals = max(10 * len(family.states), len(family.totals), len(family.residuals))
+    main = MAIN % {
+        "name": name,
+        "components": len(family.states),
+        "shared": len(family.shared),
+        "indexed": len(family.indexed),
+        "small": family.small,
+        "calls": calls,
+        "projection": f".projection = {name}_projection," if family.turned else "",
+    }
+    files = {n: texts[n] for n in ("kernel.c", "kernel.h", "solver.c", "solver.h")}
+    return files | {"main.c": change(main.replace("OUT", f"({totals} * size)"))}
+
+
+@pytest.fixture(scope="module")
+def tops():
+    """Tops in a row: ends, attitudes, parameters of members."""
+    return pipeline.render(read(TOPS))
+
+
+CASES = [
+    pytest.param(name, method, each, marks=[pytest.mark.campaign] * (name != "tops" or slow))
+    for name in ("tops", *FAMILIES)
+    for method in METHODS
+    for each in SANITIZERS
+    for slow in ((method, each) != ("dop853", "address,undefined"),)
+]
+
+
+@pytest.mark.parametrize(("name", "method", "sanitizers"), CASES)
+def test_the_sanitizers_find_nothing(tops, name, method, sanitizers, tmp_path):
+    """Every function and method, shared parameters and separate ones, odd numbers of members."""
+    rendered = tops if name == "tops" else pipeline.render(shipped(name))
+    define = f"-D{METHODS[method]}"
+    done = compile_and_run(sanitizers, write(rendered), tmp_path, define)
+    assert done == (0, "")
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(
+    ("sanitizers", "good", "bad"),
+    [
+        ("address,undefined", "work(run) * sizeof(double)", "work(run)"),
+        ("thread", "rest.first = run.last = members / 2", "run.last = members / 2"),
+    ],
+    ids=SANITIZERS,
+)
+def test_the_sanitizers_see_what_is_wrong(tops, sanitizers, good, bad, tmp_path):
+    """Scratch with too little room, and two threads with the same trajectories."""
+    assert good in MAIN
+    files = write(tops, lambda main: main.replace(good, bad))
+    status, said = compile_and_run(sanitizers, files, tmp_path, "-DDOP853")
+    assert status != 0
+    assert "Sanitizer" in said
