@@ -426,7 +426,7 @@ def test_members_that_are_written_out_are_derived_for_the_size_that_is_chosen(tm
         '[claims]\nconserved = ["energy"]\n'
     )
     system = load(path, sizes={"i": 2})
-    assert system.members == ("i", 2)
+    assert system.written == ("i", 2)
     assert system.rhs([1.0, 2.0, 3.0, 4.0]).tolist() == [3.0, 4.0, -3.0, -3.0]
     assert system.resize({"i": 2}) is system
     with pytest.raises(KernelArgumentError, match=r"coadjoint.load\(path, sizes=\{'i': 4\}\)"):

@@ -236,7 +236,7 @@ class Constraints:
         >>> x, zero, one = field["x"], field.zero, field.one
         >>> rows = ((x, zero), (one, x))
         >>> Constraints(field, ["x"], rows, (one, zero), lambda _: (rows[0], zero)).solution
-        (1/x, (-1)/x**2)
+        (1/x, -1/x**2)
         """
         found = dict[int, Element]()
         for rows, columns in self.groups:
