@@ -21,6 +21,7 @@ from time import process_time
 
 import numpy as np
 from c_kernels import FUSED, HAND, UNFUSED, aligned
+from figures import Figure, script
 from results import Table, write
 
 from coadjoint.build.compiler import find_compiler
@@ -28,6 +29,8 @@ from coadjoint.resources import systems_folder
 from coadjoint.solve.system import load_folder
 
 ROUNDS = 7
+#: The least speed, in units of the best C by hand of any form and options.
+LEAST = 0.8
 #: Members, and calls in a round.
 SYSTEMS: Mapping[str, tuple[int, int]] = {
     "heisenberg_lattice": (10_000, 1000),
@@ -92,7 +95,9 @@ def check_equal(contest: Contest, competitors: Mapping[str, Callable[[], object]
         np.testing.assert_allclose(contest.out, expected, rtol=0, atol=1e-9 * most, err_msg=name)
 
 
-def measure(competitors: Mapping[str, Callable[[], object]], calls: int) -> dict[str, list[float]]:
+def take_times(
+    competitors: Mapping[str, Callable[[], object]], calls: int
+) -> dict[str, list[float]]:
     """Seconds of processor time of a call, in each round."""
     seconds: dict[str, list[float]] = {name: [] for name in competitors}
     for _ in range(ROUNDS):
@@ -104,15 +109,15 @@ def measure(competitors: Mapping[str, Callable[[], object]], calls: int) -> dict
     return seconds
 
 
-def main() -> None:
-    """Measure, and write tables."""
-    rows, medians = [], list[tuple[str, ...]]()
+def measure() -> list[Figure]:
+    """Speed in units of the best C by hand of any form; tables are written."""
+    rows, medians, figures = [], list[tuple[str, ...]](), list[Figure]()
     with tempfile.TemporaryDirectory() as folder:
         for name, (size, calls) in SYSTEMS.items():
             contest = Contest(name, size, Path(folder))
             competitors = contest.competitors()
             check_equal(contest, competitors)
-            seconds = measure(competitors, calls)
+            seconds = take_times(competitors, calls)
             times = {each: median(values) for each, values in seconds.items()}
             medians += [
                 (name, who, f"{time * 1e6:.4g}", f"{min(seconds[who]) * 1e6:.4g}")
@@ -120,6 +125,9 @@ def main() -> None:
             ]
             ours, hand = times["fast"], min(t for n, t in times.items() if n.startswith("hand"))
             once = [t for n, t in times.items() if n.startswith("each")]
+            speed = min((hand, *once)) / ours
+            what = f"{name}, {size} members: speed in units of the best C by hand"
+            figures.append(Figure(what, f">= {LEAST}", f"{speed:.2f}", speed >= LEAST))
             rows.append(
                 (
                     name,
@@ -136,8 +144,9 @@ def main() -> None:
         Table("speed in units of C by hand", HEADS, rows),
         Table("microseconds", ("system", "who", "median", "fastest"), medians),
     ]
-    write("families", setting, (), (), tables)
+    write("families", setting, (), figures, tables)
+    return figures
 
 
 if __name__ == "__main__":
-    main()
+    script(measure)

@@ -33,6 +33,7 @@ BENCHMARKS = (
     "c_kernels",
     "numpy_kernels",
     "call_overhead",
+    "families",
     "ensembles",
     "ensembles_jax",
     "trajectories",
