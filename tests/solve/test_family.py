@@ -313,6 +313,7 @@ def test_attitudes_of_members_stay_rotations(tops, method, step):
         named = {"method": method, "step": step, "progress": False, "samples": 5}
         runs = [system.simulate(start, (0, 20), target=t, **named) for t in ("c", "numpy")]
         assert np.array_equal(*(np.asarray(run.state) for run in runs))
+        assert "stepwise" not in runs[0].settings
         end = np.asarray(runs[0].state)[:, -1]
         assert np.abs(system.constraint_residual(end)).max() < 1e-14
         assert not np.allclose(end[:27], start[:27])

@@ -49,7 +49,7 @@ class FamilySystem(System):
         steppers: Who makes its steps, by method and target, as far as that was asked for.
     """
 
-    stepwise = "steps of many equal members are recorded and moved back by their twin"
+    stepwise = "steps of many equal members are recorded by their twin"
 
     def __init__(
         self,

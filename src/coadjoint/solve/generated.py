@@ -76,8 +76,7 @@ def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     """
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
-    moved = isinstance(system, FamilySystem) and "projection" in system.functions
-    return system.stepwise if is_recorded or moved else ""
+    return system.stepwise if is_recorded else ""
 
 
 def find_series_obstacle(
