@@ -62,7 +62,7 @@ CHECKS = (
     *of(
         "lower/definitions",
         "shorten: then element",
-        tests=("tests/lower/test_lowering.py -k 'careful_hand and kapitza_top'",),
+        tests=("tests/lower/test_lowering.py -k 'careful_hand and landau_lifshitz_gilbert'",),
     ),
     *of(
         "measures",
