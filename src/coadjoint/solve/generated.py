@@ -15,7 +15,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
-from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.comparison import count_rows, list_kinks
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
@@ -203,6 +203,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         atol=request.atol,
         size=request.step or 0.0,
         max_steps=request.max_steps,
+        sides=len(list_kinks(system, request.choice)),
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
