@@ -192,7 +192,8 @@ class Ensemble:
         rejected: Steps that were not, ``(N,)``.
         status: One of `Status`, ``(N,)``.
         kinks: Kinks that they have met, ``(N,)``; None where rates have none.
-        brief: How many of the last of these followed one another within 2^-20 of a step; likewise.
+        brief: How many of the last of these followed one another within 2^-30 of a step, or of the
+            time; likewise.
         met: The kinks that were met: rows of the member, how many steps that made with it, which
             kink, and the time; in no order.
     """
@@ -318,9 +319,8 @@ class Ensemble:
         over = self.steps[going] >= self.max_steps
         status[accepted & over] = Status.MAX_STEPS
         status[accepted & (self.time[going] >= self.end)] = Status.OK
-        status[accepted & self._count_kinks(going, met, accepted, outside < took * NEAR)] = (
-            Status.SLIDING
-        )
+        short = outside < step.find_brief()
+        status[accepted & self._count_kinks(going, met, accepted, short)] = Status.SLIDING
         status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
         lost = stuck | np.full(stuck.shape, not method.tries_again)

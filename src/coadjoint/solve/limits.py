@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 HALVINGS, KINK_HALVINGS = 40, 64
 #: Halvings that look for the place of a step that is nearest to a kink.
 DIP_HALVINGS = 32
-#: The part of a step over which straight lines are drawn; a kink that follows another one within
-#: such a part follows it briefly.
+#: The part of a step over which straight lines are drawn.
 NEAR = 2.0**-20
+#: The part of a step, or of the time, within which a kink follows another one briefly.
+BRIEF = 2.0**-30
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,12 @@ class Limits:
         return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
 
     def are_held(self, lanes: Lanes, after: Array, state: Array) -> Mask:
-        """Where states are in the domain and on the sides on which their step began."""
+        """Where states are in the domain, and beyond no kink from where their step began."""
         inside = self.are_inside(lanes, after, state)
         if self.kinks is None:
             return inside
         sides = np.sign(self.kinks(lanes, after, state))
-        return np.asarray(inside & (sides == lanes.sides).all(axis=0))
+        return np.asarray(inside & ((sides == lanes.sides) | (sides == 0.0)).all(axis=0))
 
     def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The nearest states on the constraints; where there is none, the state itself."""
@@ -152,6 +153,11 @@ class Step:
             here = self._look(middle, low, outside)[row]
             falls = self._look(middle + near, nowhere, outside)[row] < here
             one, other = np.where(falls, middle, one), np.where(falls, other, middle)
+
+    def find_brief(self) -> Array:
+        """The length within which a kink follows another one briefly, ``(N,)``."""
+        took, time = self.attempt.took, np.abs(self.lanes.time)
+        return np.where(took > time, took, time) * BRIEF
 
     def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
         """How far the step is in the domain and on its sides, and when it is not."""
