@@ -194,7 +194,8 @@ def _exact_step(
         return run(programs[function], known, number, apply)
 
     def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
-        apply = _refuse_crossings(apply) if solvers.text.kinks is not None else apply
+        signs = _Signs(apply)
+        apply = apply if solvers.text.kinks is None else signs.call
 
         def at(x: methods.Row, after: Any) -> methods.Row:
             known = dict(zip(program.state, x, strict=True))
@@ -205,6 +206,7 @@ def _exact_step(
             for place, each in enumerate(fields):
                 increment = number(Fraction(noise[place % len(noise)]))
                 rows[place // len(noise)] = rows[place // len(noise)] + each * increment
+            signs.end_stage()
             return rows
 
         return at
@@ -228,23 +230,33 @@ def _exact_step(
     return ExactStep(within, end, solvers.depths[method])
 
 
-def _refuse_crossings(apply: Any) -> Any:
-    """Functions of which signs stay those of the first stage, as long as sides are held.
+class _Signs:
+    """Functions of which signs have to stay those of the first stage, as solvers hold sides.
 
-    Raises:
-        OutsideDomain: A sign is another one: the stage is beyond a kink, where rates are held.
+    Args:
+        apply: The functions.
     """
-    known = set[Decimal]()
 
-    def call(function: str, *of: Any) -> Any:
-        value = apply(function, *of)
+    def __init__(self, apply: Any) -> None:
+        self._apply, self._first, self._now = apply, list[Any](), list[Any]()
+
+    def call(self, function: str, *of: Any) -> Any:
+        """The value of a function."""
+        value = self._apply(function, *of)
         if function == "sign" and isinstance(value, Bounded):
-            known.add(value.value)
-            if len(known) > 1:
-                raise OutsideDomain
+            self._now.append(value.value)
         return value
 
-    return call
+    def end_stage(self) -> None:
+        """The stage is done.
+
+        Raises:
+            OutsideDomain: It is beyond a kink.
+        """
+        self._first = self._first or self._now
+        if self._now != self._first:
+            raise OutsideDomain
+        self._now = []
 
 
 def _raise_level(_: str, *of: Levels) -> Levels:

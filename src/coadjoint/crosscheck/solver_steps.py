@@ -162,7 +162,7 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
         advance(ensemble, 1)
         for member in range(few.size):
             taken = float(ensemble.time[member]) - START
-            if not ensemble.steps[member]:  # beyond a kink: the next one is tried with a part of it
+            if not ensemble.steps[member]:  # beyond a branch point: a part of it is tried next
                 taken = float(ensemble.step[member]) / SHORTER
             if ensemble.status[member] == Status.DOMAIN or not taken > 0:
                 continue

@@ -231,7 +231,7 @@ def arrange_sides(solved: Mapping[str, Program]) -> dict[str, Any]:
     return {
         "sides": [Row(index, name, "") for index, name in enumerate(names) if index >= known],
         "kinks": [quote(Printer("").text(output.value)) for output in kinks.outputs],
-        "held": {"rates": arrange_function("held", solved["rates"]), "kinks": arrange_function("kinks", kinks)},
+        "held": {name: arrange_function("held", solved[name]) for name in ("rates", "kinks")},
     }
 
 

@@ -7,8 +7,8 @@ Comes in: an `Ensemble` and the object of a solver. Goes out: the ensemble furth
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -35,7 +35,7 @@ _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 class _Run(ctypes.Structure):
     """``NAME_run`` of the headers, field by field; then come those of noise, or those of kinks."""
 
-    _fields_ = (
+    _fields_: ClassVar[Sequence[tuple[str, Any]]] = (
         ("members", _SIZE),
         ("first", _SIZE),
         ("last", _SIZE),
@@ -72,13 +72,13 @@ class _Run(ctypes.Structure):
 class _NoisyRun(_Run):
     """With the fields that a system with noise has in addition."""
 
-    _fields_ = (("seed", ctypes.c_uint64), ("bound", _DOUBLE))
+    _fields_: ClassVar[Sequence[tuple[str, Any]]] = (("seed", ctypes.c_uint64), ("bound", _DOUBLE))
 
 
 class _KinkedRun(_Run):
     """With the fields that a system with kinks has in addition."""
 
-    _fields_ = (
+    _fields_: ClassVar[Sequence[tuple[str, Any]]] = (
         ("kinks", _PLACE),
         ("brief", _PLACE),
         ("met", _PLACE),

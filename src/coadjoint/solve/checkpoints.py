@@ -146,7 +146,7 @@ class Checkpoint:
         head = json.dumps({"form": _FORM, "build": self._build, "asked": self._asked})
         with write_whole(self.path) as place, place.open("wb") as file:
             arrays: dict[str, Any] = {_HEAD: np.array(head), **_arrays(run)}
-            arrays |= {_MET: run.list_met()} if run.kinks is not None else {}
+            arrays |= {_MET: run.list_met()} if "kinks" in arrays else {}
             known = {} if self._recording is None else self._recording.save()
             arrays |= {f"{_RECORDING}.{name}": array for name, array in known.items()}
             np.savez(file, **arrays)

@@ -392,9 +392,7 @@ class Ensemble:
             rows = [whose, self.steps[whose] + 1.0, kink, time[lane]]
             self.met.append(np.array(rows, np.float64).T)
 
-    def _count_kinks(
-        self, going: NDArray[np.intp], met: Mask, accepted: Mask, short: Mask
-    ) -> Mask:
+    def _count_kinks(self, going: NDArray[np.intp], met: Mask, accepted: Mask, short: Mask) -> Mask:
         """Count the kinks that were met. Where too many followed one another, a member slides."""
         if self.kinks is None or self.brief is None:
             return np.zeros(met.shape, bool)

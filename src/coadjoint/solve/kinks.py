@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Place = tuple[int, ...]
 
+#: Roundings of time: a kink in time is met again where the time after it is rounded to before it.
+ROUNDINGS = 2.0**-47
+
 
 @dataclass(frozen=True)
 class Kinks:
@@ -100,10 +103,19 @@ def list_kinks_met(run: Ensemble, names: tuple[str, ...], batch: Place) -> Kinks
     rows = run.list_met()
     member = rows[:, 0].astype(np.intp)
     rows = rows[rows[:, MET - 1] <= run.time[member]]
-    rows = rows[np.lexsort((rows[:, 2], rows[:, 1], rows[:, 0]))]
+    rows = _leave_out_repeated(rows)
     steps = np.unique(rows[:, :2], axis=0)[:, 0].astype(np.intp)
     counts = np.bincount(steps, minlength=run.kinks.size).astype(np.uint64)
     return Kinks(names, counts.reshape(batch), rows[:, [0, 2, 3]])
+
+
+def _leave_out_repeated(rows: Array) -> Array:
+    """Rows by member and step, without kinks that were met again within the roundings of time."""
+    rows = rows[np.lexsort((rows[:, 3], rows[:, 2], rows[:, 0]))]
+    same = (rows[1:, [0, 2]] == rows[:-1, [0, 2]]).all(axis=1)
+    soon = np.diff(rows[:, 3]) <= ROUNDINGS * np.abs(rows[1:, 3])
+    rows = rows[np.append(True, ~(same & soon))[: len(rows)]]
+    return rows[np.lexsort((rows[:, 2], rows[:, 1], rows[:, 0]))]
 
 
 def describe_sliding(kinks: Kinks) -> str:

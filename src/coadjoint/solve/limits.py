@@ -139,6 +139,7 @@ class Step:
         """
         state = self.find_state(after)
         assert self.limits.kinks is not None
+        assert self.lanes.sides is not None
         gaps = self.limits.kinks(self.lanes, after, state) * self.lanes.sides
         gone = open_ & ~self.limits.are_held(self.lanes, after, state) & (after < outside)
         outside[gone] = after[gone]

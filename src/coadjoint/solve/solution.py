@@ -218,19 +218,13 @@ class Solution:
 
     @property
     def _tables(self) -> list[tuple[Any, Array]]:
-        followed = self.reconstructed
+        followed, inputs = self.reconstructed, self.inputs
         return [
             (self.system.STATE, self.state),
             *([] if followed is None else [(self.system.RECONSTRUCTED, followed)]),
             (self.system.OBSERVABLES, self.observables),
-            *([] if self.inputs is None else [(self.system.INPUTS, self._inputs_over_time)]),
+            *([] if inputs is None else [(self.system.INPUTS, self._over_samples(inputs))]),
         ]
-
-    @property
-    def _inputs_over_time(self) -> Array:
-        """The inputs at every sample, ``(m, T)`` or ``(m, *batch, T)``."""
-        assert self.inputs is not None, "asked for only where there are some"
-        return self._over_samples(self.inputs)
 
     def _over_samples(self, rows: Array) -> Array:
         """Constants ``(m,)``, series ``(m, T)`` or ``(m, *batch, 1)`` at every sample of each."""

@@ -111,9 +111,7 @@ class NumpyStepper:
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
         assert self._expansion is not None, self._choice.name
-        path: Array = self._expansion(
-            lanes.state, lanes.given, lanes.driving, lanes.slopes, order
-        )
+        path: Array = self._expansion(lanes.state, lanes.given, lanes.driving, lanes.slopes, order)
         return path
 
     def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
