@@ -228,7 +228,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
     for size in range(1, len(block) + 1):
         minor = determinant(tuple(row[:size] for row in still[:size]))
-        if sign(field, minor) != 1:
+        if not _is_positive(setting, minor):
             raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
     mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
     products = [
@@ -238,6 +238,16 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
     newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
     return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+
+
+def _is_positive(setting: Setting, element: Element) -> bool:
+    """Whether an element is positive for certain: by itself, or times a condition of the domain."""
+    field = setting.field
+    if sign(field, element) == 1:
+        return True
+    conditions = (each for each in setting.spec.domain if not each.sign.endswith("="))
+    excesses = (setting.excess(each) for each in conditions)
+    return any(sign(field, element / each) == 1 for each in excesses if not field.is_zero(each))
 
 
 def _solve_radially(
