@@ -2,7 +2,7 @@
 
 L. D. Landau and E. M. Lifshitz, The Classical Theory of Fields, 4th ed. (1975), equation 65.7. No
 formula gives velocities of the momenta ``p = m v + m v^3/(2 c^2) + k u/(c^2 r)``. Expected values
-come from the roots of both cubics, one at the other's last value, to 50 digits, and from an integral.
+come from the roots of both cubics, one at the last value of the other, and from an integral.
 """
 
 import mpmath

@@ -222,7 +222,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
     reached = frozenset[str]().union(*map(field.reach, moved.values()))
-    if driven := sorted(reached.intersection(setting.driving)):
+    if driven := sorted(reached.intersection(setting.inputs)):
         raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
@@ -275,9 +275,9 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
     message = (
         f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
         f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
-        "is certainly convex at rest, with momenta of the state and the parameters alone. Give "
-        f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
-        "velocities are the state."
+        "is certainly convex at rest, with momenta of the state, the parameters and the time "
+        f"alone. Give {_way_out(of.setting)} instead, or remove {momenta} and take the route "
+        f"{route}, where velocities are the state."
     )
     return _refusal(of.setting, message, names[0])
 
