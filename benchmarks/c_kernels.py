@@ -35,7 +35,7 @@ from results import Table, write
 from coadjoint.build.compiler import MACHINES, compile_kernel, find_compiler, one_function
 from coadjoint.build.library import load_library
 from coadjoint.resources import systems_folder
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 
 MEMBERS, ROUNDS, SECONDS = 1000, 21, 0.01
 HAND = Path(__file__).parent / "hand"

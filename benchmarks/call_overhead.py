@@ -14,7 +14,8 @@ from figures import Figure, script, take_turns
 
 from coadjoint.build.library import load_library
 from coadjoint.resources import systems_folder
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 
 #: Microseconds that each way of calling may cost beyond the kernel; None where none is demanded.
 TARGETS = {

@@ -26,7 +26,7 @@ from results import Table, write
 
 from coadjoint.build.compiler import find_compiler
 from coadjoint.resources import systems_folder
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 
 ROUNDS = 7
 #: The least speed, in units of the best C by hand of any form and options.

@@ -16,7 +16,7 @@ from results import Table, write
 
 from coadjoint.derive import derive
 from coadjoint.resources import derivations_folder, systems_folder
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.spec import read_spec
 
 MEMBERS = 1_000_000

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from coadjoint.pipeline import Rendered
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 from tests.specs import render_claims, spec
 
 #: A pendulum whose pivot moves up and down by a cos(w t), driven by a torque u.

@@ -10,7 +10,8 @@ from coadjoint.derive import Equations, derive
 from coadjoint.lower.lowering import lower
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 from tests.constrained import SLEIGH
 from tests.specs import spec
 

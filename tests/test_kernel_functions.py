@@ -14,8 +14,8 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.render.targets import BUILDS
+from coadjoint.solve.folders import load_folder
 from coadjoint.solve.functions import Functions, make_method
-from coadjoint.solve.system import load_folder
 from coadjoint.spec.core.names import refusal
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER

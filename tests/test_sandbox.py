@@ -29,7 +29,7 @@ def helper(monkeypatch, tmp_path):
         textwrap.dedent(
             """
             import os, time
-            from coadjoint.sandbox import report_progress
+            from coadjoint.sandbox_child import report_progress
 
             def spin(_):
                 while True:
@@ -66,9 +66,9 @@ def helper(monkeypatch, tmp_path):
                 return os.getpid()
 
             def half(_):
-                from coadjoint import sandbox
-                sandbox._channel.write('{"result": [1, 2')
-                sandbox._channel.flush()
+                from coadjoint import sandbox_child
+                sandbox_child._channel.write('{"result": [1, 2')
+                sandbox_child._channel.flush()
                 os.kill(os.getpid(), 9)
 
             def endless(_):
@@ -96,7 +96,7 @@ def helper(monkeypatch, tmp_path):
     boot = (
         "import sys; sys.path.insert(0, sys.argv[1]); import coadjoint; "
         f"coadjoint.__path__.append({str(package)!r}); "
-        "from coadjoint import sandbox; sandbox.child()"
+        "from coadjoint import sandbox_child; sandbox_child.serve()"
     )
     monkeypatch.setattr(sandbox, "_BOOT", boot)
     return "coadjoint.tasks:"

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 from coadjoint.budget import allowed_seconds
 from coadjoint.errors import CoadjointError, ResourceError, from_record
 from coadjoint.limits import WORKER_BYTES
-from coadjoint.sandbox import report_progress, run_bounded
+from coadjoint.sandbox import run_bounded
+from coadjoint.sandbox_child import report_progress
 
 if TYPE_CHECKING:
     from coadjoint.spec import Spec

@@ -16,7 +16,8 @@ from coadjoint.build.cache import cache_folder, note_use
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, is_written_out, regenerate
 from coadjoint.solve.family import lacks_size
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 
 
 def load(

@@ -33,7 +33,7 @@ from coadjoint.prove.declaration import family_context, kernel_context
 from coadjoint.prove.record import certificate_json
 from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Windows
 

@@ -35,7 +35,8 @@ from coadjoint.render.write import (
     tree_texts,
     write_systems,
 )
-from coadjoint.sandbox import Children, report_progress, run_bounded
+from coadjoint.sandbox import Children, run_bounded
+from coadjoint.sandbox_child import report_progress
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.reader import read_file

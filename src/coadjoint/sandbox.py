@@ -4,35 +4,30 @@ Comes in: the name of a function and a JSON value. Goes out: its JSON result, or
 raised, as in this process. Processor time and memory are limited, since no static limit on a spec
 keeps every computation short; time by the clock only so that nothing waits without end. A child
 dies with its parent, and with a child dies what it started.
+Read next: `coadjoint.sandbox_child`, the other side.
 """
 
 from __future__ import annotations
 
-import ctypes
-import errno
-import gc
 import json
-import math
 import os
-import re
 import resource
 import signal
 import subprocess
 import sys
 import tempfile
-import traceback
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from threading import Lock, Timer
 from typing import IO, Any
 
 from coadjoint.budget import VARIABLE
 from coadjoint.ending import kill
-from coadjoint.errors import CoadjointError, InternalError, ResourceError, from_record, system_error
+from coadjoint.errors import ResourceError, from_record, system_error
 from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
+from coadjoint.sandbox_child import find_processor_limit
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -41,12 +36,9 @@ _ROOT = str(Path(__file__).resolve().parents[1])
 # -I keeps the working folder and the environment out; the package itself may stand outside
 # site-packages, in a checkout, so its place is handed over.
 _BOOT = (
-    "import sys; sys.path.insert(0, sys.argv[1]); from coadjoint import sandbox; sandbox.child()"
+    "import sys; sys.path.insert(0, sys.argv[1]); "
+    "from coadjoint import sandbox_child; sandbox_child.serve()"
 )
-_DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
-#: A child that has had this part of its memory serves no other request.
-MEMORY_PART = 4
-_channel: IO[str] | None = None
 
 
 @dataclass
@@ -165,7 +157,7 @@ def run_bounded(
     request |= {"subject": subject, "again": children is not None}
     task = _Task(
         subject,
-        _processor_limit(seconds),
+        find_processor_limit(seconds),
         WALL_FACTOR * seconds + COMPILE_WALL_SECONDS if wall is None else wall,
         memory,
     )
@@ -273,14 +265,6 @@ def _reap(process: subprocess.Popen[str]) -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def _processor_limit(seconds: float) -> int:
-    """Whole seconds of processor time, less where this process has a lower limit itself."""
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    whole = max(1, math.ceil(seconds))
-    # One less than the hard limit, at which the system kills without saying why.
-    return whole if most == resource.RLIM_INFINITY else max(1, min(whole, most - 1))
-
-
 class _Task:
     """What is known of one child, to say why it was lost."""
 
@@ -332,129 +316,3 @@ class _Task:
             f"memory {self.memory // 2**20} MiB). Simplify the spec, or check whether something "
             f"ended the process. {tail}".rstrip()
         )
-
-
-# -- in the child ---------------------------------------------------------------------------------
-
-
-def report_progress(stage: str, done: int, total: int) -> None:
-    """Tell the parent how far this child is; nothing happens outside a child."""
-    _send({"progress": [stage, done, total]})
-
-
-def child() -> None:
-    """Serve requests, each but the last with a result; the entry point of the child process."""
-    global _channel  # one channel for all requests of this process
-    _die_with(int(sys.argv[2]))
-    _channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # what libraries print must not meet the messages
-    used = 0
-    for line in sys.stdin:
-        if not _serve(json.loads(line), used):
-            return
-        used = math.ceil(_measure_use(resource.RUSAGE_SELF))
-
-
-def _serve(request: dict[str, Any], used: int) -> bool:
-    """Serve one request after processor time of others; whether another one may follow."""
-    _limit(resource.RLIMIT_AS, request["memory"])
-    _limit(resource.RLIMIT_CORE, 0)
-    # The soft limit alone: what this child starts may be given another one.
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (_processor_limit(request["seconds"] + used), most))
-    again = 0.0
-    try:
-        function = _function(request["target"])
-        # What is imported stays, and elements make no cycles: looking for some in all of it again
-        # and again takes a fifth of the time of a large derivation.
-        gc.freeze()
-        gc.set_threshold(50_000, 10, 10)
-        result = function(request["argument"])
-        again = _measure_use() if request["again"] and _is_fresh(request["memory"]) else 0.0
-        _send({"result": result, "again": again})
-    except CoadjointError as error:
-        _send({"error": error.as_record(), "again": 0.0})
-    except Exception as error:
-        _send({"error": _describe(error, request).as_record(), "again": 0.0})
-    gc.collect()
-    return bool(again)
-
-
-def _is_fresh(memory: int) -> bool:
-    """Whether this process may serve another request as if it were the first.
-
-    A limit of processor time of the whole session is shared out to processes of their own.
-    """
-    unlimited = resource.getrlimit(resource.RLIMIT_CPU)[1] == resource.RLIM_INFINITY
-    return unlimited and _find_peak() < memory / MEMORY_PART
-
-
-def _find_peak() -> int:
-    """The most memory that this process has had, bytes.
-
-    What getrusage says begins with the peak of the process that started this one, which may be a
-    large one.
-    """
-    with suppress(OSError):
-        told = re.search(r"VmHWM:\s*(\d+) kB", Path("/proc/self/status").read_text("ascii"))
-        if told is not None:
-            return int(told[1]) * 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-
-
-def _measure_use(*whose: int) -> float:
-    """Processor time of this process and of what it waited for, or of one of them, seconds."""
-    whose = whose or (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    return sum(each.ru_utime + each.ru_stime for each in map(resource.getrusage, whose))
-
-
-def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:
-    """An exception of another library as one of this package; called where it is handled."""
-    if _is_want_of_memory(error):
-        memory: int = request["memory"]
-        message = f"more than {memory // 2**20} MiB of memory were needed. Simplify the spec."
-        return ResourceError(f"{request['subject']}: {message}", limit=memory)
-    refused = system_error(error)
-    if refused is not None:
-        return refused
-    message = f"a fault of coadjoint itself: {type(error).__name__}: {error}. Please report it."
-    return InternalError(message, traceback=traceback.format_exc())
-
-
-def _is_want_of_memory(error: Exception) -> bool:
-    """Whether memory was refused, to Python, by the system, or to a library that was to load."""
-    if isinstance(error, ImportError):
-        return "failed to map segment" in str(error) or "annot allocate memory" in str(error)
-    # A SystemError comes from libraries in C that do not look what they were given.
-    refused = isinstance(error, MemoryError | SystemError)
-    return refused or getattr(error, "errno", None) == errno.ENOMEM
-
-
-def _function(target: str) -> Callable[[Any], Any]:
-    """The function that a request names, of this package alone."""
-    module, _, name = target.partition(":")
-    assert module.split(".")[0] == "coadjoint", target
-    function: Callable[[Any], Any] = getattr(import_module(module), name)
-    return function
-
-
-def _die_with(parent: int) -> None:
-    """End this process when its parent ends, also if that has happened already."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
-    if os.getppid() != parent:
-        os._exit(1)
-
-
-def _limit(kind: int, value: int) -> None:
-    """Lower a limit of this process, never above what it has."""
-    _, most = resource.getrlimit(kind)
-    if most != resource.RLIM_INFINITY:
-        value = min(value, most)
-    resource.setrlimit(kind, (value, most if most != resource.RLIM_INFINITY else value))
-
-
-def _send(message: dict[str, Any]) -> None:
-    if _channel is not None:
-        _channel.write(json.dumps(message) + "\n")
-        _channel.flush()

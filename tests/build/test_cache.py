@@ -15,7 +15,7 @@ from coadjoint.build.cache import CacheWarning, cache_folder, check_private, fet
 from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import OutputError
 from coadjoint.solve import kernels
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.systems import rigid_body
 
 

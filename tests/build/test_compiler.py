@@ -24,7 +24,7 @@ from coadjoint.build.compiler import (
 from coadjoint.errors import CompilerError
 from coadjoint.resources import systems_folder
 from coadjoint.solve import kernels
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.systems import heavy_top
 
 SIMPLE = {
@@ -220,7 +220,7 @@ def test_a_compiler_that_never_ends_is_stopped_by_its_processor_time(monkeypatch
 CALLER = """
 import sys, warnings
 from pathlib import Path
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 load_folder(Path(sys.argv[1])).prepare(("c", "c-fast"))
 """
 #: Says its number and sleeps, in a child of its own as compilers have.

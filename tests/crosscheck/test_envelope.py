@@ -13,7 +13,7 @@ from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.oracle import error_in_envelopes, oracle
 from coadjoint.crosscheck.subject import depth
 from coadjoint.derive.reference import Reference
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.spec import read_spec
 from tests.specs import render_claims
 

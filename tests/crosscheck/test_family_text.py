@@ -7,7 +7,7 @@ from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import CHAIN, RING, VORTICES
 

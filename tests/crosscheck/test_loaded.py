@@ -19,7 +19,7 @@ from coadjoint.errors import CompilerError, CrossCheckError, OutputError
 from coadjoint.regenerate import regenerate
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import BUILDS
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.kernels import COMPILER, ProgramReference, TextSystem
 from tests.programs import PENDULUM, program
 from tests.specs import RIGID_BODY, spec

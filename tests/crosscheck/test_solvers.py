@@ -30,6 +30,7 @@ from coadjoint.crosscheck.solvers import _list_functions, check_solvers
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.derive import derive
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import (
     Add,
@@ -87,7 +88,7 @@ def rates_of(context):
 
 def recurrences_of(context):
     """Its recurrences."""
-    return arrange(select_programs(context.programs))
+    return arrange(hold_sides(select_programs(context.programs)))
 
 
 def subject(context):
@@ -110,7 +111,8 @@ def subject(context):
 
 def texts_of(context, spoil=lambda texts: texts):
     """The solvers of a system as texts."""
-    rendered, programs = spoil(dict(texts_by_name(context.name))), select_programs(context.programs)
+    rendered = spoil(dict(texts_by_name(context.name)))
+    programs = hold_sides(select_programs(context.programs))
     return SolverTexts(
         programs=programs,
         recurrences=arrange(programs),
@@ -300,7 +302,7 @@ def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exa
     system, files = subject(context), texts_of(context, spoil).files
     functions = _list_functions(system, SOLVER)
     strict = tuple(bound.strict for bound in context.domain)
-    numpy = NumpySolver(*load_numpy(files["solver.py"]), functions, strict)
+    numpy = NumpySolver(load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for method in methods if folder else ():
         path = compile_solver(files, folder, method, build)
@@ -324,7 +326,7 @@ def test_steps_of_numpy_are_exact_within_the_bound(context):
 
 
 KINKED = """
-title = "A ball that falls from both sides to a kink"
+title = "A ball that falls from both sides to a kink, and is rubbed"
 routes = ["canonical"]
 [variables]
 q = { role = "coordinate", default = 1 }
@@ -332,8 +334,12 @@ p = { role = "momentum", of = "q" }
 [parameters]
 g = { positive = true, default = 1 }
 [hamiltonian]
-h = "p^2/2 + g*abs(q)"
+h = "p^2/2 + g*abs(q) + q^4/4"
+[forces]
+p = "-g*sign(p)/2"
 """
+#: The same corner as a root, of which the solvers know nothing.
+BRANCHED = KINKED.replace("abs(q)", "sqrt(q^2)").split("[forces]")[0]
 
 
 def context_of(name, text):
@@ -343,14 +349,89 @@ def context_of(name, text):
     return OTHERS[name]
 
 
-def test_the_choice_of_a_step_that_a_kink_rejects_is_compared(monkeypatch):
-    """Every first step goes beyond the kink; what is left of it tells how long it was."""
-    made = solvers(context_of("kinked", KINKED), ("taylor",))
+def test_the_choice_of_a_step_that_a_branch_point_rejects_is_compared(monkeypatch):
+    """Some first steps go beyond it; what is left of them tells how long they were."""
+    made = solvers(context_of("branched", BRANCHED), ("taylor",))
     assert check_choice(made, points(made)) == 3
     right = Taylor._choose
     monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 0.97)
     with pytest.raises(CrossCheckError, match=r"rung 4.*takes the step"):
         check_choice(made, points(made))
+
+
+def test_a_step_that_ends_at_a_kink_is_no_longer_than_the_chosen_one(monkeypatch):
+    """Others are as long as that."""
+    made = solvers(context_of("kinked", KINKED), ("taylor",))
+    assert check_choice(made, points(made)) == 3
+    right = Taylor._choose
+    monkeypatch.setattr(Taylor, "_choose", lambda self, path: right(self, path) * 1.03)
+    with pytest.raises(CrossCheckError, match=r"rung 4.*takes the step"):
+        check_choice(made, points(made))
+
+
+def test_recurrences_hold_the_sides_of_kinks():
+    """Recurrences, their text and the steps are those of the equations between kinks."""
+    context = context_of("kinked", KINKED)
+    text = recurrences_of(context)
+    assert [output.value for output in text.kinks.outputs] == [Symbol("q"), Symbol("p")]
+    assert not text.branches
+    assert check_recurrences(text, subject(context)) == 28
+    assert check_solver_texts(texts_of(context)) > 300
+    made = solvers(context, ("taylor", "dop853", "rk4"))
+    for figures in check_steps(made, points(made), 0.03125).values():
+        assert figures["numpy"].points == 3
+        assert 0 < figures["numpy"].k < 4
+
+
+@pytest.mark.parametrize(
+    ("file", "good", "bad"),
+    [
+        ("solver.c", "_rows[0] = q;", "_rows[0] = p;"),
+        (
+            "solver.c",
+            "_side1 = _block->parameters[1]",
+            "_side1 = _block->parameters[2]",
+        ),
+        ("solver.c", "held &= (side_of(rows[j])", "held &= (side_of(rows[0])"),
+        ("solver.c", "(rows[j] == 0.0)", "(rows[j] == 1.0)"),
+        ("solver.py", "_rows[1] = p", "_rows[1] = q"),
+        ("solver.py", "_side2 = parameters[2]", "_side2 = parameters[1]"),
+        ("solver.py", '"p",\n', '"q",\n'),
+        ("solver.h", "double *met;", "double *kept;"),
+    ],
+)
+def test_a_wrong_side_in_a_text_is_caught(file, good, bad):
+    """Functions of sides are read line by line, the rest letter by letter."""
+    context = context_of("kinked", KINKED)
+    with pytest.raises(CrossCheckError, match="rung 3"):
+        check_solver_texts(texts_of(context, replaced(file, good, bad)))
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("", ""),
+        ("n < 64; ++n", "n < 40; ++n"),
+        ("met = left;", "met = left & (outside < took * 0.5);"),
+        ("block->kinks[w] += met[w] != 0;", ""),
+        ("brief ? block->brief[w] + 1", "brief ? 1"),
+        ("row[3] = time[w];", "row[3] = 0.5 * time[w];"),
+        ("block->step = choose(far, took * 0.5, block->step);", ""),
+    ],
+)
+def test_kinks_in_c_and_numpy_have_the_same_bits(tmp_path, good, bad):
+    """Steps end at the same places; each change of the text of C is seen."""
+    context = context_of("kinked", KINKED)
+    spoil = replaced("solver.c", good, bad) if good else lambda texts: texts
+    made = solvers(context, ("taylor", "dop853", "rk4"), tmp_path, spoil)
+    batch = points(made)
+    batch.state[:, 0] = 0.0, 1e-12  # turns at once, and both kinks follow it
+    if not good:
+        assert min(check_bits(made, batch, 1.0).values()) > 100
+        return
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        check_bits(made, batch, 1.0)
 
 
 def fails(made, rung, size=0.125):

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from functools import cache, partial
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -15,8 +16,11 @@ from coadjoint.errors import CrossCheckError, DerivationError, LimitError
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Number, run
+from coadjoint.prove.declaration import kernel_context
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.render.solvers import arrange, select_programs
+from tests.kernels import COMPILER
+from tests.solve.systems import build
 from tests.specs import RIGID_BODY, prove_claims, spec
 
 #: A particle on a line, l = 0 at rest and a spring.
@@ -196,3 +200,36 @@ def test_too_many_coupled_velocities_are_refused():
     changes = ((QUARTIC, "dot(v, v)^2/4 + a*dot(v, v)/2 + v1^6"), ("k*q^2", "k*dot(q, q)"))
     with pytest.raises(LimitError, match=r"couples 17 velocities"):
         derive(spec(many, *changes))
+
+
+DRIFTING = LINE.replace(QUARTIC, "v^4/4 + a*(2 + sin(t))*v^2/2 + v*cos(t)").replace(
+    "[lagrangian]", '[time]\nname = "t"\n[lagrangian]'
+)
+
+
+@pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_momenta_may_depend_on_time(tmp_path, method):
+    """A free particle keeps p; ``v^3 + a (2 + sin t) v + cos t = p``, and v integrates to q."""
+    text = DRIFTING.replace(" - k*q^2/2", "").replace("k = { positive = true, default = 1 }\n", "")
+    equations = derive(spec(text.split("[claims]")[0]))
+    system = build(kernel_context(equations, lower(equations), 0), tmp_path)
+
+    def cubic(t, p, a):
+        h, r = a * (2 + mpmath.sin(t)), p - mpmath.cos(t)
+        size = 2 * mpmath.sqrt(h / 3)
+        return size * mpmath.sinh(mpmath.asinh(3 * r / (h * size)) / 3)
+
+    end = mpmath.quad(lambda t: cubic(t, 1.5, 0.7), np.linspace(0, 7, 15).tolist())
+    run = system.simulate([0.25, 1.5], (0, 7), {"a": 0.7}, method=method, rtol=1e-12, atol=1e-12)
+    assert run.status == "OK"
+    assert run.final["p"] == 1.5
+    assert run.final["q"] == pytest.approx(0.25 + float(end), abs=1e-11)
+    assert run["v"][-1] == pytest.approx(float(cubic(7, 1.5, 0.7)), abs=1e-13)
+
+
+def test_time_in_momenta_is_proved_on_both_routes():
+    """The bracket gives the motion, and the energy changes by its explicit dependence on time."""
+    proved = prove_claims(spec(DRIFTING.replace('"energy"', ""))).claims
+    assert all(claim.verdict.name == "PROVED" for claim in proved)
+    assert any("explicit dependence on time" in claim.statement for claim in proved)

@@ -11,7 +11,7 @@ from coadjoint.errors import SpecError
 from coadjoint.pipeline import render
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.prove.record import certificate_json
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.specs import RIGID_BODY, spec
 
 SHAPED = RIGID_BODY.replace(

@@ -12,7 +12,7 @@ from coadjoint.exact import Field, element_text
 from coadjoint.prove import Verdict
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.zero import UndecidedError, decide_zero
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.kernels import COMPILER
 from tests.specs import prove_claims, render_claims, spec
 

@@ -10,7 +10,7 @@ from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.specs import prove_claims, spec
 
 

@@ -24,7 +24,7 @@ from coadjoint.lower.program import Program, run
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.spec import read_spec, read_spec_text
 from tests.specs import shipped
 

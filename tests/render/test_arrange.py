@@ -9,7 +9,7 @@ from coadjoint.render.targets.numpy.arrange import arrange
 from coadjoint.render.targets.numpy.runner import Runner
 from coadjoint.render.targets.protocol import Call
 from coadjoint.resources import systems_folder
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 
 SYSTEMS = sorted(folder.name for folder in systems_folder().iterdir() if folder.is_dir())
 SYSTEMS = [name for name in SYSTEMS if (systems_folder() / name / "kernel.py").exists()]

@@ -7,7 +7,7 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.build import library
 from coadjoint.build.compiler import find_compiler
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from tests.kernels import COMPILER
 from tests.specs import RIGID_BODY, spec
 

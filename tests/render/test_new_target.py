@@ -26,7 +26,7 @@ from pathlib import Path
 import coadjoint
 from coadjoint import pipeline
 from coadjoint.render.write import SYSTEM_FILES
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec
 from coadjoint.spec.core.names import refusal
 

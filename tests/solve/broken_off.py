@@ -21,7 +21,7 @@ from coadjoint.render.kernels import render_system
 from coadjoint.solve import checkpoints, march
 from coadjoint.solve.calls import CStepper
 from coadjoint.solve.events import Event
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import heavy_top
 from tests.programs import FOLLOWED

@@ -6,7 +6,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 from tests.specs import render_claims, spec
 
 #: A stone above the ground, which it reaches from rest after sqrt(2 h/g).

@@ -7,7 +7,8 @@ from pathlib import Path
 from coadjoint.declared import KernelContext, Quantity
 from coadjoint.lower.program import Program
 from coadjoint.render.kernels import render_system
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 from tests.programs import PENDULUM, program
 
 

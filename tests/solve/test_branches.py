@@ -45,7 +45,6 @@ def rise(t):
 PASSED = {
     "root": (("-sqrt(x)", "1"), [1, 0], lambda t: [np.maximum(1 - t / 2, 0) ** 2, t]),
     "size": (("-1", "sqrt(x*x)"), [1, 0], lambda t: [1 - t, (1 + (t - 1) * abs(t - 1)) / 2]),
-    "kink": (("-1", "x*sign(x)"), [1, 0], lambda t: [1 - t, (1 + (t - 1) * abs(t - 1)) / 2]),
     "twice": (("1", f"sqrt({SIDES}*({SIDES}))"), [0, 0], lambda t: [t, rise(t)]),
 }
 #: The same, and when it ends.
@@ -81,32 +80,6 @@ def test_a_motion_ends_at_a_branch_point(tmp_path, name, target):
     expected = np.array(exact(found.time[before]))
     assert np.abs(found.state[:, before] - expected).max() < 1e-8
     assert found.rejected < 200
-
-
-def swing(t):
-    """The motion of ``x'' = -sign(x)`` from 1/2 at rest: parabolas, with the period 4."""
-    t = np.asarray(t) % 4
-    parts = 1 / 2 - t**2 / 2, (t - 1) ** 2 / 2 - (t - 1), (t - 3) - (t - 3) ** 2 / 2
-    return np.where(t < 1, parts[0], np.where(t < 3, parts[1], parts[2]))
-
-
-@pytest.mark.parametrize("method", ["taylor", "dop853"])
-@pytest.mark.parametrize("target", ["c", "numpy"])
-def test_rates_that_jump_are_followed(tmp_path, method, target):
-    """Steps become short where the rates jump, and the motion is that of the closed form."""
-    system = build(system_of("jump", ("y", "-sign(x)")), tmp_path)
-    found = system.simulate([0.5, 0], (0, 9.3), samples=94, method=method, target=target)
-    assert found.status == "OK"
-    assert np.abs(found.state[0] - swing(found.time)).max() < 1e-6
-    assert found.rejected > 100
-
-
-def test_a_series_of_fixed_steps_ends_at_a_jump(tmp_path):
-    """It would go on with the rates of the side that it comes from."""
-    system = build(system_of("jump", ("y", "-sign(x)")), tmp_path)
-    found = system.simulate([0.5, 0], (0, 9.3), method="taylor", step=0.07, target="numpy")
-    assert found.status == "STEP_UNDERFLOW"
-    assert 0.93 < found.time_reached <= 1.0
 
 
 def test_a_fixed_step_does_not_cross_one(tmp_path):

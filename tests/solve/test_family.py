@@ -14,7 +14,7 @@ from coadjoint.solve import family_steps
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family_steps import load as load_steps
-from coadjoint.solve.system import load_folder, load_texts
+from coadjoint.solve.folders import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import NECKLACE, RING, TOPS, VORTICES
 from tests.specs import shipped

@@ -19,7 +19,7 @@ from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c import loader
 from coadjoint.render.targets.protocol import FEW
 from coadjoint.solve import kernels
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, quadrotor, rigid_body
 from tests.programs import HEAVY_TOP
 from tests.solve.systems import pendulum

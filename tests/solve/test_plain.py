@@ -9,7 +9,7 @@ import pytest
 
 from coadjoint.errors import OutputError
 from coadjoint.render.kernels import render_system
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.programs import HEAVY_TOP
 from tests.solve.systems import EMPTYING, POLE, build, one_variable
 

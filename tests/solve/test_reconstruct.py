@@ -8,8 +8,8 @@ import pytest
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.events import Event
+from coadjoint.solve.folders import load_folder
 from coadjoint.solve.reconstruct import turn_upright
-from coadjoint.solve.system import load_folder
 from coadjoint.solver_kinds import RECONSTRUCTION
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER

@@ -16,8 +16,8 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve import references
+from coadjoint.solve.folders import load_folder
 from coadjoint.solve.references import find_system, refer_to
-from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top
 from tests.rolling import FOLLOWED_SLEIGH, built
 

@@ -15,7 +15,7 @@ from coadjoint.solve.calls import CStepper
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.costs import Costs, choose_order
 from coadjoint.solve.ensemble import Status
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from coadjoint.solver_kinds import list_kinds
 from coadjoint.systems import heavy_top, kepler, rigid_body, so8_body
 from tests.driven_specs import PENDULUM, rendered

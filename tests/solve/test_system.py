@@ -14,8 +14,8 @@ import pytest
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, OutputError
+from coadjoint.solve.folders import load_folder
 from coadjoint.solve.quantities import Quantities
-from coadjoint.solve.system import load_folder
 from coadjoint.systems import heavy_top, kirchhoff, rigid_body
 from tests.processes import processor_seconds, wait_for_work
 

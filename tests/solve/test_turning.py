@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.constraints import Constraints
 from coadjoint.solve.ensemble import Limits
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals
-from coadjoint.solve.system import System, load_texts
+from coadjoint.solve.system import System
 from tests.specs import render_claims, spec
 from tests.turning import LEVEL, SHAKEN
 

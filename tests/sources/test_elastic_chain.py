@@ -12,7 +12,7 @@ from coadjoint.derive.indexed import derive_family
 from coadjoint.lower.families import lower_family
 from coadjoint.prove.declaration import family_context
 from coadjoint.render.families import render_family
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from tests.specs import shipped
 
 #: Parameters in which no two numbers are equal.

@@ -12,7 +12,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.render.targets import BUILDS
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests.sources import textbook
 from tests.specs import render_claims, shipped
 from tests.trees_of_files import ROOT

@@ -112,7 +112,7 @@ def _render(record: Mapping[str, Any], form: str) -> str:
 def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
     """The examination of an algebra as plain JSON values; runs in a bounded child."""
     from coadjoint.prove.examination import examine
-    from coadjoint.sandbox import report_progress
+    from coadjoint.sandbox_child import report_progress
 
     word, most, degree = request["algebra"], request["generators"], request["degree"]
     report_progress("examine", 0, 1)

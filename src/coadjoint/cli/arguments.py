@@ -82,7 +82,7 @@ def load_system(
 
         with progress_bars() as progress:
             return load(path, sizes=sizes, seconds=seconds, progress=progress)
-    from coadjoint.solve.system import load_folder
+    from coadjoint.solve.folders import load_folder
 
     folder = systems_folder() / path.stem
     if not (folder / "__init__.py").is_file():

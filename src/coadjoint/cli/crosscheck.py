@@ -56,8 +56,8 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
     from coadjoint.render.targets import TARGETS
-    from coadjoint.sandbox import report_progress
-    from coadjoint.solve.system import load_folder
+    from coadjoint.sandbox_child import report_progress
+    from coadjoint.solve.folders import load_folder
     from coadjoint.solver_kinds import FILES, list_kinds
     from coadjoint.spec import read_spec
 

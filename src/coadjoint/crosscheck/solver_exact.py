@@ -95,6 +95,7 @@ class Solvers:
             max_steps=steps,
             seed=SEED,
             bound=BOUND,
+            sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
         ensemble.begin(START)
         return ensemble
@@ -193,6 +194,9 @@ def _exact_step(
         return run(programs[function], known, number, apply)
 
     def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
+        signs = _Signs(apply)
+        apply = apply if solvers.text.kinks is None else signs.call
+
         def at(x: methods.Row, after: Any) -> methods.Row:
             known = dict(zip(program.state, x, strict=True))
             for name, first in given.items():
@@ -202,6 +206,7 @@ def _exact_step(
             for place, each in enumerate(fields):
                 increment = number(Fraction(noise[place % len(noise)]))
                 rows[place // len(noise)] = rows[place // len(noise)] + each * increment
+            signs.end_stage()
             return rows
 
         return at
@@ -223,6 +228,35 @@ def _exact_step(
         depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
         solvers.depths[method] = max(each.count for each in depth)
     return ExactStep(within, end, solvers.depths[method])
+
+
+class _Signs:
+    """Functions of which signs have to stay those of the first stage, as solvers hold sides.
+
+    Args:
+        apply: The functions.
+    """
+
+    def __init__(self, apply: Any) -> None:
+        self._apply, self._first, self._now = apply, list[Any](), list[Any]()
+
+    def call(self, function: str, *of: Any) -> Any:
+        """The value of a function."""
+        value = self._apply(function, *of)
+        if function == "sign" and isinstance(value, Bounded):
+            self._now.append(value.value)
+        return value
+
+    def end_stage(self) -> None:
+        """The stage is done.
+
+        Raises:
+            OutsideDomain: It is beyond a kink.
+        """
+        self._first = self._first or self._now
+        if self._now != self._first:
+            raise OutsideDomain
+        self._now = []
 
 
 def _raise_level(_: str, *of: Levels) -> Levels:

@@ -109,7 +109,8 @@ def with_carried_velocities(equations: Equations) -> tuple[Equations, list[str]]
 
 
 def _rate(equations: Equations, element: Element) -> Element:
-    """The rate of a function of the state, velocities being constant."""
+    """The rate of a function of the state and the time, velocities being constant."""
     field, state = equations.setting.field, equations.setting.state
     slopes = zip(field.gradient(element, state), equations.exact.rates, strict=True)
-    return field.sum(slope * rate for slope, rate in slopes if slope != 0)
+    explicit = field.gradient(element, equations.setting.time)
+    return field.sum([*(slope * rate for slope, rate in slopes if slope != 0), *explicit])

@@ -52,7 +52,7 @@ def find_system(name: str, module: str, folder: str, identity: str) -> System:
     Raises:
         OutputError: Its module or folder is gone, or holds another system by now.
     """
-    from coadjoint.solve.system import load_folder
+    from coadjoint.solve.folders import load_folder
 
     reference = (name, module, folder, identity)
     known = _found.get(reference)

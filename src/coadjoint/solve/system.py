@@ -9,20 +9,16 @@ computes.
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from importlib.machinery import ModuleSpec
-from importlib.util import module_from_spec, spec_from_file_location
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coadjoint.declared import Bound, Quantity
-from coadjoint.errors import CoadjointError, KernelArgumentError, OutputError, system_error
+from coadjoint.errors import KernelArgumentError
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.functions import Functions, Target, by_name
@@ -40,7 +36,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
-__all__ = ["Bound", "Quantities", "Quantity", "System", "load_folder"]
+__all__ = ["Bound", "Quantities", "Quantity", "System"]
 
 
 class System(Functions):
@@ -430,54 +426,3 @@ def _name_below(quantity: Quantity) -> Quantity:
     """A quantity of the state as what stands below it: the same rows of a vector."""
     name, *components = (f"{each} of the vector" for each in (quantity.name, *quantity.components))
     return replace(quantity, name=name, components=tuple(components))
-
-
-def load_folder(folder: Path) -> System:
-    """The System of a generated folder outside any package.
-
-    Raises:
-        OutputError: The folder holds no generated system.
-        ResourceError: Its members do not fit into memory.
-    """
-    spec = spec_from_file_location(f"_coadjoint_{folder.name}", folder / "__init__.py")
-    try:
-        module = _execute(folder, spec)
-    except CoadjointError:  # as of members that do not fit into memory
-        raise
-    except Exception as error:
-        raise system_error(error) or OutputError(
-            f"{folder / '__init__.py'} cannot be loaded: {type(error).__name__}: {error}. "
-            "Run `coadjoint regenerate`.",
-            path=str(folder),
-        ) from error
-    if not isinstance(getattr(module, "system", None), System):
-        raise OutputError(
-            f"{folder} contains no generated system; expected an __init__.py written by "
-            "`coadjoint regenerate`. Run it again.",
-            path=str(folder),
-        )
-    return module.system  # type: ignore[no-any-return]
-
-
-@contextmanager
-def load_texts(texts: Mapping[str, str]) -> Iterator[System]:
-    """The System of generated files that are only texts yet, for the length of a block."""
-    from coadjoint.build.cache import working_folder
-
-    with working_folder() as folder:
-        for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        yield load_folder(folder)
-
-
-def _execute(folder: Path, spec: ModuleSpec | None) -> Any:
-    """Run a generated ``__init__.py`` without leaving bytecode next to it."""
-    if spec is None or spec.loader is None or not (folder / "__init__.py").is_file():
-        return None
-    module = module_from_spec(spec)
-    before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-    try:
-        spec.loader.exec_module(module)
-    finally:
-        sys.dont_write_bytecode = before
-    return module

@@ -222,13 +222,13 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
     reached = frozenset[str]().union(*map(field.reach, moved.values()))
-    if driven := sorted(reached.intersection(setting.driving)):
+    if driven := sorted(reached.intersection(setting.inputs)):
         raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
     for size in range(1, len(block) + 1):
         minor = determinant(tuple(row[:size] for row in still[:size]))
-        if sign(field, minor) != 1:
+        if not _is_positive(setting, minor):
             raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
     mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
     products = [
@@ -238,6 +238,16 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
     newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
     return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+
+
+def _is_positive(setting: Setting, element: Element) -> bool:
+    """Whether an element is positive for certain: by itself, or times a condition of the domain."""
+    field = setting.field
+    if sign(field, element) == 1:
+        return True
+    conditions = (each for each in setting.spec.domain if not each.sign.endswith("="))
+    excesses = (setting.excess(each) for each in conditions)
+    return any(sign(field, element / each) == 1 for each in excesses if not field.is_zero(each))
 
 
 def _solve_radially(
@@ -265,9 +275,9 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
     message = (
         f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
         f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
-        "is certainly convex at rest, with momenta of the state and the parameters alone. Give "
-        f"{_way_out(of.setting)} instead, or remove {momenta} and take the route {route}, where "
-        "velocities are the state."
+        "is certainly convex at rest, with momenta of the state, the parameters and the time "
+        f"alone. Give {_way_out(of.setting)} instead, or remove {momenta} and take the route "
+        f"{route}, where velocities are the state."
     )
     return _refusal(of.setting, message, names[0])
 

@@ -7,7 +7,6 @@ Read next: `coadjoint.spec.sections.definitions`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from math import prod
 from typing import Annotated, Any, Literal
@@ -37,6 +36,7 @@ from coadjoint.spec.core.values import (
 )
 from coadjoint.spec.kinds import is_first_order
 from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.following import bind_velocity, let_follow
 from coadjoint.spec.sections.matrices import (
     block_places,
     check_elements,
@@ -236,57 +236,8 @@ def _read_variable(
         follows=follows,
     )
     if isinstance(part.follows, list):
-        return _let_follow(reading, variable, part.follows)
-    return variable if part.role != "velocity" else _bind(reading, variable, solved)
-
-
-def _let_follow(reading: Reading, variable: Variable, names: Sequence[str]) -> Variable:
-    """A variable of which constraints give some components.
-
-    Raises:
-        SpecError: It has no such component, or a default where it follows; or all follow.
-    """
-    key: KeyPath = ("variables", variable.name, "follows")
-    for name in names:
-        if name not in variable.components or not variable.shape:
-            has = variable.shape and f"the components {list_names(variable.components)}"
-            problem = f"{variable.name!r} has no component {name!a}"
-            expected = f"some of {list_names(variable.components)}" if has else "true, of a number"
-            hint = did_you_mean(name, variable.components) if has else "Write follows = true."
-            raise reading.fault(key, problem, name, expected, hint)
-    if {*names} == {*variable.components}:
-        problem = f"all components of {variable.name!r} follow"
-        raise reading.fault(key, problem, names[0], "true", "Write follows = true.")
-    given = tuple(x for x in variable.components if x in names)
-    _check_default(reading, variable, dict.fromkeys(given, "a constraint of the Lagrangian"))
-    return replace(variable, given=given)
-
-
-def _bind(reading: Reading, variable: Variable, solved: Mapping[str, Any] | None) -> Variable:
-    """A velocity with what constraints give of it.
-
-    Raises:
-        SpecError: A component that a constraint gives has a default.
-    """
-    if solved is None:
-        return variable
-    given = tuple(x for x in variable.components if x in solved and variable.shape)
-    _check_default(reading, variable, {x: f"the constraint {solved[x][0]}" for x in given})
-    free = variable.name not in solved and given != variable.components
-    return replace(variable, independent=free, given=given)
-
-
-def _check_default(reading: Reading, variable: Variable, given: Mapping[str, str]) -> None:
-    """No component that follows has a default but 0; what gives it is known by its name."""
-    for name, value in zip(variable.components, variable.default or (), strict=False):
-        if name in given and value:
-            raise reading.fault(
-                ("variables", variable.name, "default"),
-                f"{name} has the default {value}, and {given[name]} gives it",
-                str(value),
-                f"0 in the place of {name}, which is not part of the state",
-                f"Write 0 in the place of {name}.",
-            )
+        return let_follow(reading, variable, part.follows)
+    return variable if part.role != "velocity" else bind_velocity(reading, variable, solved)
 
 
 def _check_rolling(reading: Reading, key: KeyPath) -> None:
