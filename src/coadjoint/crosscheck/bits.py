@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
 from coadjoint.crosscheck.subject import Subject
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.program import run
 from coadjoint.render.kernels import CHUNK
 from coadjoint.render.targets import BUILDS
@@ -160,13 +161,14 @@ def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bo
     def number(value: Fraction) -> _Stopping:
         return _Stopping(np.float64(value), goes_on)
 
-    def root(_: str, of: _Stopping) -> _Stopping:
-        goes_on[...] &= ~(of.value < 0)
-        return _Stopping(np.sqrt(of.value), goes_on)
+    def apply(function: str, of: _Stopping) -> _Stopping:
+        if function == "sqrt":
+            goes_on[...] &= ~(of.value < 0)
+        return _Stopping(getattr(np, ELEMENTARY[function].numpy_name)(of.value), goes_on)
 
     given = {name: _Stopping(row, goes_on) for name, row in subject.values(batch).items()}
     with np.errstate(all="ignore"):
-        run(subject.programs[function], given, number, root)
+        run(subject.programs[function], given, number, apply)
     return goes_on
 
 

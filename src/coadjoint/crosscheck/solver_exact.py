@@ -95,6 +95,7 @@ class Solvers:
             max_steps=steps,
             seed=SEED,
             bound=BOUND,
+            sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
         ensemble.begin(START)
         return ensemble
@@ -193,6 +194,8 @@ def _exact_step(
         return run(programs[function], known, number, apply)
 
     def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
+        apply = _refuse_crossings(apply) if solvers.text.kinks is not None else apply
+
         def at(x: methods.Row, after: Any) -> methods.Row:
             known = dict(zip(program.state, x, strict=True))
             for name, first in given.items():
@@ -223,6 +226,25 @@ def _exact_step(
         depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
         solvers.depths[method] = max(each.count for each in depth)
     return ExactStep(within, end, solvers.depths[method])
+
+
+def _refuse_crossings(apply: Any) -> Any:
+    """Functions of which signs stay those of the first stage, as long as sides are held.
+
+    Raises:
+        OutsideDomain: A sign is another one: the stage is beyond a kink, where rates are held.
+    """
+    known = set[Decimal]()
+
+    def call(function: str, *of: Any) -> Any:
+        value = apply(function, *of)
+        if function == "sign" and isinstance(value, Bounded):
+            known.add(value.value)
+            if len(known) > 1:
+                raise OutsideDomain
+        return value
+
+    return call
 
 
 def _raise_level(_: str, *of: Levels) -> Levels:

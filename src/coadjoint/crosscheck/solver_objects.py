@@ -25,7 +25,8 @@ from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.ensemble import Ensemble, Limits, Record
+from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.limits import Limits
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -112,21 +113,24 @@ class NumpySolver:
     """The methods in NumPy.
 
     Attributes:
-        expand: The function of ``solver.py``.
-        branches: Its constant: whether the rates have branch points.
+        module: What names of ``solver.py`` stand for.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
     """
 
-    expand: Callable[..., Array]
-    branches: bool
+    module: Mapping[str, Any]
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
+
+    @property
+    def branches(self) -> bool:
+        """Whether the rates have branch points."""
+        return bool(self.module["BRANCHES"])
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
-        rates = partial(self._evaluate, "rates")
+        rates = self._hold if "KINKS" in self.module else partial(self._evaluate, "rates")
         if name == "taylor":
             return Taylor(
                 expand=self._expand,
@@ -155,7 +159,8 @@ class NumpySolver:
             partial(self._evaluate, each) if each in self.functions else None
             for each in ("domain", "projection")
         )
-        limits = Limits(domain=domain, strict=self.strict, projection=projection)
+        kinks = self._find_kinks if "KINKS" in self.module else None
+        limits = Limits(domain=domain, strict=self.strict, projection=projection, kinks=kinks)
 
         def go(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
             method = self.method(name, ensemble)
@@ -164,7 +169,20 @@ class NumpySolver:
         return go
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
-        return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
+        path: Array = self.module["expand"](
+            lanes.state, lanes.given, lanes.driving, lanes.slopes, order
+        )
+        return path
+
+    def _hold(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rates: Array = self.module["find_rates"](state, lanes.given, driving)
+        return rates
+
+    def _find_kinks(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rows: Array = self.module["find_kinks"](state, lanes.parameters, driving)
+        return rows
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise", lanes, after, state)
@@ -175,9 +193,8 @@ class NumpySolver:
         return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
-def load_numpy(text: str) -> tuple[Callable[..., Array], bool]:
-    """The function ``expand`` of the text of a solver in NumPy, and its constant ``BRANCHES``."""
+def load_numpy(text: str) -> dict[str, Any]:
+    """What names of the text of a solver in NumPy stand for."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
-    expand: Callable[..., Array] = module["expand"]
-    return expand, bool(module["BRANCHES"])
+    return module

@@ -61,6 +61,8 @@ OCTAVES: Final = 0.02 / (ORDER - 1) + 3e-4
 #: The same where the first order bounds it.
 ROUGH: Final = 0.02 + 3e-4
 _KEPT: Final = ("out", "state", "time", "step", "next", "steps", "rejected", "status")
+#: What is kept of kinks in addition, where there are some.
+_KINKED: Final = ("kinks", "brief")
 
 
 def choose_size(solvers: Solvers, batch: Batch) -> float:
@@ -115,7 +117,8 @@ def _measure(
     worst, out, compared = 0.0, ensemble.out, 0
     assert out is not None
     for member, step in known.items():
-        if ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW):
+        ended = ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW)
+        if ended or _has_met_kink(ensemble, member):
             continue
         compared += 1
         for row, name in enumerate(solvers.subject.programs["rhs"].state):
@@ -137,6 +140,11 @@ def _measure(
     if not compared:
         raise solvers.failure(4, f"no step of {method} was compared with 60 digits")
     return Figures(worst, 0.0, compared)
+
+
+def _has_met_kink(ensemble: Ensemble, member: int) -> bool:
+    """Whether a step of a member ended at a kink."""
+    return ensemble.kinks is not None and bool(ensemble.kinks[member])
 
 
 def check_choice(solvers: Solvers, batch: Batch) -> int:
@@ -165,7 +173,10 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
             if octaves < -20:  # the time, to which the step is added, has too few digits for it
                 continue
             compared += 1
-            if abs(math.log2(taken) - octaves) > allowed:
+            octaves_off = math.log2(taken) - octaves
+            if _has_met_kink(ensemble, member):  # which ended the step: it is no longer than that
+                octaves_off = max(octaves_off, 0.0)
+            if abs(octaves_off) > allowed:
                 raise solvers.failure(
                     4,
                     f"the Taylor method, {target}, takes the step {taken!r}; expected "
@@ -227,7 +238,9 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
             for _ in range(2 * MOST_STEPS):
                 if not targets[target](ensemble, most, record if keeps else None):
                     break
-            found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in _KEPT}
+            kept = (*_KEPT, *(_KINKED if ensemble.sides else ()))
+            found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in kept}
+            found[target]["met"] = ensemble.list_met()
             order = np.argsort(record.member, kind="stable")
             found[target]["record"] = record.rows[: record.count][order]
         for name, one in found["numpy"].items():
@@ -290,6 +303,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
             solvers.advance[method][target](ensemble, 1)
             found.append(ensemble.state)
             left |= np.isin(ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW))
+            left |= np.array([_has_met_kink(ensemble, n) for n in range(few.size)])
         for member, step in known.items():
             if left[member]:
                 continue

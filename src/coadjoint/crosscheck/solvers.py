@@ -47,6 +47,8 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
+from coadjoint.elementary import ELEMENTARY
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -113,7 +115,8 @@ def check_solvers(
     """
     functions = _list_functions(subject, kind)
     programs = select_programs(subject.programs.values(), kind)
-    subject, text = make_whole(subject, programs, kind), arrange(programs)
+    subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
+    text = arrange(programs)
     printed = SolverTexts(
         programs=programs,
         recurrences=text,
@@ -124,7 +127,8 @@ def check_solvers(
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
-    numpy = NumpySolver(*load_numpy(texts[kind.files[2]]), functions, _list_strict(subject))
+    module = load_numpy(texts[kind.files[2]])
+    numpy = NumpySolver(module, functions, _list_strict(subject))
     advance = _load(subject.system.name, numpy, compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
@@ -133,7 +137,7 @@ def check_solvers(
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
     equal, together = dict[str, int](), dict[str, int]()
     if compiling:
-        if not text.functions:
+        if all(ELEMENTARY[name].is_exact for name, _ in text.functions):
             equal = check_bits(solvers, batch, size)
         else:
             together = check_together(solvers, batch, size)

@@ -134,6 +134,7 @@ class SolverText:
         branches: Whether the rates call functions of what moves that have branch points or jumps,
             as sqrt and log. A motion may be analytic there.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
+        kinks: What the sides are those of, which are the last parameters; None for no sides.
     """
 
     fixed: tuple[Line, ...]
@@ -148,6 +149,7 @@ class SolverText:
     fixed_reads: frozenset[str]
     branches: bool
     loops: LoopText | None = None
+    kinks: Program | None = None
 
 
 def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
@@ -222,6 +224,7 @@ def _arrange(
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
         branches=branches,
+        kinks=programs.get("kinks"),
     )
 
 

@@ -10,8 +10,10 @@ import ctypes
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from coadjoint.solve.choices import NOISY
-from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.ensemble import MET, Ensemble, Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,11 +26,14 @@ FIRST_SUMS = 2**22
 #: What a step with noise counts for each component, in such sums.
 NOISY_SUMS = 2**10
 
+#: Kinks of which a call of a solver can tell, by how many the rates have.
+KINK_ROOM = 512
+
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
 class _Run(ctypes.Structure):
-    """``NAME_run`` of the headers, field by field; the last two where a system has noise."""
+    """``NAME_run`` of the headers, field by field; then come those of noise, or those of kinks."""
 
     _fields_ = (
         ("members", _SIZE),
@@ -61,8 +66,24 @@ class _Run(ctypes.Structure):
         ("recorded", _SIZE),
         ("terms", _PLACE),
         ("term_count", _SIZE),
-        ("seed", ctypes.c_uint64),
-        ("bound", _DOUBLE),
+    )
+
+
+class _NoisyRun(_Run):
+    """With the fields that a system with noise has in addition."""
+
+    _fields_ = (("seed", ctypes.c_uint64), ("bound", _DOUBLE))
+
+
+class _KinkedRun(_Run):
+    """With the fields that a system with kinks has in addition."""
+
+    _fields_ = (
+        ("kinks", _PLACE),
+        ("brief", _PLACE),
+        ("met", _PLACE),
+        ("met_room", _SIZE),
+        ("met_count", _SIZE),
     )
 
 
@@ -113,21 +134,31 @@ def call(
     """
     run = _describe(ensemble)
     run.first, run.last, run.work = members.start, members.stop, work
-    if record is None:
-        return advance(ctypes.byref(run))
-    run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
-    run.recorded = record.count
-    if record.terms is not None:
-        run.terms, run.term_count = _place(record.terms), len(record.terms)
+    met = np.empty((ensemble.sides * KINK_ROOM, MET))
+    if isinstance(run, _KinkedRun):
+        run.met, run.met_room = _place(met), len(met)
+    if record is not None:
+        run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+        run.recorded = record.count
+        if record.terms is not None:
+            run.terms, run.term_count = _place(record.terms), len(record.terms)
     on = advance(ctypes.byref(run))
-    record.count = run.recorded
+    if record is not None:
+        record.count = run.recorded
+    if isinstance(run, _KinkedRun) and run.met_count:
+        ensemble.met.append(met[: run.met_count].copy())
     return on
 
 
 def _describe(ensemble: Ensemble) -> _Run:
     """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
     members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
-    return _Run(
+    further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound}
+    kind: type[_Run] = _NoisyRun
+    if ensemble.kinks is not None and ensemble.brief is not None:
+        kind = _KinkedRun
+        further = {"kinks": _place(ensemble.kinks), "brief": _place(ensemble.brief)}
+    return kind(
         members=members,
         state=_place(ensemble.state),
         time=_place(ensemble.time),
@@ -150,8 +181,7 @@ def _describe(ensemble: Ensemble) -> _Run:
         atol=ensemble.atol,
         size=ensemble.size,
         max_steps=ensemble.max_steps,
-        seed=ensemble.seed,
-        bound=ensemble.bound,
+        **further,
     )
 
 

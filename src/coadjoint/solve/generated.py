@@ -15,7 +15,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
-from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.comparison import count_rows, list_kinks
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
@@ -24,6 +24,7 @@ from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal,
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
+from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
@@ -149,6 +150,7 @@ def _make_course(
         below=run.state[n:].reshape(below.shape) if len(below) else None,
         driven=_find_driven(signal, run, batch),
         stepwise=request.stepwise,
+        kinks=list_kinks_met(run, list_kinks(system, request.choice), batch),
         start=_find_start(request, signal, below) if request.samples == 1 else None,
     )
 
@@ -203,6 +205,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         atol=request.atol,
         size=request.step or 0.0,
         max_steps=request.max_steps,
+        sides=len(list_kinks(system, request.choice)),
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
@@ -342,7 +345,7 @@ def _make_solution(
     if recording is not None and status == "EVENT":
         message = recording.explain_end()
     else:
-        message = _explain_batch(run) if batch else _explain(system, request, run)
+        message = _explain_batch(run) if batch else _explain(system, request, run, course)
     return Solution(
         system,
         times,
@@ -394,7 +397,7 @@ def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
     return times, states
 
 
-def _explain(system: System, request: Request, run: Ensemble) -> str:
+def _explain(system: System, request: Request, run: Ensemble, course: Course) -> str:
     """Where one trajectory stopped and why; "" at its end."""
     status, time, state = Status(int(run.status[0])), float(run.time[0]), run.state[:, 0].copy()
     state = state[: system.STATE.size]
@@ -408,6 +411,12 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
     if status == Status.DOMAIN:
         rates = system.rhs(state, parameters, target="numpy", **driving.now)
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
+    if status == Status.SLIDING and course.kinks is not None:
+        return (
+            f"the motion slides along {describe_sliding(course.kinks)} from t = {time:.12g} on: "
+            "both sides of the kink push it back, or kinks follow one another without end. What it "
+            "does there the rates do not say: describe it by a system with this constraint"
+        )
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",

@@ -51,7 +51,7 @@ class RungeKutta4:
         branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
-    tries_again = False
+    tries_again = halves = False
 
     def __init__(
         self,
@@ -118,7 +118,8 @@ class DormandPrince8:
         branches: bool = False,
     ) -> None:
         self.branches = branches
-        self.rates, self.table, self.tries_again = rates, dop853(), not size > 0
+        self.rates, self.table = rates, dop853()
+        self.tries_again = self.halves = not size > 0
         self.rtol, self.atol, self.size = rtol, atol, size
 
     def try_step(self, lanes: Lanes) -> Attempt:

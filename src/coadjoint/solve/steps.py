@@ -39,6 +39,7 @@ class Lanes:
         slopes: Their rates, ``(m, N)``.
         member: Places of the members in the whole batch, ``(N,)``.
         steps: Steps that they have made, ``(N,)``.
+        sides: The sides of kinks on which they are, -1, 0 or 1, ``(m, N)``; None without kinks.
     """
 
     state: Array
@@ -50,6 +51,16 @@ class Lanes:
     slopes: Array
     member: NDArray[np.uint64]
     steps: NDArray[np.uint64]
+    sides: Array | None = None
+
+    @property
+    def given(self) -> Array:
+        """Parameters with the sides below them, as solvers take them."""
+        if self.sides is None:
+            return self.parameters
+        shape = (len(self.parameters), self.sides.shape[1])
+        own = self.parameters if self.parameters.ndim > 1 else self.parameters[:, np.newaxis]
+        return np.concatenate([np.broadcast_to(own, shape), self.sides])
 
 
 @dataclass
@@ -77,9 +88,11 @@ class Method(Protocol):
 
     Attributes:
         tries_again: Whether a step that is not finite is tried again, a tenth as long.
+        halves: Whether a step that meets a kink in its first half is tried again, half as long.
     """
 
     tries_again: bool
+    halves: bool
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """Try a step of each lane; its `Lanes.step` becomes the next one to try."""
@@ -126,6 +139,8 @@ class Taylor:
         size: A fixed step, or 0.
         branches: Whether the rates have branch points: each step is then compared with them.
     """
+
+    halves = False
 
     def __init__(
         self,
