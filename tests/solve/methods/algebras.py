@@ -30,6 +30,7 @@ def so(n: int) -> list[Matrix]:
 
 
 def se(n: int) -> list[Matrix]:
+    """Matrices of the rotations, then of the translations."""
     turns = [np.pad(each, ((0, 1), (0, 1))) for each in so(n)]
     return turns + [_unit(n + 1, (i, n, 1)) for i in range(n)]
 
@@ -91,15 +92,19 @@ class Motion:
     gradient: Callable[[Matrix], Matrix]
 
     def tensor(self, x: Matrix) -> Matrix:
+        """The brackets of the components."""
         return -np.tensordot(self.constants, x, axes=(2, 0))
 
     def bracket(self, lanes: Lanes, after: Matrix, x: Matrix, v: Matrix) -> Matrix:
+        """The tensor times a vector."""
         return (self.tensor(x) * v[np.newaxis]).sum(axis=1)
 
     def slope(self, lanes: Lanes, after: Matrix, x: Matrix) -> Matrix:
+        """The gradient, as methods ask for it."""
         return self.gradient(x)
 
     def rates(self, x: Matrix) -> Matrix:
+        """The motion."""
         return (self.tensor(x) * self.gradient(x)[np.newaxis]).sum(axis=1)
 
 

@@ -174,12 +174,16 @@ class LiePoisson:
             if search.done.all():
                 break
             search.take(self.sweep(arc, search.middle, kept))
-        search.solved &= np.isfinite(search.rise).all(axis=0)
+        search.solved &= np.isfinite(search.rise).all(axis=0) & self.confirm(kept)
         return search
 
     def prepare(self, arc: Arc) -> Any:
         """What sweeps of a step share, and may change."""
         return None
+
+    def confirm(self, kept: Any) -> Mask | bool:
+        """Where what sweeps share is that of a solution."""
+        return True
 
     def sweep(self, arc: Arc, middle: Array, kept: Any) -> Sweep:
         """A better middle of a step."""

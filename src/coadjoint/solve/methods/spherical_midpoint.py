@@ -15,7 +15,7 @@ Read next: `coadjoint.solve.methods.isospectral_midpoint`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+
+#: How far Newton's factor is from 1 at the most where its equation is solved.
+NEAR: Final = 2.0**-20
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,10 @@ class SphericalMidpoint(LiePoisson):
         """As `LiePoisson.prepare`: of each sphere the quotient of lengths, 1 at first."""
         return [_Scale(arc.state, each) for each in self.spheres]
 
+    def confirm(self, kept: list[_Scale]) -> Mask | bool:
+        """As `LiePoisson.confirm`: quotients are roots, and positive."""
+        return np.asarray(np.logical_and.reduce([each.is_root() for each in kept]))
+
     def sweep(self, arc: Arc, middle: Array, kept: list[_Scale]) -> Sweep:
         """As `LiePoisson.sweep`."""
         xi = self.gradient(arc.lanes, arc.middle, middle)
@@ -91,13 +99,18 @@ class _Scale:
         self.half = 0.5 / np.where(square > 0.0, square, 1.0)
         self.slant = -4.0 * self.half * self.half * mixed
         self.scale, self.slope = np.ones(square.shape), np.zeros(square.shape)
+        self.rest, self.empty = np.ones(square.shape), square == 0.0
+
+    def is_root(self) -> Mask:
+        """Where the quotient is solved: 0 and negative numbers are roots too."""
+        return np.asarray(self.empty | ((np.abs(self.rest - 1.0) < NEAR) & (self.scale > 0.0)))
 
     def apply(self, state: Array) -> None:
         """Improve the quotient and multiply rows of a state by it."""
         square, mixed = _measure(state, self.sphere)
         both = self.scale * self.scale
         part = self.half * square
-        rest = 1.5 - part * both
+        self.rest = rest = 1.5 - part * both
         if self.sphere.tangent:
             lean = (self.slant * square + 2.0 * self.half * mixed) * both
             lean = lean + 2.0 * part * self.scale * self.slope
