@@ -89,9 +89,7 @@ def _list_arguments(value: Node) -> Iterator[Node]:
 
 def _count(node: Node, sizes: Mapping[str, int]) -> int:
     """The nodes of a value that is written out."""
-    return sum(
-        sizes.get(each.name, 1) if isinstance(each, Symbol) else 1 for each in walk(node)
-    )
+    return sum(sizes.get(each.name, 1) if isinstance(each, Symbol) else 1 for each in walk(node))
 
 
 def _expand(node: Node, known: Mapping[str, Node]) -> Node:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import STRUCTURED
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.comparison import count_rows, list_kinks
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
+    from coadjoint.solver_kinds import SolverKind
 
     Array = NDArray[np.float64]
 
@@ -78,6 +81,23 @@ def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
     return system.stepwise if is_recorded else ""
+
+
+def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]:
+    """Why methods that keep structure do not apply to a system, by their names.
+
+    Args:
+        system: The System.
+        kind: What is integrated.
+    """
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+    if system.stepwise:
+        return {}
+    module = KernelModule(system, kind.files[2])
+    known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
+    why = "its rates have kinks" if module.has("KINKS") else "its folder was generated without it"
+    return {name: why for name in STRUCTURED if name not in known}
 
 
 def find_series_obstacle(
@@ -206,6 +226,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
+        is_structured=request.choice.is_structured,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
@@ -425,6 +446,8 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
         else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
         if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
+        Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
+        f"{place}; take shorter steps",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 
