@@ -23,10 +23,12 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
+from coadjoint.methods import list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Record
 from coadjoint.solve.limits import Limits
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -41,13 +43,18 @@ CHOICES: Final = {
     "rk4": Choice("rk4", 4),
 }
 #: Those of systems with noise, in addition.
-NOISY: Final = {"heun": Choice("heun", 2), "midpoint": Choice("midpoint", 2)}
-_ALL: Final = {**CHOICES, **NOISY}
+NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpoint")}
+#: Those that keep structure and are compared for every system that has them; compositions of them
+#: take the same steps, of other lengths.
+STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
-    """The methods of a system, by the names of its functions."""
-    return _ALL if "noise" in functions else CHOICES
+    """The methods of a system that are compared, by the names of the functions of its solvers."""
+    if "noise" in functions:
+        return CHOICES | NOISY
+    own = {each.name for each in list_structured(functions)}
+    return CHOICES | {name: each for name, each in STRUCTURED.items() if name in own}
 
 
 class Advance(Protocol):
@@ -74,7 +81,8 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 3
-    compiler, kind = find_compiler(), replace(_ALL[method], kind=what).source
+    every = CHOICES | NOISY | STRUCTURED
+    compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
@@ -145,6 +153,8 @@ class NumpySolver:
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
+        if name in self.module.get("STRUCTURED", ()):
+            return Structured(name, size, {"rates": rates})
         return METHODS[name](
             rates=rates,
             fields=self._fields,

@@ -60,7 +60,18 @@ MOST_STEPS: Final = 12
 OCTAVES: Final = 0.02 / (ORDER - 1) + 3e-4
 #: The same where the first order bounds it.
 ROUGH: Final = 0.02 + 3e-4
-_KEPT: Final = ("out", "state", "time", "step", "next", "steps", "rejected", "status")
+_KEPT: Final = (
+    "out",
+    "state",
+    "time",
+    "step",
+    "next",
+    "steps",
+    "rejected",
+    "status",
+    "low",
+    "sweeps",
+)
 #: What is kept of kinks in addition, where there are some.
 _KINKED: Final = ("kinks", "brief")
 
@@ -117,7 +128,7 @@ def _measure(
     worst, out, compared = 0.0, ensemble.out, 0
     assert out is not None
     for member, step in known.items():
-        ended = ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW)
+        ended = ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW, Status.NOT_SOLVED)
         if ended or _has_met_kink(ensemble, member):
             continue
         compared += 1
@@ -224,7 +235,7 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    choices = list_choices(solvers.subject.programs)
+    choices = list_choices(solvers.functions)
     equal = dict.fromkeys(choices, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed, keeps in _runs(batch, size):
@@ -278,9 +289,11 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "rk4", given, size * 0.3125, True
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
+        yield "midpoint", given, size * 0.15, True
     yield "taylor", batch, size * 0.75, True
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
+    yield "midpoint", batch, size * 0.03, False
     yield "dop853", batch, size * 0.15, False
 
 
@@ -294,7 +307,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
         CrossCheckError: Two are further apart.
     """
     few = _take_few(solvers, batch)
-    together = dict.fromkeys(list_choices(solvers.subject.programs), 0)
+    together = dict.fromkeys(list_choices(solvers.functions), 0)
     for method in together:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)
@@ -302,7 +315,9 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
             ensemble = solvers.begin(few, samples, size=float(samples[-1] - START), steps=2)
             solvers.advance[method][target](ensemble, 1)
             found.append(ensemble.state)
-            left |= np.isin(ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW))
+            left |= np.isin(
+                ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW, Status.NOT_SOLVED)
+            )
             left |= np.array([_has_met_kink(ensemble, n) for n in range(few.size)])
         for member, step in known.items():
             if left[member]:

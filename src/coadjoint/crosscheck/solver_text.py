@@ -27,6 +27,7 @@ from coadjoint.render.solvers import (
     SolverText,
     arrange_function,
     describe_noise,
+    describe_structured,
 )
 from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets.body import Loop, SolverBody, failure
@@ -260,6 +261,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "held": dict.fromkeys(kinks["held"], nothing),
             "driving": {name: rows for name, rows in driving.items() if rows},
             **describe_noise(texts.programs),
+            **describe_structured(texts.programs),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),

@@ -13,7 +13,7 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +27,6 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
-    NOISY,
     Advance,
     Function,
     NumpySolver,
@@ -87,10 +86,11 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
-    noisy: bool = False,
+    functions: Collection[str] = (),
 ) -> Compiling:
     """Have the objects of some targets compiled in a private folder."""
-    objects = (*OBJECTS, *((method, "c", "exact") for method in NOISY if noisy))
+    others = (name for name in list_choices(functions) if name not in CHOICES)
+    objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
         for method, target, build in objects
@@ -160,7 +160,7 @@ def _load(
     system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
 ) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    methods = list_choices(numpy.functions)
+    methods = list_choices([*numpy.functions, *(["kinks"] if "KINKS" in numpy.module else [])])
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), system, kind)

@@ -31,7 +31,13 @@ from coadjoint.lower.program import (
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
-from coadjoint.render.solvers import arrange, arrange_function, describe_noise, select_programs
+from coadjoint.render.solvers import (
+    arrange,
+    arrange_function,
+    describe_noise,
+    describe_structured,
+    select_programs,
+)
 from coadjoint.render.tables import arrange_table, fill, tell_loops
 from coadjoint.render.targets import TARGETS
 from coadjoint.solver_kinds import FILES, SOLVER, SolverKind, list_kinds
@@ -208,6 +214,7 @@ def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
+        **describe_structured(solved),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
         **arrange_sides(solved),

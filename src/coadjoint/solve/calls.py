@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from coadjoint.solve.choices import NOISY
 from coadjoint.solve.ensemble import MET, Ensemble, Record
 
 if TYPE_CHECKING:
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 
 #: What a first call may add up, by the numbers of a path and their orders.
 FIRST_SUMS = 2**22
-#: What a step with noise counts for each component, in such sums.
-NOISY_SUMS = 2**10
+#: What a step with noise, or an implicit one, counts for each component, in such sums.
+IMPLICIT_SUMS = 2**10
 
 #: Kinks of which a call of a solver can tell, by how many the rates have.
 KINK_ROOM = 512
@@ -69,6 +68,12 @@ class _Run(ctypes.Structure):
     )
 
 
+class _StructuredRun(_Run):
+    """With the fields of a system that has methods that keep structure."""
+
+    _fields_ = (("low", _PLACE), ("sweeps", _PLACE))
+
+
 class _NoisyRun(_Run):
     """With the fields that a system with noise has in addition."""
 
@@ -100,7 +105,7 @@ class CStepper:
         self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._rows, self._sums = (
             rows,
-            NOISY_SUMS if choice.name in NOISY else (choice.degree + 1) ** 2,
+            IMPLICIT_SUMS if choice.is_implicit else (choice.degree + 1) ** 2,
         )
         self._advance = library.take(choice.kind.advance)
 
@@ -155,6 +160,9 @@ def _describe(ensemble: Ensemble) -> _Run:
     members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
     further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound}
     kind: type[_Run] = _NoisyRun
+    if ensemble.low is not None and ensemble.sweeps is not None:
+        kind = _StructuredRun
+        further = {"low": _place(ensemble.low), "sweeps": _place(ensemble.sweeps)}
     if ensemble.kinks is not None and ensemble.brief is not None:
         kind = _KinkedRun
         further = {"kinks": _place(ensemble.kinks), "brief": _place(ensemble.brief)}

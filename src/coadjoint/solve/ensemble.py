@@ -42,6 +42,7 @@ class Status(IntEnum):
     DOMAIN = 5
     EVENT = 6
     SLIDING = 7
+    NOT_SOLVED = 8
 
 
 #: Numbers of a recorded step before its polynomials.
@@ -185,6 +186,7 @@ class Ensemble:
         seed: Of the noise, where there is some.
         bound: The largest size of its normal numbers.
         sides: How many kinks the rates have.
+        is_structured: Whether the method keeps structure: what rounding took is kept.
         time: Where they are in time, ``(N,)``.
         step: The steps to try next, ``(N,)``; 0 to have them chosen.
         next: The sample that comes next, ``(N,)``.
@@ -194,6 +196,8 @@ class Ensemble:
         kinks: Kinks that they have met, ``(N,)``; None where rates have none.
         brief: How many of the last of these followed one another within 2^-30 of a step, or of the
             time; likewise.
+        low: What rounding took of the state, ``(n, N)``; None where the method keeps none.
+        sweeps: Sweeps of all steps, ``(N,)``; likewise.
         met: The kinks that were met: rows of the member, how many steps that made with it, which
             kink, and the time; in no order.
     """
@@ -211,6 +215,9 @@ class Ensemble:
     seed: int = 0
     bound: float = np.inf
     sides: int = 0
+    is_structured: bool = False
+    low: Array | None = field(init=False, default=None)
+    sweeps: Counts | None = field(init=False, default=None)
     time: Array = field(init=False)
     step: Array = field(init=False)
     next: Counts = field(init=False)
@@ -231,6 +238,8 @@ class Ensemble:
         self.next = np.full(members, first, np.uint64)
         self.steps, self.rejected = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
         self.status = np.zeros(members, np.int8)
+        if self.is_structured:
+            self.low, self.sweeps = np.zeros(self.state.shape), np.zeros(members, np.uint64)
         if self.sides:
             self.kinks, self.brief = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
 
@@ -311,6 +320,7 @@ class Ensemble:
         if record is not None and accepted.any():
             self._record(record, going, attempt, time - lanes.time, accepted)
         self.state[:, going] = np.where(accepted, state, lanes.state)
+        self._take_left(going, attempt, accepted, limits)
         self.time[going] = np.where(accepted, time, lanes.time)
         self.step[going] = lanes.step
         self.steps[going] += accepted
@@ -323,9 +333,24 @@ class Ensemble:
         status[accepted & self._count_kinks(going, met, accepted, short)] = Status.SLIDING
         status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
+        if attempt.left is not None:
+            status[~accepted & stuck & ~attempt.left.solved] = Status.NOT_SOLVED
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
         self.status[going] = status
+
+    def _take_left(
+        self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
+    ) -> None:
+        """Keep what rounding took of a step that was accepted.
+
+        What moves a state onto constraints is no rounding, and there the sums begin anew.
+        """
+        if attempt.left is None or self.low is None or self.sweeps is None:
+            return
+        low = attempt.left.low if limits.projection is None else np.zeros(attempt.state.shape)
+        self.low[:, going] = np.where(accepted, low, self.low[:, going])
+        self.sweeps[going] += np.where(accepted, attempt.left.sweeps, np.uint64(0))
 
     def _record(
         self,
@@ -382,6 +407,7 @@ class Ensemble:
             slopes=slopes,
             member=going.astype(np.uint64),
             steps=self.steps[going],
+            low=None if self.low is None else self.low[:, going],
         )
 
     def _store_kinks(self, going: NDArray[np.intp], crossed: Mask, time: Array) -> None:

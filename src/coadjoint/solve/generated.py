@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import STRUCTURED
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
 from coadjoint.solve.comparison import count_rows, list_kinks
@@ -39,10 +41,12 @@ from coadjoint.solver_kinds import list_kinds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.choices import Choice
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
+    from coadjoint.solver_kinds import SolverKind
 
     Array = NDArray[np.float64]
 
@@ -78,6 +82,28 @@ def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
     return system.stepwise if is_recorded else ""
+
+
+def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]:
+    """Why methods that keep structure do not apply to a system, by their names.
+
+    Args:
+        system: The System.
+        kind: What is integrated.
+    """
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+    if system.stepwise:
+        return {}
+    module = KernelModule(system, kind.files[2])
+    known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
+    why = "its rates have kinks" if module.has("KINKS") else "its folder was generated without it"
+    return {name: why for name in STRUCTURED if name not in known}
+
+
+def _tell_keeps(choice: Choice) -> str:
+    """What a method keeps by itself, of a motion with noise on each path; "" for nothing."""
+    return STRUCTURED[choice.name].keeps if choice.is_structured else KEEPS.get(choice.name, "")
 
 
 def find_series_obstacle(
@@ -137,7 +163,7 @@ def _make_course(
         method=request.choice.name,
         order=None if request.seed is not None else request.choice.order,
         seed=request.seed,
-        keeps=KEEPS.get(request.choice.name, ""),
+        keeps=_tell_keeps(request.choice),
         projection=describe_projection(system, request.choice.name),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,
@@ -206,6 +232,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
+        is_structured=request.choice.is_structured,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
@@ -425,6 +452,8 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
         else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
         if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
+        Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
+        f"{place}; take shorter steps",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 

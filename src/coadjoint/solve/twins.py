@@ -18,6 +18,7 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.limits import Limits
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -100,6 +101,8 @@ class NumpyStepper:
             )
         if self._choice.name == "rk4":
             return RungeKutta4(self._rates, run.size, branches=self._branches)
+        if self._choice.is_structured:
+            return Structured(self._choice.name, run.size, {"rates": self._rates})
         return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
