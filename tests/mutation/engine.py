@@ -454,7 +454,14 @@ MUTANTS = (
         "prove/reductions",
         "_decide_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
         "_section_defects: flip name",
-        "on_section: let return = restriction.setting.field.zero",
+    ),
+    *of(
+        "section_brackets",
+        "along: flip own",
+        "induced_bracket: rewrite {a: -value for a, value in of_state[x].items()} -> of_state[x]",
+        "induced_bracket: rewrite of_state[x][a] * w -> of_state[x][a] - of_state[x][a]",
+        "induced_bracket: rewrite of_state[x][a] * u -> of_state[x][a] - of_state[x][a]",
+        tests=("tests/prove/test_section_brackets.py",),
     ),
     *of(
         "packed",

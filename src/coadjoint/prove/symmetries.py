@@ -36,7 +36,8 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     """Claims about actions, their momentum maps, and brackets."""
     first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    for symmetry in () if spec.constraints else spec.symmetries:
+    of_motion = spec.constraints or spec.reduction  # these are claimed of the motion
+    for symmetry in () if of_motion else spec.symmetries:
         J = momentum_map(first, symmetry)
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:

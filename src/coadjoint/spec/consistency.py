@@ -237,8 +237,8 @@ def _check_use(source: Source, file: Any) -> None:
     for table in TABLES:
         if table.routed and getattr(file, table.key):
             key = table.key
-            if key == "lax" and source.members is not None:
-                continue  # of equal members, it is a claim about the motion
+            if key == "lax" and (source.members is not None or file.reduction):
+                continue  # of equal members and on a section, it is a claim about the motion
             if any(key in takes[route] for route in file.routes):
                 continue
             readers = [name for name in _list_fitting(file) if key in takes[name]]
