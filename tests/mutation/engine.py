@@ -453,7 +453,11 @@ MUTANTS = (
     *of(
         "prove/reductions",
         "_decide_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
-        "_section_defects: flip name",
+    ),
+    *of(
+        "derive/reductions",
+        "section_defects: flip name",
+        tests=("tests/prove/test_reductions.py",),
     ),
     *of(
         "section_brackets",

@@ -63,6 +63,23 @@ class Restriction:
         return {name: self(value) for name, value in own if name in named}
 
 
+def section_defects(restriction: Restriction) -> list[Element]:
+    """``Ds . X - Y``, component by component; y keeps its name, and is replaced at the end."""
+    setting, rates = restriction.setting, restriction.rates
+    field, names = setting.field, setting.state
+    moved = [
+        field.sum(s * rates[x] for s, x in zip(field.gradient(value, names), names, strict=True))
+        - rates[name]
+        for name, value in restriction.section.items()
+    ]
+    return [put_on_section(setting, defect) for defect in moved]
+
+
+def is_kept(restriction: Restriction) -> bool:
+    """Whether the normal form shows that the motion keeps the section."""
+    return all(map(restriction.setting.field.is_zero, section_defects(restriction)))
+
+
 def restrict(setting: Setting, route: str) -> Equations:
     """The equations of what is left, by a route for the whole system.
 
@@ -75,7 +92,7 @@ def restrict(setting: Setting, route: str) -> Equations:
     energy = restriction(whole.exact.energy)
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
-    induced = induced_bracket(restriction)
+    induced = induced_bracket(restriction) if is_kept(restriction) else None
     if induced is None and setting.spec.brackets:
         raise _refuse_brackets(setting)
     defined = (*restriction.section.items(), *restriction.velocities.items())

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.reductions import Restriction
+from coadjoint.derive.reductions import Restriction, section_defects
 from coadjoint.derive.section_brackets import InducedBracket, induced_bracket
 from coadjoint.derive.submanifold import put_on_section
 from coadjoint.derive.symmetries import momentum_maps, moves_of
@@ -45,7 +45,7 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
         yield f"the whole motion keeps {where}", "reduction", kept
         vanishing = partial(_on_section, restriction, functions)
         yield f"where {section}, {where}", "reduction", vanishing
-    yield f"the motion keeps {section}", "reduction", partial(_section_defects, restriction)
+    yield f"the motion keeps {section}", "reduction", partial(section_defects, restriction)
     for statement, kind, examine in about_relaxation(whole):
         yield f"{statement} (of the whole system)", kind, partial(_decide, whole, examine)
     yield from _about_bracket(first, restriction)
@@ -57,7 +57,8 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
 
 def _about_bracket(first: Equations, restriction: Restriction) -> Iterator[Examined]:
     """That the bracket of the section is induced, and what declared symmetries make of it."""
-    tensor, induced = first.exact.poisson_tensor, induced_bracket(restriction)
+    tensor = first.exact.poisson_tensor
+    induced = None if tensor is None else induced_bracket(restriction)
     if tensor is None or induced is None:
         return
     yield (
@@ -173,14 +174,3 @@ def _decide_kept(whole: Equations, functions: Sequence[Element], where: str) -> 
 
 def _on_section(restriction: Restriction, functions: Sequence[Element]) -> list[Element]:
     return [restriction.on_section(f) for f in functions]
-
-
-def _section_defects(restriction: Restriction) -> list[Element]:
-    """``Ds . X - Y``, component by component; y keeps its name, and is replaced at the end."""
-    field, names, rates = restriction.setting.field, restriction.setting.state, restriction.rates
-    moved = [
-        field.sum(s * rates[x] for s, x in zip(field.gradient(value, names), names, strict=True))
-        - rates[name]
-        for name, value in restriction.section.items()
-    ]
-    return [field.substitute(defect, restriction.section) for defect in moved]
