@@ -20,6 +20,7 @@ from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, ki
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, Route, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.noise import check_noise
 from coadjoint.spec.sections.state import Variable
 from coadjoint.spec.sections.variables import VARIABLES
 from coadjoint.spec.tables import BY_KEY, TABLES, list_formulas
@@ -59,6 +60,7 @@ def check_tables(source: Source, file: Any) -> None:
         problem = "there is a table [representations] without [algebra]"
         expected, hint = "[representations] only with [algebra]", "Remove [representations]."
         raise source.fault(("representations",), problem, "representations", expected, hint)
+    check_noise(source, file)
 
 
 @dataclass(frozen=True)
