@@ -115,8 +115,8 @@ def check_knots(request: Request, knots: NDArray[np.float64]) -> None:
         time = float(times[int(off.argmax())])
         raise KernelArgumentError(
             f"inputs change at t = {time:.12g}, between the ends of steps of {step:.12g}, and "
-            "noise has increments of whole steps; expected times of inputs that are whole numbers of "
-            f"steps after {request.start:g}, or a function of time.",
+            "noise has increments of whole steps; expected inputs at times of whole steps "
+            f"after {request.start:g}, or a function of time.",
             found=time,
         )
 
