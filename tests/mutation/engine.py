@@ -460,6 +460,14 @@ MUTANTS = (
         tests=("tests/prove/test_reductions.py",),
     ),
     *of(
+        "shared_frames",
+        "_relate: rewrite reversed(values) -> values",
+        "_rewrite_quotient: let return = total",
+        "_element: rewrite field[name] ** e -> field[name]",
+        "rewrite: rewrite whole if shorter else element -> element",
+        tests=("tests/lower/test_shared_frames.py",),
+    ),
+    *of(
         "section_brackets",
         "along: flip own",
         "induced_bracket: rewrite {a: -value for a, value in of_state[x].items()} -> of_state[x]",

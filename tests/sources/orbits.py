@@ -56,8 +56,8 @@ def orbit_observables(x: Vector, given: Vector) -> dict[str, Any]:
     about = sum(i * a**2 for i, a in zip(inertia, c, strict=True))  # the moment about the radius
     potential = -mu * m / r - mu * (sum(inertia) - 3 * about) / (2 * r**3)
     J = plus(_turn(rows, Pi), cross(place, _turn(rows, P)))
-    y = [dot(column, place) for column in zip(*rows, strict=True)]
-    seen = _turn(rows, plus(Pi, cross(y, P)))  # J, where R is a rotation
+    cofactors = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])]
+    seen = plus(_turn(cofactors, Pi), cross(place, _turn(rows, P)))  # J, where R is a rotation
     gram = {f"g_gram{i + 1}{j + 1}": dot(rows[i], rows[j]) for i in range(3) for j in range(i, 3)}
     return {
         "energy": dot(Pi, omega) / 2 + dot(P, v) / 2 + potential,
