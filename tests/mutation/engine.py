@@ -460,8 +460,14 @@ MUTANTS = (
         tests=("tests/prove/test_reductions.py",),
     ),
     *of(
+        "identities",
+        "drift: flip followed",
+        "followed_rate: let return = field.zero",
+        tests=("tests/prove/test_followed_integrals.py -k space",),
+    ),
+    *of(
         "shared_frames",
-        "_relate: rewrite reversed(values) -> values",
+        "_relate: rewrite reversed(tuple(values)) -> tuple(values)",
         "_rewrite_quotient: let return = total",
         "_element: rewrite field[name] ** e -> field[name]",
         "rewrite: rewrite whole if shorter else element -> element",

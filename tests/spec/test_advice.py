@@ -642,6 +642,12 @@ ADVICE = [
         write('q = { attitude = "quaternion" }', 'theta = "omega"'),
     ),
     (
+        RIGID_BODY,
+        write(END, '[reconstruction]\nz = "Omega"\n[claims]'),
+        "Give its shape, as { rate = ..., shape = [3] }.",
+        write('z = "Omega"', 'z = { rate = "Omega", shape = [3] }'),
+    ),
+    (
         MOMENTA_ONLY,
         write("[hamiltonian]", '[reconstruction]\nq = { attitude = "quaternion" }\n[hamiltonian]'),
         'Write Omega = { role = "velocity", block = ["J1", "J2", "J3"] } in [variables].',

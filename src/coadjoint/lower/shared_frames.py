@@ -114,7 +114,7 @@ def _relate(equations: Equations, values: Mapping[str, Element]) -> SharedFrames
     field = equations.setting.field
     reached = frozenset[str]().union(*map(field.reach, values.values()))
     own = (*equations.setting.state, *equations.setting.parameters)
-    names = (*(name for name in own if name in reached), *reversed(values))
+    names = (*(name for name in own if name in reached), *reversed(tuple(values)))
     ring = PolyRing(names, QQ, lex)
     relations = []
     for name, value in values.items():

@@ -141,7 +141,10 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
     if first.spec.algebra is not None or first.spec.is_driven or first.spec.constraints:
         return
     for place, claim in enumerate(first.spec.conserved):
-        if claim.where or claim.everywhere == "energy":
+        parts = first.setting.components(claim.formula, known)
+        reached = frozenset[str]().union(*map(first.setting.field.reach, parts))
+        followed = reached & {name for name, _ in first.followed}
+        if claim.where or claim.everywhere == "energy" or followed:
             continue
         flows = _flows(first, claim.formula, known)
         statement = (

@@ -42,7 +42,7 @@ def find_attitude_drift(solution: Solution) -> dict[str, float]:
     """Largest ``| |q|^2 - 1 |`` of each attitude that was reconstructed."""
     if solution.reconstructed is None:
         return {}
-    turning = (q for q in solution.system.RECONSTRUCTED.values() if q.shape == (4,))
+    turning = (q for q in solution.system.RECONSTRUCTED.values() if q.is_quaternion)
     return {
         q.name: float(np.nanmax(np.abs((solution[q.name] ** 2).sum(axis=0) - 1))) for q in turning
     }
