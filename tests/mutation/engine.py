@@ -467,7 +467,7 @@ MUTANTS = (
     ),
     *of(
         "shared_frames",
-        "_relate: rewrite reversed(tuple(values)) -> tuple(values)",
+        "name_frames: let definitions = equations.exact.definitions",
         "_rewrite_quotient: let return = total",
         "_element: rewrite field[name] ** e -> field[name]",
         "rewrite: rewrite whole if shorter else element -> element",
