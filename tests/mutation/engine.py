@@ -466,6 +466,18 @@ MUTANTS = (
         tests=("tests/prove/test_followed_integrals.py -k space",),
     ),
     *of(
+        "derive/structure",
+        "_add_pairs: rewrite field.number(-weight) -> field.number(weight)",
+        "_add_pairs: rewrite known.get((a, b), field.zero) -> field.zero",
+        tests=("tests/derive/test_products.py",),
+    ),
+    *of(
+        "routes/poisson",
+        "_define_of_product: rewrite weights[p] -> -weights[p]",
+        "_velocities_of_product: let return = []",
+        tests=("tests/derive/test_products.py",),
+    ),
+    *of(
         "shared_frames",
         "name_frames: let definitions = equations.exact.definitions",
         "_rewrite_quotient: let return = total",

@@ -16,7 +16,13 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
-from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, kinds_of
+from coadjoint.spec.kinds import (
+    is_first_order,
+    is_in_frame,
+    is_on_product,
+    is_variational,
+    kinds_of,
+)
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, Route, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
@@ -285,7 +291,7 @@ def check_blocks(reading: Reading) -> None:
     algebra, variables = ALGEBRA.of(reading).algebra, VARIABLES.of(reading)
     if algebra is None:
         return
-    of_role = {role: [v for v in variables if v.role == role] for role in _PLURALS}
+    of_role = {role: [v for v in variables if v.role == role and not v.of] for role in _PLURALS}
     for role, members in of_role.items():
         _check_overlaps(reading, role, members, algebra)
     if not all(of_role.values()):
@@ -332,6 +338,7 @@ def check_covered(reading: Reading) -> None:
     if algebra is not None:
         if not is_in_frame(file):
             _check_spanned(reading, "momentum", "Pi", algebra)
+            _check_partners(reading)
         elif any(variable.role == "coordinate" for variable in VARIABLES.of(reading)):
             _check_partners(reading)
         if file.lagrangian is not None:
@@ -344,7 +351,9 @@ def _check_partners(reading: Reading) -> None:
     """Every coordinate of a configuration space has a velocity where velocities are asked for."""
     variables = VARIABLES.of(reading)
     owned = {role: {v.of for v in variables if v.role == role} for role in _PLURALS}
+    product = is_on_product(reading.file)
     wanted = ["velocity"] if reading.file.lagrangian is not None else ["velocity", "momentum"]
+    wanted = ["momentum"] if product else wanted
     for variable in variables:
         name = variable.name
         if variable.role != "coordinate":
