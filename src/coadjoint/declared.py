@@ -41,6 +41,11 @@ class Quantity:
     while_constant: bool = False
     upright: str = ""
 
+    @property
+    def is_quaternion(self) -> bool:
+        """Whether it is a quaternion, whose components are counted from the real part."""
+        return self.shape == (4,) and self.components[0] == f"{self.name}0"
+
     def unit_of(self, name: str) -> str:
         """The unit of a component; by the name of the whole, that of the whole.
 

@@ -113,6 +113,15 @@ def test_tables_show_state_units_and_drift(run):
     assert "status: OK" in result.stdout
 
 
+def test_each_component_of_a_conserved_vector_has_its_drift(run):
+    """Of the spatial momentum all three, and of a velocity none."""
+    lines = [line.split() for line in run("simulate", "rigid_body_attitude").stdout.splitlines()]
+    rows = {words[0]: words for words in lines if words}
+    drifts = [float(rows[f"Pi_spatial{n}"][-1]) for n in (1, 2, 3)]
+    assert all(0 < drift < 1e-8 for drift in drifts)
+    assert rows["Omega1"][-1] == "1/s"
+
+
 def table_of(path):
     """The lines of a table, without those that stand above it."""
     return [line for line in path.read_text().splitlines() if not line.startswith("#")]

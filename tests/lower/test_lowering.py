@@ -194,6 +194,10 @@ BY_HAND = {
     "spacecraft_wheels": 6 + 9 + 4 * 5 + 4 + 1,
     # Omega, n beta; Pi x Omega, two more; torque and sum with differences of moments
     "gravity_gradient_satellite": 3 + 6 + 3 * 9 + 3 * 2 + 3,
+    # Omega, v; y = R^T x; r^2, r; powers of r, factors of the force; I y and R I y; x . R I y and
+    # the factor of y; y x I y and its factor; R^T R I y, two products and a sum; two cross products
+    # and a sum; R hat(Omega), R v
+    "orbiting_body": 6 + 15 + 6 + 11 + 3 + 15 + 5 + 3 + 9 + 6 + 15 + 12 + 18 + 6 + 27 + 15,
     # as heavy_top, its weight m chi (g - a w^2 cos(w t)) first: 4 and 3
     "kapitza_top": 3 + 2 * 9 + 12 + 4 + 3,
     "lorenz_gyrostat": 2 + 4 + 3,  # sigma (y - x); r x - y - x z; x y - b z

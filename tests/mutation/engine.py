@@ -459,8 +459,45 @@ MUTANTS = (
     *of(
         "prove/reductions",
         "_decide_kept: rewrite decide_zero(drifts, _1, _2) -> decide_zero([], _1, _2)",
-        "_section_defects: flip name",
-        "on_section: let return = restriction.setting.field.zero",
+    ),
+    *of(
+        "derive/reductions",
+        "section_defects: flip name",
+        tests=("tests/prove/test_reductions.py",),
+    ),
+    *of(
+        "identities",
+        "drift: flip followed",
+        "followed_rate: let return = field.zero",
+        tests=("tests/prove/test_followed_integrals.py -k space",),
+    ),
+    *of(
+        "derive/structure",
+        "_add_pairs: rewrite field.number(-weight) -> field.number(weight)",
+        "_add_pairs: rewrite known.get((a, b), field.zero) -> field.zero",
+        tests=("tests/derive/test_products.py",),
+    ),
+    *of(
+        "routes/poisson",
+        "_define_of_product: rewrite weights[p] -> -weights[p]",
+        "_velocities_of_product: let return = []",
+        tests=("tests/derive/test_products.py",),
+    ),
+    *of(
+        "shared_frames",
+        "name_frames: let definitions = equations.exact.definitions",
+        "_rewrite_quotient: let return = total",
+        "_element: rewrite field[name] ** e -> field[name]",
+        "rewrite: rewrite whole if shorter else element -> element",
+        tests=("tests/lower/test_shared_frames.py",),
+    ),
+    *of(
+        "section_brackets",
+        "along: flip own",
+        "induced_bracket: rewrite {a: -value for a, value in of_state[x].items()} -> of_state[x]",
+        "induced_bracket: rewrite of_state[x][a] * w -> of_state[x][a] - of_state[x][a]",
+        "induced_bracket: rewrite of_state[x][a] * u -> of_state[x][a] - of_state[x][a]",
+        tests=("tests/prove/test_section_brackets.py",),
     ),
     *of(
         "packed",

@@ -10,6 +10,8 @@ from coadjoint.derive import derive
 from coadjoint.derive.mechanics import noise
 from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
+from coadjoint.resources import derivations_folder
+from tests.prove.test_reductions import IN_STEP
 from tests.specs import RIGID_BODY, prove_claims, shipped, spec
 
 PARAMETER = ("[parameters]", "[parameters]\ns = { shape = [3], default = [1, 2, 3] }")
@@ -204,3 +206,78 @@ def test_a_kernel_has_the_noise():
     for target in ("numpy", "python"):
         found = body.noise(Pi, target=target)
         assert np.allclose(found, np.cross(Pi, np.diag(sigma)).T, rtol=1e-15, atol=0)
+
+
+#: A ball that a hand and a Wiener process turn about one axis.
+DRIVEN = """
+title = "A ball turned by hand, with noise"
+routes = ["lie-poisson", "nambu"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum" }
+[parameters]
+s = { default = "0.3" }
+[inputs]
+u = { default = 0 }
+a = { default = 1 }
+[hamiltonian]
+h = "u*Pi1"
+[noise]
+dW1 = "a*s*Pi1"
+[claims]
+casimirs = ["dot(Pi, Pi)"]
+conserved = ["dot(Pi, Pi)"]
+"""
+TORQUE = ("[noise]", '[forces]\nPi = "vector(0, 0, u)"\n[noise]')
+KEPT = "the noise keeps dot(Pi, Pi) on each path: {C, h_k} = 0"
+
+
+def test_inputs_drive_a_motion_with_noise():
+    """By hand ``dPi = Pi x e1 (u dt + a s o dW)``; each path keeps the sphere, for all inputs."""
+    declared = spec(DRIVEN)
+    fields, added = fields_of(declared)
+    p2, p3, s, a, u = sympy.symbols("Pi2 Pi3 s a u")
+    assert fields == {"dW1": [0, a * s * p3, -a * s * p2]}
+    assert added == [0, -(a**2) * s**2 * p2 / 2, -(a**2) * s**2 * p3 / 2]
+    assert list(derive(declared).rates) == [0, p3 * u, -p2 * u]
+    found = verdicts(declared)
+    assert set(found.values()) == {Verdict.PROVED}
+    assert KEPT in found
+    assert "the energy changes by its explicit dependence on time" not in found
+
+
+def test_a_torque_changes_the_casimir_and_the_noise_does_not():
+    """The drive does not allow it; with the claim the certificate is refuted."""
+    found = verdicts(spec(DRIVEN, TORQUE))
+    assert found.pop("dot(Pi, Pi) is conserved") is Verdict.REFUTED
+    assert set(found.values()) == {Verdict.PROVED}
+    assert "dot(Pi, Pi) changes only by forces and dissipation" in found
+    assert KEPT in found
+
+
+@pytest.mark.parametrize(
+    ("table", "reason"),
+    [
+        ('[reconstruction]\ntheta = "s"\n', "is moved by rates, and noise has none"),
+        ('[transformations.flip]\nmap = { Pi = "-Pi" }\n', "claimed of motions without noise"),
+    ],
+)
+def test_the_reason_of_each_refusal_is_said(table, reason):
+    """Each table has its own; without it the spec is read."""
+    with pytest.raises(SpecError, match=reason):
+        spec(DRIVEN, ("[noise]", f"{table}[noise]"))
+
+
+def test_noise_under_constraints_is_refused_with_its_reason():
+    """It need not be a motion that the constraints allow."""
+    noise = ("[constraints]", '[noise]\ndW1 = "Gamma1"\n[constraints]')
+    text = (derivations_folder() / "veselova.toml").read_text(encoding="utf-8")
+    with pytest.raises(SpecError, match="move positions otherwise than the constraints allow"):
+        spec(text, noise)
+
+
+def test_noise_on_a_section_is_refused_with_its_reason():
+    """Nothing examines whether it keeps the section."""
+    with pytest.raises(SpecError, match="a path leaves the section unless"):
+        spec(IN_STEP, ("[reduction]", '[noise]\ndW1 = "q1"\n[reduction]'))

@@ -9,14 +9,18 @@ import pytest
 from scipy.special import ndtri
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.pipeline import render
 from coadjoint.solve import stochastic
 from coadjoint.solve.events import Event
 from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
 from coadjoint.solve.steps import Lanes
 from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
+from coadjoint.solve.system import load_texts
 from coadjoint.systems import rigid_body
 from coadjoint.systems import stochastic_rigid_body as body
 from tests.kernels import COMPILER
+from tests.prove.test_noise import DRIVEN
+from tests.specs import spec
 
 TARGETS = ["numpy", *(["c"] if COMPILER else [])]
 START = np.array([0.6, 0.0, 0.8])
@@ -404,3 +408,74 @@ def test_a_system_without_noise_refuses_seeds_and_methods_of_noise(options):
     """They would do nothing."""
     with pytest.raises(KernelArgumentError, match="rigid_body has none"):
         rigid_body.simulate(START, (0, 1), **options)
+
+
+# -- inputs ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def driven():
+    """A ball that a hand turns by u and a Wiener process by ``a s``, both about one axis."""
+    with load_texts(render(spec(DRIVEN)).texts) as system:
+        yield system
+
+
+KNOTS = np.array([0.0, 0.5, 1.0])
+#: Inputs, and the integral of u from 0 to 1; a is 2.
+INPUTS = [
+    ((KNOTS, np.array([[0.0, 1, 3], [2, 2, 2]]), "linear"), 1.25),
+    ((KNOTS, np.array([[1.0, 3, 5], [2, 2, 2]]), "previous"), 2.0),
+    ([1.0, 2.0], 1.0),
+    (lambda time: [2 * time, 2.0], 1.0),
+]
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("method", ["midpoint", "heun"])
+@pytest.mark.parametrize(("inputs", "turn"), INPUTS)
+def test_a_driven_path_is_a_rotation(inputs, turn, method, target, driven):
+    """The closed form: by the integral of u and by ``2 s W(t)``, with the very numbers drawn."""
+    steps, seed = 64, 9
+    run = driven.simulate(
+        START,
+        (0, 1),
+        step=1 / steps,
+        seed=seed,
+        samples=1,
+        method=method,
+        target=target,
+        inputs=inputs,
+    )
+    made = np.arange(steps, dtype=np.uint64)
+    bound = find_bound(method, 1 / steps)
+    drawn = draw_normals(seed, np.zeros(steps, np.uint64), made, 0)
+    W = np.clip(drawn, -bound, bound).sum() / math.sqrt(steps)
+    angle = turn + 2 * 0.3 * W
+    expected = [START[0], START[2] * math.sin(angle), START[2] * math.cos(angle)]
+    assert np.abs(run.state[:, -1] - expected).max() < 6e-3
+    assert abs(2 * 0.3 * W) > 0.05
+    if method == "midpoint":
+        assert run.drift["casimir1"] < 1e-14
+
+
+def test_inputs_change_at_the_ends_of_steps(driven):
+    """A step that ended at a sample of inputs would have another increment; the advice works."""
+    values, options = np.array([[1.0, 2, 3]] * 2), {"step": 0.25, "seed": 1, "samples": 1}
+    with pytest.raises(KernelArgumentError, match=r"inputs change at t = 0\.6, between the ends"):
+        driven.simulate(
+            START,
+            (0, 1),
+            inputs=(np.array([0, 0.6, 1]), 2 * values * [1, 2, 3], "linear"),
+            **options,
+        )
+    run = driven.simulate(START, (0, 1), inputs=(KNOTS, values * [1, 2, 3], "linear"), **options)
+    assert np.isfinite(run.state).all()
+
+
+@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+def test_driven_paths_have_the_same_bits_in_c(driven):
+    """With samples of inputs, for members and threads."""
+    start = np.random.default_rng(0).normal(size=(3, 13))
+    options = {"step": 1 / 8, "seed": 4, "samples": 5, "inputs": INPUTS[0][0]}
+    numpy, c = (driven.simulate(start, (0, 1), target=t, **options).state for t in ("numpy", "c"))
+    assert np.array_equal(numpy, c)

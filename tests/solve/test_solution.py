@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from coadjoint.solve.drift import list_owners, tell_drift
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import rigid_body
 
@@ -19,6 +20,16 @@ def made(state=STATE, status="OK", message=""):
 def test_drift_is_the_largest_change_over_the_largest_size():
     """Drift is max |q(t) - q(0)| / max |q(t)|: here (4 - 1)/4 for both invariants."""
     assert made().drift == {"energy": 0.75, "casimir1": 0.75}
+
+
+def test_a_component_drifts_relative_to_the_whole():
+    """By hand: of (4, 0) that becomes (4, 1) the second changes by 1/4 of the largest size."""
+    turned = np.array([[4.0, 4.0, 4.0], [0.0, 0.5, 1.0], [0.0, 0.0, 0.0]])
+    assert list_owners(made()) == {"energy": "energy", "casimir1": "casimir1"}
+    told = [tell_drift(made(turned), "Omega", f"Omega{n}") for n in (1, 2, 3)]
+    assert told == ["0.0e+00", "2.5e-01", "0.0e+00"]
+    grown = made(np.array([[0.0, 3, 0], [1.0, 1, 1], [0.0, 0, 0]]))
+    assert tell_drift(grown, "Omega", "Omega1") == "3.0e+00 absolute"
 
 
 def test_what_stays_zero_has_no_drift():

@@ -20,6 +20,7 @@ from tests.sources.bodies import (
 )
 from tests.sources.components import Vector, cross, dot, minus, over, plus, times
 from tests.sources.coupled import vehicle_tensor
+from tests.sources.orbits import orbit_observables, orbit_rates, orbit_tensor
 from tests.sources.points import circular
 
 
@@ -218,6 +219,7 @@ RATES = {
     "quadrotor": quadrotor_rates,
     "spacecraft_wheels": wheels_rates,
     "gravity_gradient_satellite": satellite_rates,
+    "orbiting_body": orbit_rates,
     "kapitza_top": lambda x, p: heavy_top_rates(x, shaken(p)),
     "double_bracket_body": falling_body_rates,
     "stochastic_rigid_body": lambda x, p: rigid_body_rates(x, p[:3]),  # Stratonovich's drift
@@ -230,6 +232,7 @@ OBSERVABLES = {
     "quadrotor": quadrotor_observables,
     "spacecraft_wheels": wheels_observables,
     "gravity_gradient_satellite": satellite_observables,
+    "orbiting_body": orbit_observables,
     "kapitza_top": lambda x, p: heavy_top_observables(x, shaken(p)),
     "double_bracket_body": lambda x, p: rigid_body_observables(x, p[:3]),
     "stochastic_rigid_body": lambda x, p: rigid_body_observables(x, p[:3]),
@@ -242,6 +245,7 @@ TENSORS = {
     "quadrotor": lambda x, p: quadrotor_tensor(x),
     "spacecraft_wheels": lambda x, p: wheels_tensor(x),
     "gravity_gradient_satellite": lambda x, p: vehicle_tensor(x),
+    "orbiting_body": lambda x, p: orbit_tensor(x),
     "kapitza_top": lambda x, p: se3_tensor(x),
     "double_bracket_body": lambda x, p: rigid_body_tensor(x),
     "stochastic_rigid_body": lambda x, p: rigid_body_tensor(x),
@@ -260,6 +264,10 @@ STATES = {
         *("Pi1", "Pi2", "Pi3", "beta1", "beta2", "beta3"),
         *("gamma1", "gamma2", "gamma3"),
     ),
+    "orbiting_body": (
+        *("Pi1", "Pi2", "Pi3", "P1", "P2", "P3", "g11", "g12", "g13", "g14"),
+        *("g21", "g22", "g23", "g24", "g31", "g32", "g33", "g34"),
+    ),
     "kapitza_top": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
     "double_bracket_body": ("Pi1", "Pi2", "Pi3"),
     "stochastic_rigid_body": ("Pi1", "Pi2", "Pi3"),
@@ -272,6 +280,7 @@ PARAMETERS = {
     "quadrotor": ("J1", "J2", "J3", "m", "g"),
     "spacecraft_wheels": ("I1", "I2", "I3", "J1", "J2", "J3"),
     "gravity_gradient_satellite": ("I1", "I2", "I3", "n"),
+    "orbiting_body": ("I1", "I2", "I3", "m", "mu"),
     "kapitza_top": ("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3", "a", "w"),
     "double_bracket_body": ("I1", "I2", "I3", "alpha"),
     "stochastic_rigid_body": ("I1", "I2", "I3", "sigma1", "sigma2", "sigma3"),

@@ -183,6 +183,7 @@ CONFIGURATIONS = (
     "kepler",
     "monopole_kepler",
     "n_particles",
+    "orbiting_body",
     "rocking_disk",
     *classical.CONFIGURATIONS,
     *extremals.CONFIGURATIONS,

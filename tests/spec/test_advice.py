@@ -23,6 +23,7 @@ from tests.spec.texts import BY_BRACKETS, BY_MATRICES
 from tests.specs import RIGID_BODY, shipped, spec
 
 SPEC = Path(coadjoint.spec.__file__).parent
+TURN = '[transformations.flip]\nmap = { Pi = "-Pi" }\n'
 END = "[claims]"
 FAST = test_bound_momenta.TOP.split(END)[0]
 BARE = """
@@ -316,9 +317,9 @@ ADVICE = [
     ),
     (
         RIGID_BODY,
-        write(END, '[noise]\ndW1 = "Pi1"\n[inputs]\nu = { default = 0 }\n[claims]'),
-        "Remove [inputs], or declare it in a spec of its own, without [noise].",
-        write("[inputs]\nu = { default = 0 }\n", ""),
+        write(END, f'[noise]\ndW1 = "Pi1"\n{TURN}[claims]'),
+        "Remove [transformations], or declare it in a spec of its own, without [noise].",
+        write(TURN, ""),
     ),
     (
         RIGID_BODY,
@@ -639,6 +640,12 @@ ADVICE = [
         write("[constraints]", '[reconstruction]\nq = { attitude = "quaternion" }\n[constraints]'),
         'Without one, declare an angle: theta = "omega".',
         write('q = { attitude = "quaternion" }', 'theta = "omega"'),
+    ),
+    (
+        RIGID_BODY,
+        write(END, '[reconstruction]\nz = "Omega"\n[claims]'),
+        "Give its shape, as { rate = ..., shape = [3] }.",
+        write('z = "Omega"', 'z = { rate = "Omega", shape = [3] }'),
     ),
     (
         MOMENTA_ONLY,

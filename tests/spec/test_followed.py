@@ -50,7 +50,7 @@ FAULTS = [
     ('normal = "Gamma"', 'normal = "Gama"', "rolling.normal", "Gama"),
     ('name = "se(3)"', 'name = "se(3)"\ninvariance = "right"', "algebra.invariance", "right"),
     (MORE, '[reconstruction]\nz = "dot(Y, Y) + w"\n[rolling]', "reconstruction.z", "w"),
-    (MORE, '[reconstruction]\nz = "Omega"\n[rolling]', "reconstruction.z", "a vector"),
+    (MORE, '[reconstruction]\nz = "Omega"\n[rolling]', "reconstruction.z", "a 3-vector"),
     (
         MORE,
         '[reconstruction]\np = { attitude = "quaternion", default = [0, 0, 0, 0] }\n[rolling]',

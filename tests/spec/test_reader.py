@@ -56,9 +56,12 @@ ROWS_P = ROWS_Q.replace("Q", "P")
 ONE_POINT = "r1 r2 r3 v1 v2 v3"
 INERTIAL = ("lie-poisson", "euler-poincare", "hamilton-pontryagin", "poincare")
 #: Systems of other books.
-BEYOND = {"gravity_gradient_satellite", *fields.STATES, *machines.STATES}
+BEYOND = {"gravity_gradient_satellite", "orbiting_body", *fields.STATES, *machines.STATES}
 #: Systems whose claims are of integrals alone: they have no Casimir, or those of a rotation.
-CONSERVED_ALONE = ("affine_line", "guiding_centre", "guiding_centre_twisted", "two_field_top")
+CONSERVED_ALONE = (
+    *("affine_line", "guiding_centre", "guiding_centre_twisted", "orbiting_body"),
+    "two_field_top",
+)
 #: State, parameters and routes of each system.
 SHIPPED = {
     **{name: (" ".join(STATES[name]), " ".join(PARAMETERS[name]), TWO) for name in STATES},
@@ -228,6 +231,11 @@ SHIPPED = {
         " ".join(STATES["gravity_gradient_satellite"]),
         "I1 I2 I3 n",
         ROTATING,
+    ),
+    "orbiting_body": (
+        " ".join(STATES["orbiting_body"]),
+        "I1 I2 I3 m mu",
+        (*TWO, "hamilton-pontryagin"),
     ),
     "kapitza_top": (
         "Pi1 Pi2 Pi3 Gamma1 Gamma2 Gamma3",

@@ -318,7 +318,7 @@ def _print(system: System, solution: Solution) -> None:
 
 def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str = "") -> None:
     """First and last values as a table; of observables with the drift of those that are kept."""
-    from coadjoint.solve.drift import tell_drift
+    from coadjoint.solve.drift import list_owners, tell_drift
 
     columns = [kind, ">t = 0", f">t = {solution.time_reached:g}", "unit"]
     rows = [
@@ -327,8 +327,9 @@ def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str 
     ]
     if kind == "observable":
         columns.append(">drift")
+        owners = list_owners(solution)
         for row in rows:
-            row.append(tell_drift(solution, row[0]) if row[0] in solution.drift else "")
+            row.append(tell_drift(solution, owners[row[0]], row[0]) if row[0] in owners else "")
     if len(rows) > SHOWN:
         rows[SHOWN // 2 : -SHOWN // 2] = [["...", *("" for _ in columns[1:])]]
     print_table(columns, rows, title=title)

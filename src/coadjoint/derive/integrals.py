@@ -21,6 +21,7 @@ from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair, declared_pair
 from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.submanifold import put_on_section
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, diagonal, product
 from coadjoint.exact.ranks import independent_rows
@@ -68,7 +69,8 @@ def pair_of(setting: Setting) -> LaxPair | None:
     """The declared pair of a system, or else the one that the route manakov finds."""
     if setting.spec.lax is not None:
         return declared_pair(setting)
-    return find_pair(setting) if "manakov" in setting.spec.routes else None
+    own = "manakov" in setting.spec.routes and setting.spec.reduction is None
+    return find_pair(setting) if own else None
 
 
 @once
@@ -135,12 +137,16 @@ def _choose_independent(
 
 def known_integrals(setting: Setting) -> list[Element]:
     """What is emitted and conserved whatever the pair: the claimed Casimirs and the energy."""
-    casimirs = [part for casimir in setting.spec.casimirs for part in setting.components(casimir)]
+    casimirs = [
+        put_on_section(setting, part)
+        for casimir in setting.spec.casimirs
+        for part in setting.components(casimir)
+    ]
     if not setting.has_energy:
         return casimirs
     energy, solves = hamiltonian(setting)
     # where the kernel solves for velocities, the energy names them next to the momenta
-    return [*casimirs, *([] if solves else [energy])]
+    return [*casimirs, *([] if solves else [put_on_section(setting, energy)])]
 
 
 def slope_row(setting: Setting, function: Element) -> dict[int, Element]:

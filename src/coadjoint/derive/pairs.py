@@ -9,15 +9,17 @@ Read next: `coadjoint.derive.routes.lax` and `coadjoint.derive.routes.manakov`, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from coadjoint.derive.interpret import entries
+from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.submanifold import put_on_section
 from coadjoint.exact import Element
 from coadjoint.exact.dense import Matrix, commutator
 from coadjoint.exact.linear import Span
+from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.faults import list_names
 
 
@@ -65,7 +67,7 @@ def declared_pair(setting: Setting) -> LaxPair:
     lax = setting.spec.lax
     assert lax is not None, "the reader asks for a table [lax] on this route"
     spectral = {lax.spectral: setting.field[lax.spectral]}
-    L, M = setting.value(lax.L, spectral), setting.value(lax.M, spectral)
+    L, M = (_read_matrix(setting, formula, spectral) for formula in (lax.L, lax.M))
     for entry in (*entries(L), *entries(M)):
         try:
             setting.field.coefficients(entry, lax.spectral)
@@ -74,6 +76,17 @@ def declared_pair(setting: Setting) -> LaxPair:
             hint = f"Choose another parameter than {lax.spectral}."
             raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """The spectral parameter of a declared pair."""
+    return (spec.lax.spectral,) if spec.lax is not None else ()
+
+
+def _read_matrix(setting: Setting, formula: Formula, named: Mapping[str, Value]) -> Matrix:
+    """A declared matrix, on the section of a restricted motion."""
+    rows: Matrix = setting.value(formula, named)
+    return tuple(tuple(put_on_section(setting, x) for x in row) for row in rows)
 
 
 def lax_equations(setting: Setting, pair: LaxPair) -> Iterator[LaxEquation]:

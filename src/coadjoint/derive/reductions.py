@@ -15,12 +15,15 @@ from functools import cached_property
 
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics import external
+from coadjoint.derive.pairs import declared_pair
 from coadjoint.derive.records import Exact, Step, write_rates, write_step
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.registry import load_route, make_setting
+from coadjoint.derive.section_brackets import describe_bracket, induced_bracket
 from coadjoint.derive.setting import Setting, fault
+from coadjoint.derive.submanifold import put_on_section, section_of
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 
 
@@ -33,20 +36,18 @@ class Restriction:
     """
 
     def __init__(self, setting: Setting, whole: Equations) -> None:
-        reduction = setting.spec.reduction
-        assert reduction is not None, f"{setting.spec.name} is not restricted"
-        self.setting, self.whole = setting, whole
-        self.section: dict[str, Element] = {}
-        for variable in setting.spec.defined:
-            if variable.name in reduction.section:
-                values = entries(setting.value(reduction.section[variable.name]))
-                self.section |= dict(zip(variable.components, values, strict=True))
+        assert setting.spec.reduction is not None, f"{setting.spec.name} is not restricted"
+        self.setting, self.whole, self.section = setting, whole, section_of(setting)
 
     def __call__(self, function: Element) -> Element:
         """A function of the whole state."""
         field, own = self.setting.field, self.whole.setting
         values = {name: field[name] for name in (*own.state, *own.parameters, *own.driving)}
         return own.field.evaluate(self.whole.close(function), values, field.number, field.call)
+
+    def on_section(self, function: Element) -> Element:
+        """A function of the whole state with the section in the place of y."""
+        return self.setting.field.normal(put_on_section(self.setting, self(function)))
 
     @cached_property
     def rates(self) -> dict[str, Element]:
@@ -62,6 +63,23 @@ class Restriction:
         return {name: self(value) for name, value in own if name in named}
 
 
+def section_defects(restriction: Restriction) -> list[Element]:
+    """``Ds . X - Y``, component by component; y keeps its name, and is replaced at the end."""
+    setting, rates = restriction.setting, restriction.rates
+    field, names = setting.field, setting.state
+    moved = [
+        field.sum(s * rates[x] for s, x in zip(field.gradient(value, names), names, strict=True))
+        - rates[name]
+        for name, value in restriction.section.items()
+    ]
+    return [put_on_section(setting, defect) for defect in moved]
+
+
+def is_kept(restriction: Restriction) -> bool:
+    """Whether the normal form shows that the motion keeps the section."""
+    return all(map(restriction.setting.field.is_zero, section_defects(restriction)))
+
+
 def restrict(setting: Setting, route: str) -> Equations:
     """The equations of what is left, by a route for the whole system.
 
@@ -74,17 +92,43 @@ def restrict(setting: Setting, route: str) -> Equations:
     energy = restriction(whole.exact.energy)
     _check_regular(restriction, energy)
     kept = tuple(rates[name] for name in setting.state)
+    induced = induced_bracket(restriction) if is_kept(restriction) else None
+    if induced is None and setting.spec.brackets:
+        raise _refuse_brackets(setting)
     defined = (*restriction.section.items(), *restriction.velocities.items())
     exact = Exact(
         definitions=defined,
         rates=kept,
         energy=energy,
         emitted=list_emitted(setting, energy),
-        poisson_tensor=None,
+        poisson_tensor=None if induced is None else induced.tensor,
+        forces=() if induced is None else induced.forces,
     )
     return Equations(
-        setting=setting, route=whole.route, exact=exact, steps=_steps(restriction, energy, kept)
+        setting=setting,
+        route=whole.route,
+        exact=exact,
+        steps=(*_steps(restriction, energy, kept), describe_bracket(setting, induced)),
+        pair=declared_pair(setting) if _takes_pair(setting, route) else None,
     )
+
+
+def _takes_pair(setting: Setting, route: str) -> bool:
+    """Whether a Lax pair is proved on a route: on its own, and without that on the first one."""
+    routes = setting.spec.routes
+    own = "lax" if "lax" in routes else routes[0]
+    return setting.spec.lax is not None and route == own
+
+
+def _refuse_brackets(setting: Setting) -> DerivationError:
+    """Brackets are claimed, and the section has none."""
+    claim = setting.spec.brackets[0]
+    message = (
+        "the section has no bracket of its own: a function with the same values on it whose "
+        "Hamiltonian flow keeps the section does not exist for each of its coordinates; expected "
+        "claims of integrals. Claim the bracket in a spec of the whole system."
+    )
+    return fault(setting, claim.value, message, claim.value.text)
 
 
 def _check_regular(restriction: Restriction, energy: Element) -> None:

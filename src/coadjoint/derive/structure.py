@@ -2,12 +2,14 @@
 
 Comes in: a Setting. Goes out: the bracket ``{x_i, x_j}`` of the state. For an algebra it is the
 minus (left) or plus (right) Lie-Poisson bracket of the semidirect product of the algebra with the
-duals of the advected representations. Read next: `coadjoint.poisson.structure`.
+duals of the advected representations, and next to it the canonical bracket of coordinates with
+momenta: that of a product. Read next: `coadjoint.poisson.structure`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from coadjoint.algebra import LieAlgebra, semidirect_product
 from coadjoint.derive.mechanics.bound_momenta import bound_momenta
@@ -18,6 +20,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact.dense import product
 from coadjoint.poisson import PoissonStructure, declare_bracket, lie_poisson, magnetic, nambu
 from coadjoint.spec.model import Poisson
+from coadjoint.spec.sections.poisson import pairing_weights
 
 
 @once
@@ -47,7 +50,35 @@ def poisson_structure(setting: Setting) -> PoissonStructure:
     if setting.spec.is_first_order:
         tensor = bound_momenta(setting).restrict(whole)
         return PoissonStructure(setting.field, setting.state, tensor, setting.spec.name)
-    return _reorder(whole, setting.state)
+    return _reorder(_add_pairs(whole, setting), setting.state)
+
+
+@once
+def canonical_pairs(setting: Setting) -> tuple[tuple[str, str, Fraction], ...]:
+    """Coordinates next to an algebra with their momenta, and ``{q, p}``, by component."""
+    spec, triples = setting.spec, list[tuple[str, str, Fraction]]()
+    for q in spec.having_role("coordinate") if spec.algebra is not None else ():
+        if (p := spec.partner("momentum", q.name)) is not None:
+            weights = pairing_weights(len(p.components), p.form)
+            triples += zip(q.components, p.components, weights, strict=True)
+    return tuple(triples)
+
+
+def _add_pairs(whole: PoissonStructure, setting: Setting) -> PoissonStructure:
+    """The bracket of a product: of the dual of an algebra, and of coordinates with momenta."""
+    if not canonical_pairs(setting):
+        return whole
+    field, names = whole.field, [*whole.names]
+    names += [x for q, p, _ in canonical_pairs(setting) for x in (q, p)]
+    known = {
+        (a, b): entry
+        for a, row in zip(whole.names, whole.tensor, strict=True)
+        for b, entry in zip(whole.names, row, strict=True)
+    }
+    for q, p, weight in canonical_pairs(setting):
+        known |= {(q, p): field.number(weight), (p, q): field.number(-weight)}
+    tensor = tuple(tuple(known.get((a, b), field.zero) for b in names) for a in names)
+    return PoissonStructure(field, tuple(names), tensor, whole.name)
 
 
 @once

@@ -17,7 +17,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.mechanics.configuration import kept_entries, mechanics
 from coadjoint.derive.setting import Setting, fault, once, shape
-from coadjoint.derive.structure import has_structure, poisson_structure
+from coadjoint.derive.structure import canonical_pairs, has_structure, poisson_structure
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import scale
@@ -235,6 +235,8 @@ def _pairs(setting: Setting) -> list[Pair]:
     bracket, field, names = setting.spec.poisson, setting.field, setting.state
     if setting.spec.is_first_order:
         return []
+    if canonical_pairs(setting):
+        return [(q, p, field.zero + weight) for q, p, weight in canonical_pairs(setting)]
     if bracket is None:
         weights = setting.weights if setting.momenta else ()
         return [

@@ -25,6 +25,7 @@ from coadjoint.lower.naming import Naming
 from coadjoint.lower.nesting import ORDERS
 from coadjoint.lower.program import Program
 from coadjoint.lower.scales import cost, find_scales
+from coadjoint.lower.shared_frames import name_frames, shared_frames
 from coadjoint.lower.sums import Lowering
 from coadjoint.lower.tables import (
     UNROLLED_PRODUCTS,
@@ -46,6 +47,14 @@ def lower(equations: Equations) -> dict[str, Program]:
     Jacobians are derivatives of the ``rhs`` Program by forward accumulation, so they share the
     definitions and are as cheap as these make them.
     """
+    named = name_frames(equations)
+    ways = [equations] if named is equations else [equations, named]
+    forms = map(_lower_all, ways)
+    return min(forms, key=lambda programs: cost(programs["rhs"]))
+
+
+def _lower_all(equations: Equations) -> dict[str, Program]:
+    """The same, with the definitions that the equations have."""
     programs: dict[str, Program] = {}
     looped = _loop(equations)
     for name, function in KERNEL_FUNCTIONS.items():
@@ -207,7 +216,7 @@ def _program(
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
     asked = outputs if solve is None else entries_of(solve, outputs)
-    shorter = [(label, shorten(equations, element)) for label, element in asked]
+    shorter = [(label, _shorten(equations, element)) for label, element in asked]
     definitions, parts = inline_single_uses(equations, shorter, closed)
     lowering = Lowering(
         equations, [element for _, element in (*definitions, *parts)], scales, nested
@@ -219,6 +228,15 @@ def _program(
         lines, results = solve_by_minors(lowering.graph, solve, dict(results), outputs)
         named += lines
     return _name(equations, name, lowering, (named, results), shape, state)
+
+
+def _shorten(equations: Equations, element: Element) -> Element:
+    """An element over fewer terms: multiplied out, or in the names of shared frames."""
+    frames, field = shared_frames(equations), equations.setting.field
+    if frames is None:
+        return shorten(equations, element)
+    groups = field.partial_fractions(element)  # each over a divisor of its own
+    return field.sum(frames.rewrite(field, shorten(equations, each)) for each in groups)
 
 
 def _name(

@@ -106,7 +106,8 @@ def _name_added_terms(first: Equations) -> str:
     """What acts in addition to the energy, as the end of a statement."""
     spec, relaxation = first.spec, first.spec.relaxation
     parts = [" + dx/dt at fixed momenta"] * has_moving_momenta(first)
-    parts += [" and the forces"] * spec.is_forced
+    along = " along the section" * (spec.reduction is not None)
+    parts += [f" and the forces{along}"] * spec.is_forced
     return "".join([*parts, *([f" and {relaxation.added}"] if relaxation else [])])
 
 

@@ -137,8 +137,9 @@ def _about_relaxation_along(motion: Motion) -> Iterator[Examined]:
 
 
 def lacks_bracket(motion: Motion) -> bool:
-    """Whether symmetries are claimed of the motion alone: no Poisson bracket is there."""
-    return bool(motion.spec.constraints) or not (has_frame(motion) or has_bracket(motion))
+    """Whether symmetries are claimed of the motion alone: no Poisson bracket is declared."""
+    spec, named = motion.spec, has_frame(motion) or has_bracket(motion)
+    return bool(spec.constraints) or spec.reduction is not None or not named
 
 
 def has_energy(motion: Motion) -> bool:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from coadjoint.derive import Equations
-from coadjoint.derive.structure import momentum_algebra, poisson_structure
+from coadjoint.derive.structure import canonical_pairs, momentum_algebra, poisson_structure
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
@@ -240,7 +240,8 @@ def _search(
     """Casimirs beyond those known, in the coordinates of the state."""
     setting = equations.setting
     spec = setting.spec
-    if spec.algebra is None or spec.is_first_order or not setting.momenta:  # or velocities
+    others = spec.is_first_order or canonical_pairs(setting) or not setting.momenta  # or velocities
+    if spec.algebra is None or others:
         return search_summands(emitted, None, degree, known)
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = [*setting.momenta, *advected]

@@ -34,6 +34,7 @@ from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
 from coadjoint.prove.ideals import Ideal
+from coadjoint.prove.identities import followed_rate
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.relaxation import lost
 from coadjoint.prove.zero import Decision, Examined
@@ -92,7 +93,8 @@ class ConstrainedRates(Motion):
 
     def rate(self, function: Element) -> Element:
         """The time derivative of a function of state and velocities, or of reactions."""
-        return self.value(self._differentiate(self.in_state(function)))
+        followed = self.in_state(followed_rate(self.equations, function))
+        return self.value(self._differentiate(self.in_state(function)) + followed)
 
     def balance(self, function: Element, gain: Element, along: Row) -> Element:
         """The time derivative of a function minus what it gains, in the state alone.

@@ -45,7 +45,8 @@ def casimir_defects(
 def drift(equations: Equations, function: Element) -> list[Element]:
     """Time derivative of a function of state and time along the motion, inputs held constant."""
     carried = dot(gradient(equations, function), decidable_rates(equations))
-    return [carried + own_rate(equations, function)]
+    (followed,) = in_velocities(equations, [followed_rate(equations, function)])
+    return [carried + own_rate(equations, function) + followed]
 
 
 @once
@@ -59,6 +60,15 @@ def noise_rates(equations: Equations, function: Element) -> list[Element]:
     fields = noise_fields(equations.setting)
     slopes = gradient(equations, function) if fields else []
     return [dot(slopes, in_velocities(equations, each.field)) for each in fields]
+
+
+def followed_rate(equations: Equations, function: Element) -> Element:
+    """What the rates of variables that are reconstructed add, of a function that names any."""
+    field, closed = equations.setting.field, equations.close(function)
+    reached = field.reach(closed)
+    named = [(name, rate) for name, rate in equations.followed if name in reached]
+    slopes = field.gradient(closed, [name for name, _ in named])
+    return field.sum(slope * rate for slope, (_, rate) in zip(slopes, named, strict=True))
 
 
 def own_rate(equations: Equations, function: Element) -> Element:

@@ -24,7 +24,7 @@ from coadjoint.prove.energy import Balance
 from coadjoint.prove.equivalence import in_velocities, kept_velocities
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import drift, gradient
-from coadjoint.prove.reductions import on_section, restriction_of
+from coadjoint.prove.reductions import restriction_of
 from coadjoint.prove.relaxation import lost
 from coadjoint.spec import Spec
 
@@ -157,7 +157,7 @@ class Motion:
             power = _power(self.equations)
         else:
             restriction = restriction_of(self.equations)
-            power = on_section(restriction, _power(restriction.whole))
+            power = restriction.on_section(_power(restriction.whole))
         return self.rate(energy) - self.in_state(power)
 
     # -- matrices -------------------------------------------------------------------------

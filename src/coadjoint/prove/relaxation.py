@@ -46,8 +46,8 @@ def about_relaxation(
     """
     spec, relaxation = first.spec, first.spec.relaxation
     energy, tensor = first.exact.energy, first.exact.poisson_tensor
-    if relaxation is None or energy is None or tensor is None:
-        return
+    if relaxation is None or energy is None or tensor is None or spec.reduction is not None:
+        return  # on a section it acts on the whole system, of which the conditions are told
     known = _Relaxed(first, energy, tensor, others)
     grows = ": the entropy never falls" if is_dissipative(first) else ""
     claims: list[Examined] = [

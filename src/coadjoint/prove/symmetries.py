@@ -36,7 +36,8 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
     """Claims about actions, their momentum maps, and brackets."""
     first, spec, field, known = motion.equations, motion.spec, motion.field, motion.emitted
     energy = first.exact.energy
-    for symmetry in () if spec.constraints else spec.symmetries:
+    of_motion = spec.constraints or spec.reduction  # these are claimed of the motion
+    for symmetry in () if of_motion else spec.symmetries:
         J = momentum_map(first, symmetry)
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
@@ -140,7 +141,10 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
     if first.spec.algebra is not None or first.spec.is_driven or first.spec.constraints:
         return
     for place, claim in enumerate(first.spec.conserved):
-        if claim.where or claim.everywhere == "energy":
+        parts = first.setting.components(claim.formula, known)
+        reached = frozenset[str]().union(*map(first.setting.field.reach, parts))
+        followed = reached & {name for name, _ in first.followed}
+        if claim.where or claim.everywhere == "energy" or followed:
             continue
         flows = _flows(first, claim.formula, known)
         statement = (

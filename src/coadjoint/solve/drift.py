@@ -42,23 +42,39 @@ def find_attitude_drift(solution: Solution) -> dict[str, float]:
     """Largest ``| |q|^2 - 1 |`` of each attitude that was reconstructed."""
     if solution.reconstructed is None:
         return {}
-    turning = (q for q in solution.system.RECONSTRUCTED.values() if q.shape == (4,))
+    turning = (q for q in solution.system.RECONSTRUCTED.values() if q.is_quaternion)
     return {
         q.name: float(np.nanmax(np.abs((solution[q.name] ** 2).sum(axis=0) - 1))) for q in turning
     }
 
 
-def tell_drift(solution: Solution, name: str) -> str:
-    """The drift of an observable as text; of a batch the largest.
+def tell_drift(solution: Solution, name: str, component: str = "") -> str:
+    """The drift of an observable, or of one of its components, as text; of a batch the largest.
 
+    That of a component is relative to the largest component of the whole, since it may be 0 itself.
     A change that is larger than the value at the start is told as it is, since its ratio to values
     says nothing: that of what begins at 0 is 1.
+
+    Args:
+        solution: The run.
+        name: Of a conserved observable.
+        component: Of it; by default all of them, of which the largest drift is told.
     """
-    axes = len(solution.batch)
-    moved, first = (_find_size(x, axes) for x in (solution.change(name), solution.first(name)))
+    axes, start = len(solution.batch), solution.first(name)
+    moved, first = (_find_size(x, axes) for x in (solution.change(component or name), start))
     if np.any(moved > first):
         return f"{np.max(moved):.1e} absolute"
-    return f"{float(np.max(solution.drift[name])):.1e}"
+    if component in ("", name):
+        return f"{float(np.max(solution.drift[name])):.1e}"
+    size = _find_size(np.concatenate([start, solution[name]], axis=-1), axes)
+    parts = np.divide(moved, size, out=np.zeros(np.shape(moved)), where=size > 0)
+    return f"{float(np.max(parts)):.1e}"
+
+
+def list_owners(solution: Solution) -> dict[str, str]:
+    """The conserved observable that each component is of, by the name of the component."""
+    kept = (solution.system.OBSERVABLES[name] for name in solution.drift)
+    return {component: each.name for each in kept for component in each.components}
 
 
 def describe_drift(solution: Solution) -> list[str]:

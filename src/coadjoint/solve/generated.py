@@ -28,7 +28,7 @@ from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
 from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
-from coadjoint.solve.noisy import KEEPS
+from coadjoint.solve.noisy import KEEPS, check_knots
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.solution import Solution
@@ -132,6 +132,8 @@ def simulate(system: System, request: Request) -> Solution:
     """
     batch, n = request.state.shape[1:], system.STATE.size
     run, driven = _gather(system, request)
+    if request.seed is not None:
+        check_knots(request, run.inputs.knots)
     now = _drive(system, run, request.start, driven)
     check_starts(system, request, run, now)
     below = find_start(system, run.state[:n].reshape(n, *batch), request.reconstruct)

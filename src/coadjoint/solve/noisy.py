@@ -16,6 +16,8 @@ from coadjoint.methods import STRUCTURED
 from coadjoint.solve.choices import NOISY
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
 
@@ -97,6 +99,26 @@ def check_no_noise(system: System, method: Any, seed: Any) -> None:
             f"{given}, which is for systems with noise; {system.name} has none. Expected "
             f"{'another method' if named else 'no seed'}.",
             found=str(method if named else seed)[:80],
+        )
+
+
+def check_knots(request: Request, knots: NDArray[np.float64]) -> None:
+    """Inputs change their lines at the ends of steps: a step that ended elsewhere would be another.
+
+    Raises:
+        KernelArgumentError: One does not.
+    """
+    step, times = request.step, knots[(knots > request.start) & (knots < request.times[-1])]
+    assert step is not None, "checked before"
+    places = (times - request.start) / step
+    off = np.abs(places - np.round(places)) > _NEAR
+    if off.any():
+        time = float(times[int(off.argmax())])
+        raise KernelArgumentError(
+            f"inputs change at t = {time:.12g}, between the ends of steps of {step:.12g}, and "
+            "noise has increments of whole steps; expected inputs at times of whole steps "
+            f"after {request.start:g}, or a function of time.",
+            found=time,
         )
 
 

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-#: Components of a quaternion.
-QUATERNION = 4
-
 
 def is_asked(asked: Any) -> bool:
     """Whether something is to be reconstructed."""
@@ -65,7 +62,7 @@ def find_start(system: System, state: Array, asked: Any) -> Array:
     first = first.reshape(size, *(first.shape[1:] or (1,) * len(batch)))
     first = np.broadcast_to(first, (size, *batch)).copy()
     for quantity in system.RECONSTRUCTED.values():
-        if quantity.shape == (QUATERNION,):
+        if quantity.is_quaternion:
             _check_unit(quantity, first[system.RECONSTRUCTED.rows(quantity.name)])
     return first
 
@@ -116,10 +113,11 @@ def _defaults(system: System, state: Array) -> dict[str, Any]:
     for name, quantity in system.RECONSTRUCTED.items():
         if quantity.upright and quantity.default is None:
             values[name] = turn_upright(state[system.STATE.rows(quantity.upright)])
-        elif quantity.shape == (QUATERNION,):
+        elif quantity.is_quaternion:
             values[name] = quantity.default or (1.0, 0.0, 0.0, 0.0)
         else:
-            values[name] = quantity.default[0] if quantity.default else 0.0
+            first = np.array(quantity.default or (0.0,) * len(quantity.components))
+            values[name] = first.reshape(quantity.shape)
     return values
 
 

@@ -99,7 +99,7 @@ def simulate(
     recorded = bool(events or dense)
     stepwise = generated.find_stepwise(system, inputs, is_recorded=recorded)
     if has_noise(system):
-        given = {"rtol or atol": tolerances, "dense": dense, "inputs": inputs}
+        given = {"rtol or atol": tolerances, "dense": dense}
         given["reconstruct"] = is_asked(reconstruct)
         name = choose_noisy(system, method, step, seed, given)
         if obstacle:

@@ -16,10 +16,17 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import Index, Name, walk
-from coadjoint.spec.kinds import is_first_order, is_in_frame, is_variational, kinds_of
+from coadjoint.spec.kinds import (
+    is_first_order,
+    is_in_frame,
+    is_on_product,
+    is_variational,
+    kinds_of,
+)
 from coadjoint.spec.model import Spec
 from coadjoint.spec.routes import ROUTES, Route, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
+from coadjoint.spec.sections.noise import check_noise
 from coadjoint.spec.sections.state import Variable
 from coadjoint.spec.sections.variables import VARIABLES
 from coadjoint.spec.tables import BY_KEY, TABLES, list_formulas
@@ -59,6 +66,7 @@ def check_tables(source: Source, file: Any) -> None:
         problem = "there is a table [representations] without [algebra]"
         expected, hint = "[representations] only with [algebra]", "Remove [representations]."
         raise source.fault(("representations",), problem, "representations", expected, hint)
+    check_noise(source, file)
 
 
 @dataclass(frozen=True)
@@ -237,8 +245,8 @@ def _check_use(source: Source, file: Any) -> None:
     for table in TABLES:
         if table.routed and getattr(file, table.key):
             key = table.key
-            if key == "lax" and source.members is not None:
-                continue  # of equal members, it is a claim about the motion
+            if key == "lax" and (source.members is not None or file.reduction):
+                continue  # of equal members and on a section, it is a claim about the motion
             if any(key in takes[route] for route in file.routes):
                 continue
             readers = [name for name in _list_fitting(file) if key in takes[name]]
@@ -283,7 +291,7 @@ def check_blocks(reading: Reading) -> None:
     algebra, variables = ALGEBRA.of(reading).algebra, VARIABLES.of(reading)
     if algebra is None:
         return
-    of_role = {role: [v for v in variables if v.role == role] for role in _PLURALS}
+    of_role = {role: [v for v in variables if v.role == role and not v.of] for role in _PLURALS}
     for role, members in of_role.items():
         _check_overlaps(reading, role, members, algebra)
     if not all(of_role.values()):
@@ -330,6 +338,7 @@ def check_covered(reading: Reading) -> None:
     if algebra is not None:
         if not is_in_frame(file):
             _check_spanned(reading, "momentum", "Pi", algebra)
+            _check_partners(reading)
         elif any(variable.role == "coordinate" for variable in VARIABLES.of(reading)):
             _check_partners(reading)
         if file.lagrangian is not None:
@@ -342,7 +351,9 @@ def _check_partners(reading: Reading) -> None:
     """Every coordinate of a configuration space has a velocity where velocities are asked for."""
     variables = VARIABLES.of(reading)
     owned = {role: {v.of for v in variables if v.role == role} for role in _PLURALS}
+    product = is_on_product(reading.file)
     wanted = ["velocity"] if reading.file.lagrangian is not None else ["velocity", "momentum"]
+    wanted = ["momentum"] if product else wanted
     for variable in variables:
         name = variable.name
         if variable.role != "coordinate":

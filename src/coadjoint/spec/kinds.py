@@ -25,6 +25,16 @@ def is_in_frame(file: Any) -> bool:
     return after or any(ROUTES[route].in_frame for route in file.routes)
 
 
+def is_on_product(file: Any) -> bool:
+    """Whether coordinates with momenta may stand next to an algebra, by a Hamiltonian of both.
+
+    >>> from coadjoint.spec.schema import SpecFile
+    >>> is_on_product(SpecFile.model_construct(routes=["lie-poisson", "clebsch"]))
+    False
+    """
+    return {*file.routes} == {"lie-poisson"} and file.algebra is not None and not file.lagrangian
+
+
 def is_first_order(file: Any) -> bool:
     """Whether velocities of all coordinates follow from the state.
 

@@ -355,6 +355,8 @@ class Spec:
             symmetries=(),
             transformations=(),
             reconstruction=(),
+            lax=self.lax if "lax" in self.routes else None,
+            brackets=(),
         )
         return replace(
             self,

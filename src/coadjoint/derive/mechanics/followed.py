@@ -45,7 +45,7 @@ def _rate(setting: Setting, each: Reconstructed, place: dict[str, Element]) -> S
     """The rates of the components of one variable."""
     if each.attitude:
         return attitude_rate(setting, each.components)
-    return [place[each.name] if each.rate is None else setting.formula(each.rate)]
+    return [place[each.name]] if each.rate is None else setting.components(each.rate)
 
 
 def attitude_rate(setting: Setting, components: Sequence[str]) -> tuple[Element, ...]:

@@ -16,19 +16,15 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.legendre import hamiltonian
-from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of
+from coadjoint.derive.pairs import LaxPair, declared_pair, rates_of, symbols
 from coadjoint.derive.records import Step, write_rates, write_step
 from coadjoint.derive.routes.poisson import velocities_of
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
+
+__all__ = ["derive", "equations_of_pair", "symbols"]
 
 ROUTE = "lax"
-
-
-def symbols(spec: Spec) -> tuple[str, ...]:
-    """The spectral parameter."""
-    return (spec.lax.spectral,) if spec.lax is not None else ()
 
 
 def derive(setting: Setting) -> Equations:

@@ -17,7 +17,7 @@ from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.mechanics.variational import normal_extremals, show_extremals
 from coadjoint.derive.records import bracket, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.structure import poisson_structure
+from coadjoint.derive.structure import canonical_pairs, poisson_structure
 from coadjoint.exact import Element
 
 #: Title, text and LaTeX of the step that states the bracket.
@@ -55,6 +55,10 @@ def hamiltonian_equations(
     weights = dict(zip(setting.momenta, setting.weights, strict=True))
     definitions = velocities_of(setting, h, solves)
     named = gradient | {mu: field[xi] * (1 / weights[mu]) for mu, xi in pairs.items()}
+    of_product = dict(_velocities_of_product(setting))
+    named |= {
+        p: field[of_product[p]] / w for _, p, w in canonical_pairs(setting) if p in of_product
+    }
     slopes = [named[x] for x in setting.state]
     rates = field.vector(
         sum(entry * slope for entry, slope in zip(row, slopes, strict=True) if entry != 0)
@@ -85,6 +89,18 @@ def hamiltonian_equations(
         ),
     )
     return emit(setting, route, rates, steps, h, definitions, solves)
+
+
+def _velocities_of_product(setting: Setting) -> list[tuple[str, str]]:
+    """Momenta of coordinates next to an algebra, with their velocities where these are named."""
+    spec = setting.spec
+    pairs = (
+        (spec.partner("momentum", q.name), spec.partner("velocity", q.name))
+        for q in (spec.having_role("coordinate") if canonical_pairs(setting) else ())
+    )
+    return [
+        pair for p, v in pairs if p and v for pair in zip(p.components, v.components, strict=True)
+    ]
 
 
 def name_velocities(
@@ -128,4 +144,13 @@ def velocities_of(
             for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
             if xi not in known
         ),
+        *_define_of_product(setting, h),
     )
+
+
+def _define_of_product(setting: Setting, h: Element) -> list[Definition]:
+    """``v = {q, h}`` of these."""
+    weights = {p: weight for _, p, weight in canonical_pairs(setting)}
+    return [
+        (v, setting.field.derivative(h, p) * weights[p]) for p, v in _velocities_of_product(setting)
+    ]

@@ -9,26 +9,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
 from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.source import Source
 from coadjoint.spec.sections.variables import VARIABLES, state_roles
 
-#: Tables that speak of a motion without noise.
-_WITHOUT = (
-    "constraints",
-    "reduction",
-    "rolling",
-    "reconstruction",
-    "momenta",
-    "symmetries",
-    "transformations",
-    "charts",
-    "inputs",
+#: Tables that speak of a motion without noise, and why.
+_BOUND = (
+    "{x, h_k} may move positions otherwise than the constraints allow, and what reactions leave of "
+    "it is given by no bracket that satisfies the Jacobi identity"
 )
+_WITHOUT = {
+    "constraints": _BOUND,
+    "rolling": _BOUND,
+    "reduction": "a path leaves the section unless each {x, h_k} keeps it, which is not examined",
+    "reconstruction": "what follows from the motion is moved by rates, and noise has none",
+    **dict.fromkeys(
+        ("momenta", "symmetries", "transformations", "charts"),
+        "what it claims is claimed of motions without noise",
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -37,7 +42,7 @@ class Noise:
 
     Attributes:
         name: Of the process.
-        formula: The Hamiltonian, a function of state and parameters.
+        formula: The Hamiltonian, a function of state, parameters, inputs and time.
     """
 
     name: str
@@ -49,23 +54,30 @@ class Noise:
         return (self.name,)
 
 
-def read_noise(reading: Reading, texts: Mapping[str, str]) -> tuple[Noise, ...]:
-    """The Hamiltonians of the noise, in order.
+def check_noise(source: Source, file: Any) -> None:
+    """What speaks of motions without noise is not declared with it.
 
     Raises:
-        SpecError: One is no scalar of the state, a process has the name of something else, or
-            there is a table that speaks of a motion without noise.
+        SpecError: It is; with the reason.
     """
-    for table in _WITHOUT:
-        if getattr(reading.file, table):
-            raise reading.fault(
+    for table, reason in _WITHOUT.items():
+        if file.noise and getattr(file, table):
+            raise source.fault(
                 ("noise",),
-                f"there are [noise] and [{table}], which is for motions without noise",
+                f"there are [noise] and [{table}]: {reason}",
                 "noise",
                 "one of the two",
                 f"Remove [{table}], or declare it in a spec of its own, without [noise].",
             )
-    scope = reading.scope("a Hamiltonian of noise", state_roles(reading), driven=())
+
+
+def read_noise(reading: Reading, texts: Mapping[str, str]) -> tuple[Noise, ...]:
+    """The Hamiltonians of the noise, in order.
+
+    Raises:
+        SpecError: One is no scalar of the state, or a process has the name of something else.
+    """
+    scope = reading.scope("a Hamiltonian of noise", state_roles(reading))
     noises = []
     for name, text in texts.items():
         key: KeyPath = ("noise", name)

@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from coadjoint.algebra.attitudes import turning_places
 from coadjoint.spec.core.components import Shape, component_names
-from coadjoint.spec.core.formulas import Formula, Scope
+from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
 from coadjoint.spec.core.names import derived_names
 from coadjoint.spec.core.parts import TextPart
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
-from coadjoint.spec.core.values import Numbers, Prose, Unit, read_default
+from coadjoint.spec.core.values import Length, Numbers, Prose, Unit, read_default
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.rolling import ATTITUDE, CONTACT, ROLLING
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles
@@ -33,6 +33,9 @@ class ReconstructedPart(TextPart):
     alone = "rate"
 
     rate: str | None = Field(None, description="its time derivative")
+    shape: Annotated[list[Length], Field(max_length=2)] = Field(
+        [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix, as its rate has"
+    )
     attitude: Literal["quaternion"] | None = Field(
         None, description="'quaternion' for the attitude that the angular velocity turns"
     )
@@ -44,6 +47,8 @@ class ReconstructedPart(TextPart):
     def _one_way(self) -> ReconstructedPart:
         if (self.rate is None) == (self.attitude is None):
             raise ValueError("either rate or attitude")
+        if self.attitude is not None and self.shape:
+            raise ValueError("shape goes with rate, since an attitude has components of its own")
         return self
 
 
@@ -91,10 +96,7 @@ def read_reconstruction(
         Reconstructed(name=name, rate=None, attitude=part.attitude or "", shape=_shape(part))
         for name, part in parts.items()
     ]
-    shapes: dict[str, Shape] = {}
-    for each in (*first, *blank):
-        shapes |= dict.fromkeys(each.components, ()) | {each.name: each.shape}
-    scope = reading.scope("a rate", motion_roles(reading), shapes)
+    scope = reading.scope("a rate", motion_roles(reading), followed_shapes((*first, *blank)))
     return (*first, *(_read_one(reading, name, part, scope) for name, part in parts.items()))
 
 
@@ -120,7 +122,9 @@ def _read_one(reading: Reading, name: str, part: ReconstructedPart, scope: Scope
         _check_turned(reading, key, name)
     rate = None
     if part.rate is not None:
-        rate = reading.formula(reading.source.place_of(key, "rate"), part.rate, scope)
+        at = reading.source.place_of(key, "rate")
+        hint = "" if part.shape else "Give its shape, as { rate = ..., shape = [3] }."
+        rate = read_fitting(reading.source, at, part.rate, scope, _shape(part), name, hint)
     default = read_default(reading.source, (*key, "default"), part.default, _shape(part))
     if part.attitude is not None and default is not None and not any(default):
         problem = "the quaternion 0 is not an attitude"
@@ -167,7 +171,15 @@ def _check_turned(reading: Reading, key: KeyPath, name: str) -> None:
 
 
 def _shape(part: ReconstructedPart) -> Shape:
-    return (4,) if part.attitude else ()
+    return (4,) if part.attitude else tuple(part.shape)
+
+
+def followed_shapes(followed: Iterable[Reconstructed]) -> dict[str, Shape]:
+    """Shapes of what follows and of its components, by the names of claims."""
+    shapes: dict[str, Shape] = {}
+    for each in followed:
+        shapes |= dict.fromkeys(each.components, ()) | {each.name: each.shape}
+    return shapes
 
 
 def _name_all(table: str, followed: Iterable[Reconstructed]) -> Iterator[Naming]:

@@ -85,15 +85,9 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
 
 
 def _check_alone(reading: Reading) -> None:
-    """There is a Hamiltonian, no other law of motion, and no claim about a bracket."""
+    """There is a Hamiltonian, and no other law of motion."""
     file = reading.file
-    for name in ("casimirs", "brackets"):
-        if getattr(file.claims, name):
-            problem = f"{name!r} does not go with [reduction], whose motion has no declared bracket"
-            expected = "claims of integrals"
-            hint = "Declare it in a spec of the whole system."
-            raise reading.fault(("claims", name), problem, name, expected, hint)
-    for name in ("lax", "newton", "lagrangian"):
+    for name in ("newton", "lagrangian"):
         if getattr(file, name):
             problem = f"there are [{name}] and [reduction], which restricts a motion by its energy"
             expected = "[hamiltonian] alone"

@@ -34,7 +34,7 @@ from coadjoint.spec.core.values import (
     misfit_form,
     read_default,
 )
-from coadjoint.spec.kinds import is_first_order
+from coadjoint.spec.kinds import is_first_order, is_on_product
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.following import bind_velocity, let_follow
 from coadjoint.spec.sections.matrices import (
@@ -180,13 +180,14 @@ def _read_variable(
     given: Shape = ()
     representation = None
     constrained = solved is not None
+    paired = constrained or is_on_product(reading.file)
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
     if part.role == "contact":
         _check_rolling(reading, key)
         count, flat = SPACE, True
-    elif part.role == "coordinate" or algebra is None or (constrained and part.of is not None):
-        if not constrained or part.role in ("advected", *TURNING):
+    elif part.role == "coordinate" or algebra is None or (paired and part.of is not None):
+        if not paired or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
             part = _as_partner(source, key, part, parts)

@@ -1,0 +1,145 @@
+"""Coordinates with momenta next to an algebra: the bracket of a product, and the same motion."""
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive, structure
+from coadjoint.errors import SpecError
+from coadjoint.prove import Verdict
+from tests.specs import prove_claims, spec
+
+#: A body with a mass on a spring that slides along its first axis.
+BODY = """
+title = "A body with an oscillator inside"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+v = { role = "velocity", of = "q" }
+Pi = { role = "momentum" }
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+m = { positive = true, default = 1 }
+k = { positive = true, default = 1 }
+[hamiltonian]
+h = "Pi1^2/(2*I1) + Pi2^2/(2*(I2 + m*q^2)) + Pi3^2/(2*(I3 + m*q^2)) + p^2/(2*m) + k*q^2/2"
+[claims]
+casimirs = ["dot(Pi, Pi)"]
+conserved = ["energy"]
+brackets = { "{q, p}" = "1", "{Pi, Pi}" = "hat(Pi)", "{Pi, q}" = "0*Pi" }
+"""
+#: The same by its Lagrangian, with velocities as the state.
+LAGRANGIAN = """
+title = "A body with an oscillator inside"
+routes = ["nonholonomic"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+q = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+m = { positive = true, default = 1 }
+k = { positive = true, default = 1 }
+[lagrangian]
+l = "dot(Omega, diag(I)*Omega)/2 + m*(v^2 + q^2*(Omega2^2 + Omega3^2))/2 - k*q^2/2"
+"""
+I1, I2, I3, m, k, q, p, v = sympy.symbols("I1 I2 I3 m k q p v")
+Pi, Omega = (sympy.Matrix(sympy.symbols(f"{name}1:4")) for name in ("Pi", "Omega"))
+INERTIA = sympy.diag(I1, I2 + m * q**2, I3 + m * q**2)
+
+
+def verdicts(text, *changes):
+    """Verdict by statement."""
+    return {each.statement: each.verdict for each in prove_claims(spec(text, *changes)).claims}
+
+
+def test_the_rates_and_the_bracket_are_typed_by_hand():
+    """``dPi/dt = Pi x Omega``, ``dq/dt = p/m``, and the centrifugal force on the mass."""
+    found = derive(spec(BODY))
+    omega = INERTIA.inv() * Pi
+    force = m * q * (omega[1] ** 2 + omega[2] ** 2) - k * q
+    expected = [*Pi.cross(omega), p / m, force]
+    assert tuple(map(str, found.state)) == ("Pi1", "Pi2", "Pi3", "q", "p")
+    assert all(sympy.simplify(a - b) == 0 for a, b in zip(found.rates, expected, strict=True))
+    tensor = sympy.Matrix(found.poisson_tensor)
+    assert tensor[3:, 3:] == sympy.Matrix([[0, 1], [-1, 0]])
+    assert tensor[:3, 3:] == sympy.zeros(3, 2)
+    assert tensor[:3, :3] == Pi.hat()
+    assert found.observables["v"] == p / m
+
+
+def test_it_is_the_motion_of_the_lagrangian():
+    """Through ``Pi = dl/dOmega, p = dl/dv``: two routes that share no formula."""
+    first, other = derive(spec(BODY)), derive(spec(LAGRANGIAN))
+    rates = dict(zip(map(str, other.state), other.rates, strict=True))
+    momenta = [*(INERTIA * Omega), q, m * v]
+    map_ = dict(zip([*Pi, q, p], momenta, strict=True))
+    moved = [sum(sympy.diff(each, name) * rates[name] for name in rates) for each in momenta]
+    there = [rate.subs(map_, simultaneous=True) for rate in first.rates]
+    assert all(sympy.simplify(a - b) == 0 for a, b in zip(moved, there, strict=True))
+    assert any(sympy.simplify(each) != 0 for each in moved)
+
+
+def test_the_bracket_of_the_product_is_proved():
+    """Jacobi's identity, the motion, the Casimir and claimed brackets."""
+    found = verdicts(BODY)
+    assert set(found.values()) == {Verdict.PROVED}
+    jacobi = "the Poisson bracket satisfies the Jacobi identity"
+    assert {jacobi, "the motion by lie-poisson is {x, h}", "{q, p} = 1"} <= found.keys()
+
+
+@pytest.mark.parametrize(
+    ("change", "statement"),
+    [
+        (('"{q, p}" = "1"', '"{q, p}" = "-1"'), "{q, p} = -1"),
+        (('"dot(Pi, Pi)"', '"q^2"'), "q^2 is a Casimir"),
+        (('conserved = ["energy"]', 'conserved = ["p"]'), "p is conserved"),
+    ],
+)
+def test_wrong_claims_are_refuted(change, statement):
+    """With a point."""
+    assert verdicts(BODY, change)[statement] is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("factor", [0, 2])
+def test_a_spoiled_pair_is_caught(factor, monkeypatch):
+    """By a claimed bracket: another one is Poisson, and gives another motion by the same law."""
+    true = structure.canonical_pairs
+
+    def spoil(setting):
+        return tuple((x, y, factor * weight) for x, y, weight in true(setting))
+
+    monkeypatch.setattr(structure, "canonical_pairs", spoil)
+    assert verdicts(BODY)["{q, p} = 1"] is Verdict.REFUTED
+
+
+def test_entries_of_symmetric_matrices_are_paired_by_the_trace():
+    """``{S12, P12} = 1/2``, and 1 on the diagonal, as without an algebra."""
+    shaped = (
+        (
+            'q = { role = "coordinate" }',
+            'q = { role = "coordinate", shape = [3], form = "symmetric" }',
+        ),
+        ('v = { role = "velocity", of = "q" }\n', ""),
+        ("p^2/(2*m) + k*q^2/2", "trace(p*p)/(2*m) + k*trace(q*q)/2"),
+        ("(I2 + m*q^2)", "I2"),
+        ("(I3 + m*q^2)", "I3"),
+        ('"{q, p}" = "1", ', ""),
+        (', "{Pi, q}" = "0*Pi"', ""),
+    )
+    tensor = sympy.Matrix(derive(spec(BODY, *shaped)).poisson_tensor)
+    assert tensor[3:6, 6:] == sympy.diag(1, sympy.Rational(1, 2), 1)
+
+
+def test_a_coordinate_without_a_momentum_is_refused():
+    """The advice works; with a Lagrangian the state has velocities."""
+    bare = ('p = { role = "momentum", of = "q" }\n', "")
+    flat = ("p^2/(2*m) + ", "")
+    brackets = ('"{q, p}" = "1", ', "")
+    with pytest.raises(SpecError, match="the coordinate 'q' has no momentum"):
+        spec(BODY, bare, flat, brackets)

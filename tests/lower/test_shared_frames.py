@@ -1,0 +1,81 @@
+"""Names of definitions such as ``y = transpose(R)*x``: found, kept where they save, and exact."""
+
+import pytest
+
+from coadjoint.derive import derive
+from coadjoint.derive.frame_names import symbols
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower import shared_frames
+from coadjoint.lower.check import check_programs
+from coadjoint.lower.lowering import lower
+from coadjoint.lower.shared_frames import name_frames
+from coadjoint.lower.shared_frames import shared_frames as relations_of
+from coadjoint.resources import derivations_folder
+from tests.specs import spec
+
+BODY = (derivations_folder() / "orbiting_body.toml").read_text(encoding="utf-8")
+NAMED = ["_y1", "_y2", "_y3", "_z1", "_z2", "_z3"]
+#: The same potential with y written out.
+PLAIN = (
+    ('y = "transpose(rotation(g))*x"\n', ""),
+    ('z = "rotation(g)*diag(I)*y"\n', ""),
+    ("dot(x, z)", "dot(x, rotation(g)*diag(I)*transpose(rotation(g))*x)"),
+)
+
+
+def count(declared, name="rhs"):
+    """Operations of a function for one member."""
+    equations = derive(declared)
+    programs = lower(equations)
+    check_programs(equations, programs)
+    return sum(programs[name].operation_counts().values())
+
+
+def test_a_potential_of_turned_vectors_is_not_multiplied_out():
+    """It was 504 operations; by hand it is 172 (tests/lower/test_lowering.py)."""
+    body = spec(BODY)
+    assert {*NAMED} <= {*symbols(body)}
+    assert count(body) <= 172 < 400 < count(spec(BODY, *PLAIN))
+    assert count(body, "jacobian") * 2 < count(spec(BODY, *PLAIN), "jacobian")
+
+
+def test_a_polynomial_of_the_names_is_found():
+    """``y1^2*y3 + y2`` multiplied out has 18 + 3 terms; with x^2 next to it, these stay."""
+    equations = name_frames(derive(spec(BODY)))
+    frames, field = relations_of(equations), equations.setting.field
+    y1, y2, y3, x = (field[name] for name in ("_y1", "_y2", "_y3", "g14"))
+    wanted = y1**2 * y3 + y2 + x**2 * y3 / (1 + x)
+    multiplied = equations.close(wanted)
+    assert len(field.terms(multiplied)) > 20
+    assert field.is_zero(frames.rewrite(field, multiplied) - wanted)
+
+
+def test_what_is_no_polynomial_of_the_names_stays():
+    """One entry of R, and a function of x alone."""
+    equations = name_frames(derive(spec(BODY)))
+    frames, field = relations_of(equations), equations.setting.field
+    for element in (field["g11"], field["g14"] ** 2 + field["g24"] * field["m"]):
+        assert frames.rewrite(field, element) == element
+
+
+def test_definitions_with_other_arguments_have_no_names():
+    """Of functions, of the state without an attitude, and of one term."""
+    body = spec(BODY)
+    assert [*shared_frames._find_values(derive(body))] == NAMED
+    assert "_V" in symbols(body)
+    none = derive(spec(BODY, *PLAIN))
+    assert relations_of(none) is None
+    assert name_frames(none) is none
+
+
+@pytest.mark.parametrize("factor", [2, -1])
+def test_a_spoiled_remainder_is_caught(factor, monkeypatch):
+    """Lowering is undone exactly."""
+    true = shared_frames.SharedFrames._element
+    monkeypatch.setattr(
+        shared_frames.SharedFrames,
+        "_element",
+        lambda self, field, polynomial: factor * true(self, field, polynomial),
+    )
+    with pytest.raises(CrossCheckError, match="lowering changed"):
+        count(spec(BODY))
