@@ -19,6 +19,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
     kronecker,
     size,
+    take_image,
 )
 from coadjoint.errors import AlgebraError
 
