@@ -102,10 +102,10 @@ class Field(Rationals):
         """A polynomial over algebraic numbers, each written by functions of this field."""
         result = self.zero
         for exponents, number in p.terms():
-            term = known.evaluate(number, self._arithmetic)
+            term = known.evaluate(number, self.arithmetic)
             for name, exponent in zip(own, exponents, strict=True):
                 if exponent:
-                    base = known.pi(self._arithmetic) if name == PI else self[name]
+                    base = known.pi(self.arithmetic) if name == PI else self[name]
                     term = term * base**exponent
             result += term
         return self.normal(result)
@@ -159,13 +159,13 @@ class Field(Rationals):
         return self[generator]
 
     @property
-    def _arithmetic(self) -> Arithmetic:
+    def arithmetic(self) -> Arithmetic:
         """What texts of the table of functions are computed with."""
         return Arithmetic(number=self.number, call=self.call)
 
     def domain_of(self, known: Adjoined) -> Element | None:
         """What is positive where an adjoined function is analytic; None where it is everywhere."""
-        return cast("Element | None", domain_of(known.function, known.arguments, self._arithmetic))
+        return cast("Element | None", domain_of(known.function, known.arguments, self.arithmetic))
 
     def normal(self, element: Element) -> Element:
         """Normal form: even powers of square roots and of sines in the numerator are replaced.
@@ -195,7 +195,7 @@ class Field(Rationals):
             return None
         partner = self[known.partner] if known.partner else None
         values = {"u": known.arguments[0], "p": partner}
-        return cast(Element, evaluate(text, self._arithmetic, **values))
+        return cast(Element, evaluate(text, self.arithmetic, **values))
 
     def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
@@ -315,7 +315,7 @@ class Field(Rationals):
     def _slopes_of(self, known: Adjoined) -> list[Element]:
         """Derivatives of an adjoined function by its arguments."""
         own = self[known.generator]
-        return slopes_of(known.function, known.arguments, own, self._arithmetic)
+        return slopes_of(known.function, known.arguments, own, self.arithmetic)
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""

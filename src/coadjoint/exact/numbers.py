@@ -58,6 +58,7 @@ class Numbers:
 
     Attributes:
         domain: The field; the rationals where nothing else was written.
+        degree: Its dimension over the rationals.
 
     Raises:
         ValueError: A number is not real, or not known to be algebraic; the message tells which.
@@ -87,10 +88,13 @@ class Numbers:
                 raise OverflowError(str(degree))
             generators.append(expression)
             self.domain = QQ.algebraic_field(*generators)
-        self._degree = self.domain.mod.degree() if generators else 1
+        self.degree = self.domain.mod.degree() if generators else 1
+        self._images = {e: self.domain.from_sympy(e) for e in irrational}
         #: How many functions stand in the numbers: each, the pi in it, and what it is a function of.
         self.room = 2 * len(self._written) + 2
         self._products: list[tuple[Written, ...]] = []
+        #: A basis over the rationals.
+        self.basis: list[Any] = []
         self._span = Span()
         self._choose_products([e in irrational for e in self._expressions])
 
@@ -104,7 +108,7 @@ class Numbers:
     def _choose_products(self, is_irrational: Iterable[bool]) -> None:
         """Products of the written numbers that are a basis over the rationals, short ones first."""
         atoms = [
-            (each, self.domain.from_sympy(expression))
+            (each, self._images[expression])
             for each, expression, chosen in zip(
                 self._written, self._expressions, is_irrational, strict=True
             )
@@ -112,11 +116,12 @@ class Numbers:
         ]
         for length in count():
             for factors in combinations_with_replacement(atoms, length):
-                if self._span.rank == self._degree:
+                if self._span.rank == self.degree:
                     return
                 value = reduce(mul, (x for _, x in factors), self.domain.one)
                 if self._span.coordinates(self._row(value)) is None:
                     self._span.add(self._row(value))
+                    self.basis.append(value)
                     self._products.append(tuple(each for each, _ in factors))
 
     def _row(self, number: Any) -> Mapping[int, Fraction]:
@@ -124,18 +129,23 @@ class Numbers:
         digits = [number] if self.domain.is_QQ else reversed(number.to_list())
         return {n: _fraction(c) for n, c in enumerate(digits) if c}
 
+    def coordinates(self, number: Any) -> dict[int, Fraction]:
+        """The rational coordinates of a number along the basis; zeros left out."""
+        result = self._span.coordinates(self._row(number))
+        assert result is not None, number
+        return {n: Fraction(x) for n, x in result.items()}
+
     def terms(self, number: Any) -> list[tuple[Fraction, tuple[Written, ...]]]:
         """A number as a sum of rational multiples of products of the written numbers."""
-        coordinates = self._span.coordinates(self._row(number))
-        assert coordinates is not None, number
-        return [(Fraction(x), self._products[n]) for n, x in coordinates.items()]
+        return [(x, self._products[n]) for n, x in self.coordinates(number).items()]
 
     def index(self, place: int) -> tuple[Any, Fraction]:
         """The number written in a place, as one of the field and a multiple of pi."""
         expression = self._expressions[place]
         if expression and (expression / sympy.pi).is_Rational:
             return self.domain.zero, Fraction(str(expression / sympy.pi))
-        return self.domain.from_sympy(expression), Fraction(0)
+        image = self._images.get(expression)
+        return self.domain.from_sympy(expression) if image is None else image, Fraction(0)
 
     def evaluate(self, number: Any, own: Arithmetic) -> Any:
         """A number of the field in any arithmetic."""
@@ -184,20 +194,25 @@ def room_for(value: Any) -> int:
     return 0 if numbers is None else numbers.room
 
 
+def algebraic(value: Any) -> Any | None:
+    """A structure constant as a number of its field; None with parameters or pi."""
+    parts = value.parts
+    if not parts:
+        return value.factors.ring.domain.zero
+    if len(parts) > 1 or parts[0].powers or not parts[0].numer.is_ground:
+        return None
+    return parts[0].numer.LC
+
+
 def as_rational(value: Any) -> Fraction | None:
     """The rational number that a structure constant is, if it is one."""
     if isinstance(value, int | Fraction):
         return Fraction(value)
-    numbers = value.factors.numbers
-    if value == 0:
-        return Fraction(0)
-    if numbers is None or len(value.parts) > 1 or value.parts[0].powers:
-        return None
-    numer = value.parts[0].numer
-    if not numer.is_ground:
-        return None
-    terms = numbers.terms(numer.LC)
-    return terms[0][0] if len(terms) == 1 and not terms[0][1] else None
+    numbers, number = value.factors.numbers, algebraic(value)
+    if value == 0 or numbers is None or number is None:
+        return None if value else Fraction(0)
+    coordinates = numbers.coordinates(number)  # the first of the basis is 1
+    return coordinates[0] if coordinates.keys() == {0} else None
 
 
 def parameters_in(value: Any) -> list[str]:

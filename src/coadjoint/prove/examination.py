@@ -258,7 +258,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
     local = algebra.over(field.adopt)
     structure = lie_poisson(local, field, local.basis)
-    known = _search(local, structure, degree)
+    known = _search(algebra, structure, degree)
     claims, findings = _entries(algebra, structure, known)
     return Examination(
         algebra=local,
