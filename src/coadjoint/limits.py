@@ -61,6 +61,9 @@ MATRIX_ENTRIES = 4096
 #: Terms that hold parameters in all constants and matrices of an algebra: elimination among four
 #: generic 4 by 4 matrices takes 2.5 seconds, among six more than a minute.
 PARAMETRIC_TERMS = 64
+#: Degree of the number field of all roots, sines and cosines in an algebra, and half the number
+#: of parts of a turn in them: sqrt(2), sqrt(3), sqrt(5) and cos(2*pi/7) together have degree 24.
+ALGEBRAIC_DEGREE = 24
 #: Generators of an algebra given by name or as a product; constants are sparse.
 GENERATORS = 5000
 #: Generators of an algebra that `coadjoint algebra` examines unless told otherwise: so(9), sp(8)

@@ -72,12 +72,12 @@ class Invariants:
         (2, 1, 0)
         """
         for i, j, k, c in self.structure():
-            if not isinstance(c, int | Fraction):
+            if not isinstance(c, int | Fraction) and not _is_number(c):
                 pair = f"[{self.basis[i]}, {self.basis[j]}]"
                 raise AlgebraError(
                     f"{self.name}: {pair} has the coefficient {c} of {self.basis[k]}, so the "
-                    "signature of the Killing form has no definite value; expected rational "
-                    "constants. Replace the parameters by numbers with `over`.",
+                    "signature of the Killing form has no definite value; expected "
+                    "numbers. Replace the parameters by numbers with `over`.",
                     found=str(c),
                 )
         return signature(self.killing_form())
@@ -215,6 +215,22 @@ class Invariants:
         return largest
 
 
+def _is_number(value: Any) -> bool:
+    """Whether a constant that is not rational is a number."""
+    from coadjoint.exact.numbers import is_number  # rationals need no SymPy
+
+    return is_number(value)
+
+
+def _sign(value: Any) -> int:
+    """The sign of a number."""
+    if isinstance(value, int | Fraction):
+        return (value > 0) - (value < 0)
+    from coadjoint.exact.numbers import sign  # rationals need no SymPy
+
+    return sign(value)
+
+
 def signature(form: Sequence[Sequence[Any]]) -> tuple[int, int, int]:
     """How many squares of a symmetric form are positive, negative and zero.
 
@@ -222,7 +238,7 @@ def signature(form: Sequence[Sequence[Any]]) -> tuple[int, int, int]:
     (1, 1, 1)
     """
     squares = _diagonal(form)
-    plus = sum(x > 0 for x in squares)
+    plus = sum(_sign(x) > 0 for x in squares)
     return plus, len(squares) - plus, len(form) - len(squares)
 
 

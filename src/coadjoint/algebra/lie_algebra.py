@@ -22,6 +22,7 @@ from coadjoint.algebra.matrices import (
     commutator,
     convert_entries,
     entries_text,
+    take_image,
 )
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.exact.bilinear import sum_products
@@ -105,22 +106,21 @@ class LieAlgebra(Invariants):
     def over(self, convert: Callable[[Any], Any]) -> LieAlgebra:
         """The algebra with every constant that holds parameters converted; rationals stay.
 
-        It moves parameters into another field, or puts numbers for them.
+        It moves parameters and irrational numbers into another field, or puts numbers for them.
         """
         rows: list[Mapping[Any, Any]]
         rows = [*self.constants.values(), *self.matrices, *self.elements]
         if all(isinstance(value, int | Fraction) for row in rows for value in row.values()):
             return self
-        constants = {pair: convert_entries(row, convert) for pair, row in self.constants.items()}
+        constants = {
+            pair: MappingProxyType(image)
+            for pair, row in self.constants.items()
+            if (image := convert_entries(row, convert))
+        }
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         elements = tuple(convert_entries(matrix, convert) for matrix in self.elements)
-        return LieAlgebra(
-            name=self.name,
-            basis=self.basis,
-            constants=constants,
-            blocks=self.blocks,
-            matrices=matrices,
-            elements=elements,
+        return take_image(
+            self, constants=MappingProxyType(constants), matrices=matrices, elements=elements
         )
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:

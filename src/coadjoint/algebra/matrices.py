@@ -7,6 +7,7 @@ Read next: `coadjoint.algebra.lie_algebra`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from copy import copy
 from fractions import Fraction
 from typing import Any, TypeVar
 
@@ -15,6 +16,7 @@ from coadjoint.exact.linear import add_multiple, exact
 #: A matrix as nonzero entries {(row, column): value}.
 SparseMatrix = Mapping[tuple[int, int], Any]
 Place = TypeVar("Place")
+Image = TypeVar("Image")
 Matrix = dict[tuple[int, int], Any]
 
 
@@ -52,10 +54,23 @@ def commutator(a: SparseMatrix, b: SparseMatrix) -> Matrix:
 
 def convert_entries(row: Mapping[Place, Any], convert: Callable[[Any], Any]) -> dict[Place, Any]:
     """A sparse row or matrix whose entries with parameters are converted; rationals stay."""
-    return {
-        at: value if isinstance(value, int | Fraction) else convert(value)
+    converted = {
+        at: value if isinstance(value, int | Fraction) else exact(convert(value))
         for at, value in row.items()
     }
+    return {at: value for at, value in converted.items() if value != 0}
+
+
+def take_image(record: Image, **parts: Any) -> Image:
+    """An algebra or representation with some attributes replaced, its laws not checked again.
+
+    For images under homomorphisms of fields, and for direct summands, in which laws that hold
+    still hold. A field with functions may not see that they do: only its normal form decides.
+    """
+    result = copy(record)
+    for name, value in parts.items():
+        object.__setattr__(result, name, value)
+    return result
 
 
 def transpose(a: SparseMatrix) -> Matrix:

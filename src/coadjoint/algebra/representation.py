@@ -19,6 +19,7 @@ from coadjoint.algebra.matrices import (
     entries_text,
     kronecker,
     size,
+    take_image,
 )
 from coadjoint.errors import AlgebraError
 
@@ -86,7 +87,7 @@ class Representation:
         """
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         acting = algebra or self.algebra.over(convert)
-        return Representation(acting, self.name, self.dimension, matrices)
+        return take_image(self, algebra=acting, matrices=matrices)
 
     def dual(self, name: str = "") -> Representation:
         """The contragredient action on W*: ``rho*(xi) = -rho(xi)^T``."""

@@ -140,7 +140,7 @@ def _algebra(word: str, most: int, degree: int) -> LieAlgebra:
 def _algebra_of_spec(word: str, most: int, degree: int) -> LieAlgebra:
     """The algebra of a spec, its advected quantities included."""
     from coadjoint.derive import make_setting
-    from coadjoint.derive.structure import momentum_algebra
+    from coadjoint.derive.structure import exact_momentum_algebra
     from coadjoint.errors import AlgebraError
     from coadjoint.spec import read_spec
 
@@ -156,7 +156,7 @@ def _algebra_of_spec(word: str, most: int, degree: int) -> LieAlgebra:
     dimension = setting.algebra.dimension + advected
     if dimension > most:
         raise _too_large(str(spec.path), dimension, most, degree)
-    return momentum_algebra(setting)
+    return exact_momentum_algebra(setting)
 
 
 def _too_large(name: str, dimension: int, most: int, degree: int) -> CoadjointError:

@@ -22,6 +22,7 @@ from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region, dense
+from coadjoint.exact.numbers import room_for
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
@@ -150,11 +151,7 @@ class Setting:
 
     def _action(self, declared: Representation) -> Representation:
         """A declared action, its entries in this field."""
-        matrices = tuple(
-            {place: self.take_constant(value) for place, value in matrix.items()}
-            for matrix in declared.matrices
-        )
-        return Representation(self.algebra, declared.name, declared.dimension, matrices)
+        return declared.over(self.take_constant, self.algebra)
 
     def take_constant(self, constant: Fraction | int | Element) -> Fraction | int | Element:
         """A constant of the algebra as it can be reckoned with here."""
@@ -338,6 +335,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
         more += 4
     rolls_as_ball = spec.rolling and spec.rolling.contact and spec.rolling.contact.radius
     room = _count_room(spec) * (1 + more) + BALL * bool(rolls_as_ball)
+    room += _count_numbers(spec)
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
         parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)
@@ -412,6 +410,17 @@ def _list_calls(spec: Spec) -> list[tree.Call]:
 def _count_room(spec: Spec) -> int:
     """How many functions may be adjoined for those that the formulas of a spec call."""
     return sum(_ADJOINED[call.function] for call in _list_calls(spec))
+
+
+def _count_numbers(spec: Spec) -> int:
+    """The same for irrational numbers in algebras and their actions."""
+    algebras = [each.algebra for each in (spec, *spec.symmetries) if each.algebra is not None]
+    rows: list[Mapping[Any, Any]] = [row for a in algebras for row in a.constants.values()]
+    rows += [matrix for a in algebras for matrix in (*a.matrices, *a.elements)]
+    actions = (variable.representation for variable in spec.variables)
+    rows += [matrix for action in actions if action is not None for matrix in action.matrices]
+    values = (x for row in rows for x in row.values() if not isinstance(x, int | Fraction))
+    return max((room_for(x) for x in values), default=0)
 
 
 def calls_of(spec: Spec, role: str) -> bool:

@@ -30,8 +30,20 @@ def momentum_algebra(setting: Setting) -> LieAlgebra:
     An advected quantity a of the representation rho lives in the dual of V, so V carries the dual
     action (Holm 2011, sections 7.2.1 and 9.4).
     """
-    actions = [(name, action.dual()) for name, action in setting.actions.items()]
-    return semidirect_product(setting.algebra, actions) if actions else setting.algebra
+    return exact_momentum_algebra(setting).over(setting.take_constant)
+
+
+@once
+def exact_momentum_algebra(setting: Setting) -> LieAlgebra:
+    """The same algebra with constants as they are declared, in which every zero is decided."""
+    algebra = setting.spec.algebra
+    assert algebra is not None, f"{setting.spec.name} has a declared bracket and no algebra"
+    actions = [
+        (variable.name, variable.representation.dual())
+        for variable in setting.advected
+        if variable.representation is not None
+    ]
+    return semidirect_product(algebra, actions) if actions else algebra
 
 
 @once

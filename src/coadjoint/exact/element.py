@@ -17,10 +17,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from operator import add, itemgetter, le, mul, sub
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
+
+if TYPE_CHECKING:
+    from coadjoint.exact.numbers import Numbers
 
 
 class BudgetSpent(Exception):  # noqa: N818 (no error: a search ends early)
@@ -39,6 +42,8 @@ class Factors:
 
     def __init__(self, ring: PolyRing, functions: int = 0) -> None:
         self.ring = ring
+        #: The algebraic numbers that coefficients may be; None for the rationals alone.
+        self.numbers: Numbers | None = None
         self._functions = frozenset(ring.gens[ring.ngens - functions :])
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
@@ -325,7 +330,8 @@ class Element:
         (quotient,) = whole._parts.values()
         constant, powers = self.factors.split(quotient.numer)
         denom = self.factors.product(quotient.powers)
-        return Element(self.factors, [(denom * (QQ(1) / constant), powers)])
+        one = self.factors.ring.domain.one
+        return Element(self.factors, [(denom * (one / constant), powers)])
 
     def __neg__(self) -> Element:
         return self._with({s: Quotient(-q.numer, q.powers) for s, q in self._parts.items()})
@@ -425,10 +431,21 @@ class Element:
         )
 
     def _quotient_as_expr(self, quotient: Quotient) -> Any:
-        result = quotient.numer.as_expr()
+        result = self._as_expr(quotient.numer)
         for number, exponent in sorted(quotient.powers.items()):
-            result = result / self.factors.known[number].as_expr() ** exponent
+            result = result / self._as_expr(self.factors.known[number]) ** exponent
         return result
+
+    def _as_expr(self, p: PolyElement) -> Any:
+        """A polynomial as an expression; algebraic numbers as they were written."""
+        numbers = self.factors.numbers
+        if numbers is None:
+            return p.as_expr()
+        unit = p.ring.domain.one
+        return reduce(
+            add,
+            (numbers.text_symbols(c) * p.ring.term_new(m, unit).as_expr() for m, c in p.terms()),
+        )
 
     def __repr__(self) -> str:
         return str(self._sympy_())

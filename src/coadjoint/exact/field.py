@@ -20,6 +20,7 @@ from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, evaluate, sl
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, split_by_powers
 from coadjoint.exact.rationals import Rationals
+from coadjoint.exact.numbers import PI, Numbers
 from coadjoint.exact.region import Condition, Region
 
 Value = TypeVar("Value")
@@ -63,6 +64,7 @@ class Field(Rationals):
         names: The symbols, in the order that fixes the normal form.
         slots: How many elementary functions may be adjoined.
         positive: The symbols that may be assumed positive.
+        numbers: As in `Rationals`.
 
     Attributes:
         region: What else may be assumed, and where values are looked at.
@@ -75,8 +77,14 @@ class Field(Rationals):
     True
     """
 
-    def __init__(self, names: Sequence[str], slots: int = 0, positive: Iterable[str] = ()) -> None:
-        super().__init__(names, 2 * slots)  # sine and cosine come together
+    def __init__(
+        self,
+        names: Sequence[str],
+        slots: int = 0,
+        positive: Iterable[str] = (),
+        numbers: Numbers | None = None,
+    ) -> None:
+        super().__init__(names, 2 * slots, numbers)  # sine and cosine come together
         self.positive = frozenset(positive)
         self.region = Region()
         self._factors.is_hidden_zero = self._is_hidden_zero
@@ -89,6 +97,18 @@ class Field(Rationals):
         """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
+
+    def _take_numbers(self, known: Numbers, own: Sequence[str], p: PolyElement) -> Element:
+        """A polynomial over algebraic numbers, each written by functions of this field."""
+        result = self.zero
+        for exponents, number in p.terms():
+            term = known.evaluate(number, self.arithmetic)
+            for name, exponent in zip(own, exponents, strict=True):
+                if exponent:
+                    base = known.pi(self.arithmetic) if name == PI else self[name]
+                    term = term * base**exponent
+            result += term
+        return self.normal(result)
 
     # -- elementary functions -----------------------------------------------------------
 
@@ -139,13 +159,13 @@ class Field(Rationals):
         return self[generator]
 
     @property
-    def _arithmetic(self) -> Arithmetic:
+    def arithmetic(self) -> Arithmetic:
         """What texts of the table of functions are computed with."""
         return Arithmetic(number=self.number, call=self.call)
 
     def domain_of(self, known: Adjoined) -> Element | None:
         """What is positive where an adjoined function is analytic; None where it is everywhere."""
-        return cast("Element | None", domain_of(known.function, known.arguments, self._arithmetic))
+        return cast("Element | None", domain_of(known.function, known.arguments, self.arithmetic))
 
     def normal(self, element: Element) -> Element:
         """Normal form: even powers of square roots and of sines in the numerator are replaced.
@@ -175,7 +195,7 @@ class Field(Rationals):
             return None
         partner = self[known.partner] if known.partner else None
         values = {"u": known.arguments[0], "p": partner}
-        return cast(Element, evaluate(text, self._arithmetic, **values))
+        return cast(Element, evaluate(text, self.arithmetic, **values))
 
     def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
@@ -295,7 +315,7 @@ class Field(Rationals):
     def _slopes_of(self, known: Adjoined) -> list[Element]:
         """Derivatives of an adjoined function by its arguments."""
         own = self[known.generator]
-        return slopes_of(known.function, known.arguments, own, self._arithmetic)
+        return slopes_of(known.function, known.arguments, own, self.arithmetic)
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""

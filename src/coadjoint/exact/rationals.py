@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import reduce
 from operator import mul, truediv
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy
 from sympy.polys.domains import QQ
@@ -24,6 +24,9 @@ from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, Factors, Quotient
 from coadjoint.exact.factors import to_fraction
 from coadjoint.exact.residues import residue
+
+if TYPE_CHECKING:
+    from coadjoint.exact.numbers import Numbers
 
 Value = TypeVar("Value")
 
@@ -50,6 +53,7 @@ class Rationals:
     Args:
         names: The symbols, in the order that fixes the normal form.
         slots: How many generators stand behind them, for functions of symbols.
+        numbers: The algebraic numbers that coefficients may be; by default they are rational.
 
     Attributes:
         generators: The symbols and the slots for functions, in the order of the ring.
@@ -57,12 +61,16 @@ class Rationals:
         one: The element 1.
     """
 
-    def __init__(self, names: Sequence[str], slots: int = 0) -> None:
+    def __init__(
+        self, names: Sequence[str], slots: int = 0, numbers: Numbers | None = None
+    ) -> None:
         self.names = tuple(names)
         # A spec name cannot begin with an underscore, so a slot cannot meet one.
         self._free = [f"_f{n + 1}" for n in range(slots)]
-        self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], QQ, lex)
+        domain = QQ if numbers is None else numbers.domain
+        self._ring = PolyRing([sympy.Symbol(n) for n in (*names, *self._free)], domain, lex)
         self._factors = Factors(self._ring, len(self._free))
+        self._factors.numbers = numbers
         #: A block in which arithmetic ends after so much work: see `Factors.budget`.
         self.budget = self._factors.budget
         self.generators = (*names, *self._free)
@@ -88,8 +96,14 @@ class Rationals:
         """A rational number as an element."""
         return self.zero + Fraction(value)
 
+    def ground(self, number: Any) -> Element:
+        """A number of the ground domain as an element."""
+        return self.from_polynomial(self._ring.ground_new(number))
+
     def adopt(self, element: Element, names: Mapping[str, str] = MappingProxyType({})) -> Element:
-        """A function-free element of another field, of symbols that this one has too.
+        """An element of another field, function-free, of symbols that this one has too.
+
+        Algebraic numbers and pi become functions of numbers.
 
         Args:
             element: What to take over.
@@ -100,7 +114,11 @@ class Rationals:
         """
         own = [names.get(str(s), str(s)) for s in element.factors.ring.symbols]
 
+        known = element.factors.numbers
+
         def move(p: PolyElement) -> Element:
+            if known is not None and known is not self._factors.numbers:
+                return self._take_numbers(known, own, p)
             return self.from_polynomial(self._ring.from_dict(self._place(own, dict(p))))
 
         def divide(quotient: Quotient) -> Element:
@@ -112,6 +130,10 @@ class Rationals:
             )
 
         return self.sum(map(divide, element.parts))
+
+    def _take_numbers(self, known: Numbers, own: Sequence[str], p: PolyElement) -> Element:
+        """A polynomial over algebraic numbers, each written by functions of this field."""
+        raise AssertionError(f"{p} has algebraic coefficients; expected a field with functions")
 
     def polynomial(
         self, names: Sequence[str], terms: Mapping[tuple[int, ...], Fraction | int]

@@ -18,10 +18,12 @@ from sympy.polys.rings import PolyElement
 from coadjoint.algebra import LieAlgebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field
+from coadjoint.exact.numbers import Numbers
 from coadjoint.exact.ranks import independent_rows
 from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
 from coadjoint.poisson.invariants import has_trace_form, matrix_invariants
+from coadjoint.poisson.irrational import UNKNOWNS, AlgebraicCasimirs, numbers_of
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
@@ -237,6 +239,9 @@ def _search(
     Raises:
         AlgebraError: An entry of the tensor is not a polynomial over the rationals.
     """
+    numbers = None if algebra is None else numbers_of(algebra)
+    if algebra is not None and numbers is not None:
+        return _search_over_numbers(structure, algebra, numbers, degree, expected, known)
     bracket = PolynomialBracket(structure)
     reached = _reduce_degree(structure.dimension, degree)
     polynomials, ways, searched = list[PolyElement](), list[str](), list[str]()
@@ -281,6 +286,42 @@ def _search(
         expected=expected,
         ways=tuple(ways),
         searched=tuple(searched),
+        degree=reached,
+        skipped=skipped,
+    )
+
+
+def _search_over_numbers(
+    structure: PoissonStructure,
+    algebra: LieAlgebra,
+    numbers: Numbers,
+    degree: int,
+    expected: int,
+    known: Sequence[Element],
+) -> SummandSearch:
+    """The same for constants that are algebraic numbers: all polynomials up to a degree."""
+    search, found = AlgebraicCasimirs(algebra, structure, numbers), list(known)
+    reached, skipped = 0, ""
+    for power in range(1, degree + 1):
+        if len(found) == expected:
+            break
+        if not search.fits(power):
+            skipped = (
+                f"degree {power} not searched: more than {UNKNOWNS} unknowns (UNKNOWNS) over a "
+                f"number field of degree {numbers.degree}"
+            )
+            break
+        found = select_independent(structure, [*found, *search.find(power)])[:expected]
+        reached = power
+    generators = tuple(found[len(known) :])
+    way = "exact linear solve over the coordinates in the number field of the constants"
+    return SummandSearch(
+        structure=structure,
+        known=len(known),
+        generators=generators,
+        expected=expected,
+        ways=(way,) * bool(generators),
+        searched=(f"all polynomials of degree <= {reached}",),
         degree=reached,
         skipped=skipped,
     )

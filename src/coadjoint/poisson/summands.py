@@ -10,12 +10,13 @@ Read next: `coadjoint.poisson.casimirs`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import MappingProxyType
 from typing import Any
 
 from sympy.utilities.iterables import connected_components
 
 from coadjoint.algebra import LieAlgebra
-from coadjoint.algebra.matrices import SparseMatrix
+from coadjoint.algebra.matrices import SparseMatrix, take_image
 from coadjoint.poisson.structure import PoissonStructure
 
 
@@ -70,8 +71,14 @@ def restrict_algebra(algebra: LieAlgebra, places: Sequence[int]) -> LieAlgebra:
             constants[min(a, b), max(a, b)] = turned
     basis = tuple(algebra.basis[n] for n in places)
     matrices = [algebra.matrices[n] for n in places] if algebra.matrices else []
-    return LieAlgebra(
-        name=algebra.name, basis=basis, constants=constants, blocks={}, matrices=_trim(matrices)
+    ordered = {pair: dict(sorted(row.items())) for pair, row in sorted(constants.items())}
+    return take_image(
+        algebra,
+        basis=basis,
+        constants=MappingProxyType(ordered),
+        blocks={},
+        matrices=_trim(matrices),
+        elements=(),
     )
 
 

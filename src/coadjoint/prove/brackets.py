@@ -14,7 +14,7 @@ from itertools import zip_longest
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations
-from coadjoint.derive.structure import momentum_algebra
+from coadjoint.derive.structure import exact_momentum_algebra
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
@@ -43,7 +43,7 @@ from coadjoint.spec import Formula
 def about_algebra(motion: Motion) -> Iterator[Examined]:
     """The algebra."""
     if motion.spec.algebra is not None:
-        algebra = momentum_algebra(motion.setting)
+        algebra = exact_momentum_algebra(motion.setting)
         yield (
             f"{algebra.name} satisfies the Jacobi identity",
             "algebra",

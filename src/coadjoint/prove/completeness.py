@@ -13,7 +13,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from coadjoint.derive import Equations
-from coadjoint.derive.structure import canonical_pairs, momentum_algebra, poisson_structure
+from coadjoint.derive.structure import (
+    canonical_pairs,
+    exact_momentum_algebra,
+    momentum_algebra,
+    poisson_structure,
+)
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.ranks import MODULO, error_of_ranks, generic_rank, source_of_ranks
@@ -246,7 +251,7 @@ def _search(
     advected = [name for variable in setting.advected for name in variable.components]
     coordinates = [*setting.momenta, *advected]
     order = [coordinates.index(name) for name in setting.state]
-    algebra = restrict_algebra(momentum_algebra(setting), order)
+    algebra = restrict_algebra(exact_momentum_algebra(setting), order)
     return search_summands(poisson_structure(setting), algebra, degree, known)
 
 

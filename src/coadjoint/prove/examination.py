@@ -15,10 +15,12 @@ from time import perf_counter
 from typing import Any
 
 from coadjoint.algebra import LieAlgebra
+from coadjoint.algebra.matrices import convert_entries
 from coadjoint.derive.document import Document
 from coadjoint.derive.lines import Line, Section, formula, formula_line
 from coadjoint.derive.records import algebra_bracket, symbol
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.numbers import parameters_in, room_for
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.poisson import PoissonStructure, lie_poisson
 from coadjoint.poisson.casimirs import search_summands
@@ -237,7 +239,8 @@ def _count_in_words(number: int, noun: str) -> str:
 
 def _vector(field: Field, basis: Sequence[str], row: Mapping[int, Any]) -> Element:
     """A vector of the algebra as a sum of names of its basis."""
-    return field.sum(field[basis[k]] * c for k, c in row.items())
+    own = convert_entries(row, field.adopt)
+    return field.sum(field[basis[k]] * c for k, c in own.items())
 
 
 def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
@@ -252,18 +255,20 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     >>> [element_text(found.field, casimir) for casimir in found.casimirs.found]
     ['J1*P1 + J2*P2 + J3*P3', 'P1^2 + P2^2 + P3^2']
     """
-    field = Field([*algebra.basis, *_parameters(algebra)])
+    field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
     local = algebra.over(field.adopt)
     structure = lie_poisson(local, field, local.basis)
-    known = _search(local, structure, degree)
-    claims, findings = _entries(local, structure, known)
+    known = _search(algebra, structure, degree)
+    claims, findings = _entries(algebra, structure, known)
     return Examination(
         algebra=local,
         field=field,
-        signature=None if _parameters(algebra) else local.killing_signature(),
-        properties=_properties(local),
-        center=tuple(_vector(field, local.basis, dict(enumerate(row))) for row in local.center()),
-        derived_series=local.derived_series(),
+        signature=None if _parameters(algebra) else algebra.killing_signature(),
+        properties=_properties(algebra),
+        center=tuple(
+            _vector(field, algebra.basis, dict(enumerate(row))) for row in algebra.center()
+        ),
+        derived_series=algebra.derived_series(),
         rank=structure.generic_rank(),
         casimirs=known,
         certificate=Certificate(algebra.name, claims, findings),
@@ -286,13 +291,22 @@ def _search(algebra: LieAlgebra, structure: PoissonStructure, degree: int) -> Co
     )
 
 
-def _parameters(algebra: LieAlgebra) -> list[str]:
-    """Names of the parameters in the constants."""
+def _irrational(algebra: LieAlgebra) -> list[Any]:
+    """The constants and entries of matrices that are not rational."""
     rows: list[Mapping[Any, Any]] = [*algebra.constants.values(), *algebra.matrices]
     values = (value for row in rows for value in row.values())
-    held = (value for value in values if not isinstance(value, int | Fraction))
-    names = {str(symbol): None for value in held for symbol in value.factors.ring.symbols}
-    return list(names)
+    return [value for value in values if not isinstance(value, int | Fraction)]
+
+
+def _parameters(algebra: LieAlgebra) -> list[str]:
+    """Names of the parameters in the constants."""
+    held = map(parameters_in, _irrational(algebra))
+    return list(dict.fromkeys(name for names in held for name in names))
+
+
+def _room(algebra: LieAlgebra) -> int:
+    """How many functions a field needs for the irrational numbers in the constants."""
+    return max(map(room_for, _irrational(algebra)), default=0)
 
 
 def _properties(algebra: LieAlgebra) -> tuple[str, ...]:

@@ -8,12 +8,13 @@ Read next: `coadjoint.spec.sections.algebras`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial, reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any, Protocol
 
+from coadjoint.elementary import ELEMENTARY, Arithmetic
 from coadjoint.limits import PARAMETRIC_TERMS
 from coadjoint.spec.core.components import Shape, unpack
 from coadjoint.spec.core.expressions import read_expression
@@ -26,23 +27,30 @@ from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
+    Component,
+    Entry,
     Index,
+    Member,
     Name,
     Negate,
     Node,
     Number,
     Power,
+    Sum,
     fold,
     walk,
 )
 
 if TYPE_CHECKING:
     from coadjoint.exact import Field
+    from coadjoint.exact.numbers import Numbers, Written
 
 #: A fraction, or an element of the field of the parameters.
 Coefficient = Any
 _Linear = dict[int | None, Coefficient]  # of each basis vector; None for the part without one
 
+#: Functions that take numbers.
+KNOWN = {*ELEMENTARY, "tan"}
 _COMBINATION = (
     "a linear combination of the basis",
     ("sums of basis names times numbers or polynomials of parameters, such as -2*e1 + e3/2, or 0"),
@@ -68,11 +76,16 @@ class Scalars:
     Args:
         parameters: All of the spec, with names that differ.
         driving: Inputs and time, which no constant may name.
+        texts: Finds all texts that may hold numbers such as ``sqrt(3)`` and pi: one field has all.
     """
 
     def __init__(
-        self, parameters: Sequence[Constant] = (), driving: Sequence[HasComponents] = ()
+        self,
+        parameters: Sequence[Constant] = (),
+        driving: Sequence[HasComponents] = (),
+        texts: Callable[[], Iterable[str]] = tuple,
     ) -> None:
+        self._texts = texts
         self._driving = {
             name: each.role for each in driving for name in (each.name, *each.components)
         }
@@ -95,6 +108,56 @@ class Scalars:
         if not sign:  # no scalar, or an entry on the diagonal of an antisymmetric matrix
             return Fraction(0) if component else None
         return sign * self._field[component]
+
+    def constant(self, node: Call) -> Coefficient:
+        """The number that a function of numbers is.
+
+        Raises:
+            ExpressionError: It is not real, or neither algebraic nor a rational multiple of pi.
+        """
+        from coadjoint.exact.numbers import PI
+
+        try:
+            number, turns = self._numbers.index(self._places[node])
+        except ValueError as error:
+            problem, expected = str(error), "a real algebraic number or a rational multiple of pi"
+            hint = "Name a parameter here, with this number as its default."
+            raise ExpressionError(problem, node.start, node.end, expected=expected, hint=hint)
+        except OverflowError as error:
+            problem = f"all numbers together are in a field of degree {error}"
+            hint = "Name a parameter for one of them."
+            raise ExpressionError(
+                problem, node.start, node.end, str(error), hint=hint, limit="ALGEBRAIC_DEGREE"
+            ) from None
+        field = self._field
+        return simplify(field.ground(number) + turns * field[PI])
+
+    @cached_property
+    def _calls(self) -> dict[Call, Written]:
+        """Functions of numbers in the texts, as they are written first."""
+        from coadjoint.exact.numbers import Written
+
+        result: dict[Call, Written] = {}
+        for text in self._texts():
+            try:
+                tree = read_expression(text)
+            except ExpressionError:
+                continue  # refused where it is read
+            for node in walk(tree):
+                if is_constant_call(node):
+                    shown = text[node.start : node.end]
+                    result.setdefault(node, Written(shown, partial(_evaluate, node)))
+        return result
+
+    @cached_property
+    def _places(self) -> dict[Call, int]:
+        return {node: place for place, node in enumerate(self._calls)}
+
+    @cached_property
+    def _numbers(self) -> Numbers:
+        from coadjoint.exact.numbers import Numbers
+
+        return Numbers(self._calls.values())
 
     def check_names(self, tree: Node) -> None:
         """Refuse inputs and the time, which are not constants.
@@ -132,7 +195,49 @@ class Scalars:
         from coadjoint.exact import Field  # loads SymPy, which specs with plain numbers never need
 
         names = [name for name, indices in self._components if not indices]
-        return Field(names, positive=self._positive)
+        if not self._calls:
+            return Field(names, positive=self._positive)
+        from coadjoint.exact.numbers import PI
+
+        return Field([*names, PI], positive=self._positive, numbers=self._numbers)
+
+
+def is_constant_call(node: Node) -> bool:
+    """Whether a node is an elementary function of numbers alone."""
+    if not isinstance(node, Call):
+        return False
+    return all(
+        not isinstance(part, Name | Index | Member | Entry | Component | Sum)
+        and (not isinstance(part, Call) or part.function in KNOWN)
+        for part in walk(node)
+    )
+
+
+def _evaluate(node: Node, own: Arithmetic) -> Any:
+    """The value of a constant in any arithmetic."""
+
+    def value(part: Node, below: list[Any]) -> Any:
+        match part:
+            case Number(value=number):
+                return own.number(number)
+            case Negate():
+                return own.negate(below[0])
+            case Call(function="tan"):
+                return own.divide(own.call("sin", *below), own.call("cos", *below))
+            case Call(function=function):
+                return own.call(function, *below)
+            case Power(exponent=exponent):
+                result = reduce(own.multiply, below * abs(exponent), own.number(Fraction(1)))
+                return result if exponent > 0 else own.divide(own.number(Fraction(1)), result)
+            case Binary(operator="*"):
+                return own.multiply(*below)
+            case Binary(operator="/"):
+                return own.divide(*below)
+            case Binary(operator=sign):
+                return own.add(below[0], below[1] if sign == "+" else own.negate(below[1]))
+        raise AssertionError(part)
+
+    return fold(node, value)
 
 
 def _entries(parameter: Constant) -> dict[tuple[int, ...], tuple[str, int]]:
@@ -200,7 +305,7 @@ class _Reading:
 
     def _value(self, node: Node, below: list[_Linear]) -> _Linear:
         """The coefficients of a node that are not 0, by those of its children."""
-        value = self._sum(node, below)
+        value = {place: simplify(each) for place, each in self._sum(node, below).items()}
         return {place: each for place, each in value.items() if each != 0}
 
     def _sum(self, node: Node, below: list[_Linear]) -> _Linear:
@@ -213,6 +318,8 @@ class _Reading:
                 return self._scalar(node, name)
             case Index(name=name, indices=indices):
                 return self._scalar(node, name, indices)
+            case Call() if is_constant_call(node):
+                return {None: self.scalars.constant(node)}
             case Negate():
                 return _multiply(below[0], Fraction(-1))
             case Power(exponent=exponent) if exponent >= 0:
@@ -246,7 +353,7 @@ class _Reading:
         factor = b.get(None, Fraction(0))
         if operator == "*":
             return _multiply(a, factor)
-        if not isinstance(factor, Fraction) or factor == 0:
+        if not is_known_number(factor) or factor == 0:
             raise self._refusal(node)  # a quotient of parameters, which may be 0
         return _multiply(a, 1 / factor)
 
@@ -265,6 +372,25 @@ class _Reading:
         return ExpressionError(
             f"this is not {what}", node.start, node.end, expected=expected, hint=hint
         )
+
+
+def is_known_number(value: Coefficient) -> bool:
+    """Whether a coefficient is a number, which holds no parameter."""
+    if isinstance(value, Fraction):
+        return True
+    from coadjoint.exact.numbers import is_number
+
+    return is_number(value)
+
+
+def simplify(value: Coefficient) -> Coefficient:
+    """A coefficient, as a fraction where it is one."""
+    if isinstance(value, Fraction):
+        return value
+    from coadjoint.exact.numbers import as_rational
+
+    known = as_rational(value)
+    return value if known is None else known
 
 
 def _multiply(a: _Linear, factor: Coefficient) -> _Linear:

@@ -7,9 +7,14 @@ error with file, line, key and counterexample. Read next: `coadjoint.spec.sectio
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import weakref
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from pydantic import BaseModel
 
 from coadjoint.algebra import (
     LieAlgebra,
@@ -86,8 +91,38 @@ def read_structure(reading: Reading, part: AlgebraPart) -> Structure:
 
 def scalars_of(reading: Reading) -> Scalars:
     """The parameters that constants may depend on, and what they may not name."""
-    driving: list[HasComponents] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
-    return Scalars(PARAMETERS.of(reading), driving)
+    if reading not in _KNOWN:
+        driving: list[HasComponents] = [*INPUTS.of(reading), *filter(None, [TIME.of(reading)])]
+        file = weakref.ref(reading.file)
+        _KNOWN[reading] = Scalars(PARAMETERS.of(reading), driving, lambda: _constants(file()))
+    return _KNOWN[reading]
+
+
+#: The scalars of each spec that is being read: all tables with constants share one field.
+_KNOWN: WeakKeyDictionary[Reading, Scalars] = WeakKeyDictionary()
+
+
+def _constants(part: Any) -> Iterator[str]:
+    """The texts in the tables that declare algebras and their actions."""
+    for key in ("algebra", "representations", "symmetries"):
+        yield from _texts(getattr(part, key, None))
+
+
+def _texts(part: Any) -> Iterator[str]:
+    """The texts that may hold a number with a name, in a part or a nest of them."""
+    match part:
+        case str():
+            if "(" in part or "pi" in part:
+                yield part
+        case Mapping():
+            for value in part.values():
+                yield from _texts(value)
+        case list() | tuple():
+            for value in part:
+                yield from _texts(value)
+        case BaseModel():
+            for name in type(part).model_fields:
+                yield from _texts(getattr(part, name))
 
 
 def read_algebra(
