@@ -76,8 +76,8 @@ def count_rows(system: System, choice: Choice) -> int:
 
 
 def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
-    """Arguments at whose zeros the rates of a method have kinks, as text."""
-    if system.stepwise:
+    """Arguments at whose zeros the rates of a method have kinks; none without files."""
+    if system.stepwise or not system._solvers.has_files(choice.kind):
         return ()
     module = KernelModule(system, choice.kind.files[2])
     return tuple(module.value("KINKS")) if module.has("KINKS") else ()
