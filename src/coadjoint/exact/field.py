@@ -180,7 +180,7 @@ class Field(Rationals):
     def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
         place, ring = self._position[generator], self._ring
-        if not element or element.parts[0].numer.degree(ring.gens[place]) < 2:
+        if not element or element.parts[0].numer.degree(place) < 2:
             return element
         (quotient,) = element.parts
         parts: dict[int, PolyElement] = {}
@@ -202,7 +202,7 @@ class Field(Rationals):
         """
         place, ring = self._position[generator], self._ring
         degree = len(coefficients) - 1
-        if not element or element.parts[0].numer.degree(ring.gens[place]) < degree:
+        if not element or element.parts[0].numer.degree(place) < degree:
             return element
         (quotient,) = element.parts
         parts, root = split_by_powers(quotient.numer, place), ring.gens[place]
