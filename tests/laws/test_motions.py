@@ -29,8 +29,7 @@ from tests.specs import shipped
 #: Of the state itself: brackets of constrained motions move momenta.
 WITH_BRACKET = sorted(set(textbook.TENSORS) - set(textbook.CONSTRAINED))
 #: The largest system has 3276 triples of coordinates; the laws of so(6) are those of so(8).
-#: Links have no declared momenta: tests/sources/test_equations.py has their bracket.
-ALMOST = sorted(set(textbook.TENSORS) & set(textbook.CONSTRAINED) - {"n_link_chain"})
+ALMOST = sorted(set(textbook.TENSORS) & set(textbook.CONSTRAINED))
 WITHOUT_SO8 = [name for name in WITH_BRACKET if name != "so8_body"]
 
 
@@ -206,17 +205,18 @@ def are_equal(a, b):
 
 def check_almost_hamiltonian(equations, tensor):
     """``d phi/dt = J dE/dphi`` for phi, the state with momenta in the place of velocities."""
-    momenta = iter(equations.spec.reduced_momenta)
-    moved = [
-        name if variable.role != "velocity" else of_velocity
+    declared = [name for each in equations.spec.reduced_momenta for name in each.components]
+    velocities = [
+        name
         for variable in equations.spec.state
-        for name, of_velocity in zip(
-            variable.components,
-            next(momenta).components if variable.role == "velocity" else variable.components,
-            strict=True,
-        )
+        if variable.role == "velocity"
+        for name in variable.components
     ]
-    phi = [equations.observables.get(name, sympy.Symbol(name)) for name in moved]
+    names = [name for variable in equations.spec.state for name in variable.components]
+    # without names of momenta, these are slopes of an energy with a quadratic form of velocities
+    momenta = declared or [sympy.diff(equations.energy, name) for name in velocities]
+    moved = dict(zip(velocities, momenta, strict=True))
+    phi = [equations.observables.get(p := moved.get(n, n), sympy.sympify(p)) for n in names]
     *slopes, energy = map(sympy.Matrix, gradients_of(equations, [*phi, equations.energy]))
     slopes = sympy.Matrix.hstack(*slopes).T
     rates = sympy.Matrix(evaluate_at_point(equations, equations.rates))

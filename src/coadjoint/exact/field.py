@@ -84,11 +84,13 @@ class Field(Rationals):
         self.has_called = False
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
+        self._slopes: dict[str, list[Element]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
+        self._slopes.clear()
 
     # -- elementary functions -----------------------------------------------------------
 
@@ -294,8 +296,11 @@ class Field(Rationals):
 
     def _slopes_of(self, known: Adjoined) -> list[Element]:
         """Derivatives of an adjoined function by its arguments."""
-        own = self[known.generator]
-        return slopes_of(known.function, known.arguments, own, self._arithmetic)
+        if known.generator not in self._slopes:
+            own = self[known.generator]
+            found = slopes_of(known.function, known.arguments, own, self._arithmetic)
+            self._slopes[known.generator] = found
+        return self._slopes[known.generator]
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""
