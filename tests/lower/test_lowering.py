@@ -403,17 +403,13 @@ def test_shared_pairs_multiply_out_to_the_same_products():
 
 def test_shared_pairs_are_those_of_counting_anew_in_each_round():
     """The most frequent pair, and the first among equals, by counting all products each time."""
-    source, replaced = random.Random(1), 0  # noqa: S311
+    source, replaced = random.Random(1), 0
     for _ in range(300):
         products = [tuple(source.choices("abcdef", k=source.randint(1, 6))) for _ in range(9)]
         found, pairs = share_pairs(products, "q{}".format)
         current = list(dict.fromkeys(products))
         for name, pair in pairs.items():
-            counts = Counter(
-                either
-                for product in current
-                for either in combinations_of(product)
-            )
+            counts = Counter(either for product in current for either in combinations_of(product))
             most = max(counts.values())
             assert most > 1
             assert pair == next(each for each in counts if counts[each] == most)

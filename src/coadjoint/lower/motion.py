@@ -180,7 +180,7 @@ def _try(rhs: Program, kept: frozenset[str], most: float = float("inf")) -> Plan
 
 
 class _Planning:
-    """A plan in the making, left with `TooLongError` when it is certain to cost more than `most`."""
+    """A plan in the making; `TooLongError` ends it when it is certain to cost more than `most`."""
 
     def __init__(self, rhs: Program, kept: frozenset[str], most: float) -> None:
         self.rhs, self.kept, self.most = rhs, kept, most
