@@ -1,9 +1,11 @@
 """All integrals up to a degree: what books know is found, and that there is no more is proved."""
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 
+from coadjoint.derive import derive
 from coadjoint.exact.linear import PRIME
 from coadjoint.prove import Verdict, candidates, prove
 from coadjoint.prove.candidates import (
@@ -16,7 +18,7 @@ from coadjoint.prove.candidates import (
 from coadjoint.prove.samples import Samples
 from coadjoint.prove.zero import Discovery, decide_zero
 from tests.prove.rolling import motion
-from tests.specs import spec
+from tests.specs import shipped, spec
 
 #: Specs that claim the energy alone.
 SILENT = {
@@ -263,3 +265,20 @@ def test_a_solved_constraint_may_have_a_pole_at_the_defaults(turned):
     certificate = prove(spec(text.replace("a*u == a*v", "R*u == a*v")))
     assert certificate.holds
     assert any(each.kind == "integrals" for each in (*certificate.claims, *certificate.findings))
+
+
+@pytest.mark.parametrize("name", ["snakeboard", "chaplygin_sleigh"])
+def test_monomials_are_counted_without_being_made(name, monkeypatch):
+    """As many as there are, for all low degrees: of a long chain there would be millions."""
+    compared = []
+
+    def compare(search):
+        for degrees in product(range(3), repeat=2):
+            assert search.count(degrees) == max(map(len, search.sectors(degrees)))
+            compared.append(degrees)
+        return 1, 0
+
+    monkeypatch.setattr(candidates, "affordable", compare)
+    given = shipped(name)
+    prove(given, [derive(given)])
+    assert len(compared) == 9

@@ -33,7 +33,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import islice
-from math import prod
+from math import comb, prod
 
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.exact import Element, element_text
@@ -111,6 +111,14 @@ class CandidateSearch(PolynomialFamily):
         if not self.reversible:
             return [whole]
         return [[e for e in whole if sum(e[:count]) % 2 == parity] for parity in (0, 1)]
+
+    def count(self, degrees: Degrees) -> int:
+        """How many monomials the largest of these sectors has, without making them."""
+        n, (most, degree) = len(self.velocities), degrees
+        of_degree = [comb(n + k - 1, k) if n else int(k == 0) for k in range(most + 1)]
+        step = 2 if self.reversible else 1
+        sectors = [sum(of_degree[parity::step]) for parity in range(step)]
+        return max(sectors) * comb(len(self.positions) + degree, degree)
 
     def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
         """A basis of the integrals among combinations of monomials."""
@@ -316,7 +324,7 @@ def default_numbers(spec: Spec) -> dict[str, Fraction]:
 def affordable(search: CandidateSearch) -> Degrees:
     """The degrees that are searched, lower where there are very many monomials."""
     most, degree = DEGREES
-    while max(map(len, search.sectors((most, degree)))) > MONOMIALS and most + degree > 1:
+    while search.count((most, degree)) > MONOMIALS and most + degree > 1:
         most, degree = (most, degree - 1) if degree else (most - 1, degree)
     return most, degree
 
