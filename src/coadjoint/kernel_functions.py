@@ -21,15 +21,17 @@ _ENTRIES: Final = (
         summary="Derivative of rhs by the state, one row for each rate",
         shape="(n, n, *batch)",
         by="state",
-        doc="Systems whose rates are loops have `jacobian_vector` in its place.",
+        doc="Systems whose rates are loops, or that solve for more than 12 velocities that are all "
+        "coupled, have `jacobian_vector` in its place.",
         looped="never",
     ),
     KernelFunction(
         name="jacobian_vector",
         summary="Derivative of rhs along a vector, the Jacobian times it",
         shape="(n, *batch)",
-        doc="""Only systems whose rates are loops have it: over a table of coefficients, as a free
-body on so(9) and above, or over equal members. Its second argument is the vector, in the forms of
+        doc="""Only systems have it whose Jacobian is too large: rates are loops over a table of
+coefficients, as of a free body on so(9) and above, or over equal members, or the kernel solves for
+more than 12 velocities that are all coupled. Its second argument is the vector, in the forms of
 the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector below the state.
 """,
         by="state",

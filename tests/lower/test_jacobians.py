@@ -1,16 +1,20 @@
 """Derivatives by inputs and parameters: typed by hand, by differences, and refused where absent."""
 
 import dataclasses
+import random
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.derive.mechanics.decided import call_modulo
 from coadjoint.errors import CrossCheckError, KernelArgumentError
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import Negate, Number, Output
+from coadjoint.lower.program import Negate, Number, Output, run
 from coadjoint.render.targets import BUILDS
 from tests.driven_specs import PENDULUM, SUSLOV, build, rendered
 from tests.specs import render_claims, shipped, spec
@@ -108,3 +112,40 @@ def test_only_systems_with_inputs_have_their_jacobian(built):
     """The message lists the functions that are there."""
     with pytest.raises(KernelArgumentError, match="no function 'input_jacobian'; expected one of"):
         built("rigid_body").input_jacobian([1.0, 2.0, 3.0])
+
+
+@pytest.fixture
+def along_a_vector(monkeypatch):
+    """Programs of a system as if its Jacobian were too large, and as it is."""
+
+    def make(name):
+        equations = derive(shipped(name))
+        written = lower(equations)
+        monkeypatch.setattr("coadjoint.lower.lowering.WRITTEN_SLOPES", 0)
+        return equations, written, lower(equations)
+
+    return make
+
+
+@pytest.mark.parametrize("name", ["n_link_chain", "snakeboard", "chaplygin_ball"])
+def test_solves_that_are_too_large_have_the_product_with_a_vector(along_a_vector, name):
+    """It is the Jacobian times the vector, modulo a prime; a row that is dropped is caught."""
+    equations, written, large = along_a_vector(name)
+    assert set(large) == set(written) - {"jacobian"} | {"jacobian_vector"}
+    product, matrix = large["jacobian_vector"], written["jacobian"]
+    check_inverse(equations, product)
+    n, source = len(matrix.state), random.Random(1)
+    inputs = {name: Residue(source.randrange(1, PRIME)) for name in product.names}
+    vector = [inputs[name] for name in product.state[n:]]
+    found, slopes = (run(each, inputs, residue, call_modulo) for each in (product, matrix))
+    rows = [slopes[k : k + n] for k in range(0, n * n, n)]
+    zero = Residue(0)
+    sums = [sum((a * h for a, h in zip(row, vector, strict=True)), zero) for row in rows]
+    assert len(found) == n
+    assert [x.value for x in found] == [x.value for x in sums]
+    last = max(place for place, x in enumerate(found) if x.value)
+    outputs = list(product.outputs)
+    outputs[last] = Output(outputs[last].label, Number(Fraction(0)))
+    wrong = dataclasses.replace(product, outputs=tuple(outputs))
+    with pytest.raises(CrossCheckError, match="lowering changed jacobian_vector"):
+        check_inverse(equations, wrong)

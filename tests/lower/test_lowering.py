@@ -1,6 +1,8 @@
 """Lowering: exact inverse, shared work counted, derivatives by another road."""
 
 import dataclasses
+import random
+from collections import Counter
 from fractions import Fraction
 
 import pytest
@@ -401,6 +403,45 @@ def test_shared_pairs_multiply_out_to_the_same_products():
         assert sorted(before) == sorted(f for name in after for f in expand(name))
     assert len(found[0]) == 2
     assert len(found[2]) <= 3
+
+
+def test_shared_pairs_are_those_of_counting_anew_in_each_round():
+    """The most frequent pair, and the first among equals, by counting all products each time."""
+    source, replaced = random.Random(1), 0
+    for _ in range(300):
+        products = [tuple(source.choices("abcdef", k=source.randint(1, 6))) for _ in range(9)]
+        found, pairs = share_pairs(products, "q{}".format)
+        current = list(dict.fromkeys(products))
+        for name, pair in pairs.items():
+            counts = Counter(either for product in current for either in combinations_of(product))
+            most = max(counts.values())
+            assert most > 1
+            assert pair == next(each for each in counts if counts[each] == most)
+            current = [taken(product, pair, name) for product in current]
+            replaced += 1
+        assert max(Counter(p for each in current for p in combinations_of(each)).values()) < 2
+        shared = dict(zip(dict.fromkeys(products), current, strict=True))
+        assert found == [shared[product] for product in products]
+    assert replaced > 1000
+
+
+def combinations_of(product):
+    """The pairs that can be taken from a product at once, each as often."""
+    powers = Counter(product)
+    names = list(powers)
+    for n, a in enumerate(names):
+        yield from [(a, a)] * (powers[a] // 2)
+        for b in names[n + 1 :]:
+            yield from [(a, b)] * min(powers[a], powers[b])
+
+
+def taken(product, pair, name):
+    """A product with a pair replaced as often as it can be."""
+    rest = list(product)
+    for _ in range(list(combinations_of(product)).count(pair)):
+        rest[rest.index(pair[0])] = name
+        rest.remove(pair[1])
+    return tuple(rest)
 
 
 def test_operation_counts_count_differences_once():

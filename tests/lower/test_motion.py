@@ -4,8 +4,10 @@ from fractions import Fraction
 
 import pytest
 
+from coadjoint.lower import motion
 from coadjoint.lower.jets import make_jets
 from coadjoint.lower.motion import Function, Quotient, find_plan
+from coadjoint.lower.polynomials import add
 from coadjoint.lower.program import Symbol, evaluate, run, walk
 from tests.programs import program
 
@@ -123,3 +125,28 @@ def test_no_sum_reads_a_name_that_is_not_made():
             read = {node.name for node in walk(cell.value) if isinstance(node, Symbol)}
             assert read <= known
             known.add(cell.name)
+
+
+def factorized(size):
+    """Rates by a dense factorization, each entry of which is read by all behind it."""
+    places = range(1, size + 1)
+    pairs = [(i, j) for j in places for i in places[j:]]
+    lines = [f"a{i}_{j} = x{i}*x{j} + x{i}" for j in places for i in places[j - 1 :]]
+    for j in places:
+        lines.append(f"d{j} = a{j}_{j}" + "".join(f" - w{j}_{k}*l{j}_{k}" for k in range(1, j)))
+        for i in (i for i, column in pairs if column == j):
+            before = "".join(f" - w{i}_{k}*l{j}_{k}" for k in range(1, j))
+            lines += [f"w{i}_{j} = a{i}_{j}{before}", f"l{i}_{j} = w{i}_{j}/d{j}"]
+    state = " ".join(f"x{i}" for i in places)
+    return rates(state, "; ".join(f"d{i}" for i in places), "", "; ".join(lines))
+
+
+def test_plans_that_multiply_a_factorization_out_are_left(monkeypatch):
+    """Terms of all plans together are few: one that is larger than the best is not finished."""
+    terms = []
+    monkeypatch.setattr(motion, "add", lambda *each: terms.append(len(s := add(*each))) or s)
+    own = factorized(10)
+    plan = find_plan.__wrapped__(own)
+    size = sum(1 for value in own.values() for _ in walk(value))
+    assert plan.cost < size
+    assert 100 < sum(terms) < 400 * size, sum(terms) / size

@@ -372,7 +372,16 @@ class Element:
         if isinstance(other, int) and other == 0:
             return not self
         right = self._coerce(other)
-        return NotImplemented if right is None else not (self - right)
+        if right is None:
+            return NotImplemented
+        if self._parts == right._parts:
+            return True
+        return not self._is_over(right) and not (self - right)
+
+    def _is_over(self, other: Element) -> bool:
+        """Whether two elements are single quotients over one denominator: numerators decide."""
+        own, others = self._parts.values(), other._parts.values()
+        return [q.powers for q in own] == [q.powers for q in others] and len(own) == 1
 
     def __hash__(self) -> int:
         # Equal elements may be written over different factors, so only polynomials share a hash.

@@ -92,11 +92,13 @@ class Field(Rationals):
         self.has_called = False
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
+        self._slopes: dict[str, list[Element]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
+        self._slopes.clear()
 
     def _take_numbers(self, known: Numbers, own: Sequence[str], p: PolyElement) -> Element:
         """A polynomial over algebraic numbers, each written by functions of this field."""
@@ -200,7 +202,7 @@ class Field(Rationals):
     def reduce_squares(self, element: Element, generator: str, square: Element) -> Element:
         """A single quotient with ``generator ** 2`` replaced in its numerator."""
         place, ring = self._position[generator], self._ring
-        if not element or element.parts[0].numer.degree(ring.gens[place]) < 2:
+        if not element or element.parts[0].numer.degree(place) < 2:
             return element
         (quotient,) = element.parts
         parts: dict[int, PolyElement] = {}
@@ -222,7 +224,7 @@ class Field(Rationals):
         """
         place, ring = self._position[generator], self._ring
         degree = len(coefficients) - 1
-        if not element or element.parts[0].numer.degree(ring.gens[place]) < degree:
+        if not element or element.parts[0].numer.degree(place) < degree:
             return element
         (quotient,) = element.parts
         parts, root = split_by_powers(quotient.numer, place), ring.gens[place]
@@ -314,8 +316,11 @@ class Field(Rationals):
 
     def _slopes_of(self, known: Adjoined) -> list[Element]:
         """Derivatives of an adjoined function by its arguments."""
-        own = self[known.generator]
-        return slopes_of(known.function, known.arguments, own, self.arithmetic)
+        if known.generator not in self._slopes:
+            own = self[known.generator]
+            found = slopes_of(known.function, known.arguments, own, self.arithmetic)
+            self._slopes[known.generator] = found
+        return self._slopes[known.generator]
 
     def gradient(self, element: Element, names: Iterable[str]) -> tuple[Element, ...]:
         """Partial derivatives by several symbols."""

@@ -70,6 +70,7 @@ def jacobian(
     equations: Equations,
     variables: Sequence[str],
     residuals: Sequence[ResidualSlope],
+    along: Sequence[str] = (),
 ) -> Program:
     """``d rhs_i / d x_j`` row by row, from the statements of the ``rhs`` Program.
 
@@ -82,14 +83,19 @@ def jacobian(
         equations: What it was lowered from.
         variables: The x that the derivatives are by.
         residuals: What these are the slopes of.
+        along: Components of a vector: the derivative is that along it, one for each rate.
     """
-    graph, n = Graph(), len(rhs.state)
+    graph, n, columns = Graph(), len(rhs.state), variables if not along else ("vector",)
     definitions, values = _insert_definitions(
         graph, rhs, {name for name, _ in equations.exact.definitions} | equations.guesses
     )
     slopes: dict[int, Slopes] = {graph.symbol(x): {} for x in rhs.names}
     slopes |= {graph.symbol(x): {} for x in equations.guesses}
-    slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}
+    if along:
+        vector = zip(variables, along, strict=True)
+        slopes |= {graph.symbol(x): {columns[0]: graph.symbol(h)} for x, h in vector}
+    else:
+        slopes |= {graph.symbol(x): {x: graph.number(1)} for x in variables}
     rows: dict[int, dict[str, int]] = {}
     for residual, node in zip(residuals, values[n:], strict=False):
         rows.setdefault(residual.row, {})[residual.by] = node
@@ -105,18 +111,19 @@ def jacobian(
     first, factors_of = 0, iter(values[n + len(residuals) :])
     for solve, places in zip(equations.exact.solves, factors_of_solves(equations), strict=True):
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
-        columns = [_differentiate_through(graph, row, slopes, variables) for row in own]
+        right = [_differentiate_through(graph, row, slopes, columns) for row in own]
         own_factors = {place: next(factors_of) for place in places}
-        solved |= _solve_slopes(graph, solve, variables, columns, own_factors)
+        solved |= _solve_slopes(graph, solve, columns, right, own_factors)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
         slope = graph.derivative(value, slopes)
-        outputs += [(f"d({output.label})/d{x}", _total(graph, slope, solved, x)) for x in variables]
+        outputs += [(f"d({output.label})/d{x}", _total(graph, slope, solved, x)) for x in columns]
 
     def program() -> Program:
         naming = Naming(graph, list(definitions.items()), outputs, rhs.parameters)
-        return naming.program(name, (n, len(variables)), **rhs.arrays)
+        shape = (n,) if along else (n, len(columns))
+        return naming.program(name, shape, **rhs.arrays | {"state": (*rhs.state, *along)})
 
     computed = program()
     zeros = find_hidden_zeros(computed, equations)
@@ -126,18 +133,18 @@ def jacobian(
 
 
 def _differentiate_through(
-    graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], variables: Sequence[str]
+    graph: Graph, row: Mapping[str, int], slopes: Mapping[int, Slopes], columns: Sequence[str]
 ) -> list[int]:
-    """Derivatives of a residual by each variable, through definitions too."""
-    columns = []
-    for name in variables:
-        addends = [row[name]] if name in row else []
+    """Derivatives of a residual by each column, through definitions too."""
+    found = []
+    for name in columns:
+        addends = []
         for by, slope in row.items():
-            inner = {} if by in variables else slopes[graph.symbol(by)]
+            inner = slopes[graph.symbol(by)]
             if name in inner:
                 addends.append(graph.multiply(slope, inner[name]))
-        columns.append(graph.sum(addends))
-    return columns
+        found.append(graph.sum(addends))
+    return found
 
 
 def _total(graph: Graph, slope: Slopes, solved: Mapping[str, Slopes], name: str) -> int:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from itertools import groupby
+from typing import Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import Rows, rhs, rows_of
@@ -36,6 +37,10 @@ from coadjoint.lower.tables import (
 )
 from coadjoint.lower.vanishing import find_hidden_zeros
 
+#: Products by which a Jacobian through the solves of the kernel is written out, factors times
+#: components of the state; beyond, there is the derivative along a vector in its place. Twelve
+#: links of a chain take 3456 (docs/decisions/coupled-velocities.md).
+WRITTEN_SLOPES: Final = 4000
 #: Rates that cost more are left with the definitions that they have: each try takes as long as
 #: lowering them does.
 TRIED_COST = 1000
@@ -56,9 +61,10 @@ def lower(equations: Equations) -> dict[str, Program]:
 def _lower_all(equations: Equations) -> dict[str, Program]:
     """The same, with the definitions that the equations have."""
     programs: dict[str, Program] = {}
-    looped = _loop(equations)
+    looped, large = _loop(equations), count_slopes(equations) > WRITTEN_SLOPES
     for name, function in KERNEL_FUNCTIONS.items():
-        if function.looped == ("only" if looped is None else "never"):
+        is_large = looped is not None or (large and function.by == "state")
+        if function.looped == ("never" if is_large else "only"):
             continue
         rows = rows_of(equations, name)
         if rows is None:
@@ -186,8 +192,9 @@ def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
 
 
 def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
-    """A derivative of the rates: by the state, the inputs or the parameters."""
+    """A derivative of the rates: by the state, the inputs or the parameters; or along a vector."""
     equations, field = rows.of, rows.of.setting.field
+    state = equations.setting.state
     slopes = residual_slopes(equations, rows.by)
     labelled = [(f"slope {each.row} by {each.by}", each.slope) for each in slopes]
     labelled += [
@@ -199,8 +206,14 @@ def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
     inner = dict.fromkeys(each.by for each in slopes if each.by not in rows.by)
     labelled += [(by, field[by]) for by in inner]
     lines = [*rows.lines, *labelled]
-    wide = _program(equations, "rhs", lines, (len(lines),), rows.state) if labelled else rhs
-    return jacobian(name, wide, equations, rows.by, slopes)
+    wide = _program(equations, "rhs", lines, (len(lines),), state) if labelled else rhs
+    return jacobian(name, wide, equations, rows.by, slopes, rows.along)
+
+
+def count_slopes(equations: Equations) -> int:
+    """The products that a Jacobian through all solves takes: factors times components."""
+    factors = sum(map(len, factors_of_solves(equations)))
+    return factors * len(equations.setting.state)
 
 
 def _program(

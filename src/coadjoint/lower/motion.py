@@ -128,10 +128,13 @@ def find_plan(rhs: Program) -> Plan:
     names = [statement.name for statement in rhs.statements_at("member")]
     tries = EFFORT // sum(1 for value in rhs.values() for _ in walk(value))
     starts = [frozenset(names[place:]) for place in range(min(len(names), tries) + 1)]
-    plans = [(_try(rhs, kept), kept) for kept in (*starts, frozenset[str]())]
-    best, kept = min(plans, key=lambda each: each[0].cost)
+    best, kept = _try(rhs, starts[0]), starts[0]
+    for start in (*starts[1:], frozenset[str]()):
+        other = _try(rhs, start, best.cost)
+        if other.cost < best.cost:
+            best, kept = other, start
     for name in names[:tries]:
-        other = _try(rhs, kept ^ {name})
+        other = _try(rhs, kept ^ {name}, best.cost)
         if other.cost < best.cost:
             best, kept = other, kept ^ {name}
     return best
@@ -164,19 +167,23 @@ def _with_names(rhs: Program) -> Program:
     return replace(rhs, statements=tuple(statements), outputs=outputs)
 
 
-def _try(rhs: Program, kept: frozenset[str]) -> Plan:
-    """The plan in which some statements are kept; it costs too much where products are too long."""
+def _try(rhs: Program, kept: frozenset[str], most: float = float("inf")) -> Plan:
+    """The plan in which some statements are kept; its cost is infinite where it is beyond `most`.
+
+    Where products are too long it is, too. A sum that is multiplied out may have as many terms as
+    there are paths through a factorisation, so that a plan is left as soon as it is too large.
+    """
     try:
-        return _Planning(rhs, kept).plan()
+        return _Planning(rhs, kept, most).plan()
     except TooLongError:
         return Plan(fixed=(), meanings={}, rates=(), pairs={}, products={}, cost=float("inf"))
 
 
 class _Planning:
-    """A plan in the making."""
+    """A plan in the making; `TooLongError` ends it when it is certain to cost more than `most`."""
 
-    def __init__(self, rhs: Program, kept: frozenset[str]) -> None:
-        self.rhs, self.kept = rhs, kept
+    def __init__(self, rhs: Program, kept: frozenset[str], most: float) -> None:
+        self.rhs, self.kept, self.most = rhs, kept, most
         self.fixed = list(rhs.statements_at("parameters"))
         self._reciprocals = {each.value: each.name for each in self.fixed}
         constants = (*rhs.parameters, *(statement.name for statement in self.fixed))
@@ -197,6 +204,8 @@ class _Planning:
         polynomials = [*(m for m in meanings.values() if isinstance(m, dict)), *rates]
         terms = [product for each in polynomials for product, _ in each]
         products = [product for product in terms if len(product) > 1]
+        # each of them takes a product of its own, however much they share
+        self._hold(len(set(products)) + TERM * (len(terms) + len(meanings)))
         made, pairs = share_pairs(products, lambda n: f"_m{n}")
         distinct = dict(zip(products, made, strict=True))
         cost = len(pairs) + sum(len(product) - 1 for product in distinct.values())
@@ -209,6 +218,11 @@ class _Planning:
             products=distinct,
             cost=cost + TERM * (len(terms) + len(meanings)),
         )
+
+    def _hold(self, least: float) -> None:
+        """Leave the plan where what it costs at least is too much."""
+        if least > self.most:
+            raise TooLongError
 
     def _read(self, rates: Sequence[Polynomial]) -> Iterator[str]:
         """Names that the rates need, each after those it needs itself."""
@@ -228,6 +242,7 @@ class _Planning:
     def _keep(self, statement: Statement) -> Polynomial:
         """A statement as a value of its own, or as what it is."""
         whole = self._polynomial(statement.value)
+        self._hold(len({product for product, _ in whole if len(product) > 1}))
         moves = sum(1 for product, _ in whole if product)
         if moves == 0 or (moves == 1 and _is_linear(whole) and not is_difference(whole)):
             return whole

@@ -29,20 +29,56 @@ def share_pairs(
     """
     current = [list(product) for product in dict.fromkeys(products)]
     pairs: dict[str, Pair] = {}
-    while True:
-        counts: Counter[Pair] = Counter()
-        for product in current:
-            counts.update(_pairs(product))
-        # max takes the first of the most frequent: insertion order, so the result is the same
-        # in every run.
-        best = max(counts, key=counts.__getitem__, default=None)
-        if best is None or counts[best] < 2:
-            break
+    counts = _Counts(current)
+    while (best := counts.most_frequent()) is not None:
         name = new_name(len(pairs) + 1)
         pairs[name] = best
-        current = [_replace(product, best, name) for product in current]
+        counts.replace(best, name)
     shared = dict(zip(dict.fromkeys(products), map(tuple, current), strict=True))
     return [shared[product] for product in products], pairs
+
+
+class _Counts:
+    """How often each pair occurs, kept while products change: each round counts what changed anew.
+
+    Args:
+        products: Which are changed in place.
+    """
+
+    def __init__(self, products: list[list[str]]) -> None:
+        self._products = products
+        self._total: Counter[Pair] = Counter()
+        self._places: dict[Pair, set[int]] = {}
+        for place in range(len(products)):
+            self._count(place)
+
+    def most_frequent(self) -> Pair | None:
+        """The pair that occurs most often, and first among equals; None if none occurs twice."""
+        most = max(self._total.values(), default=0)
+        if most < 2:
+            return None
+        tied = [pair for pair, count in self._total.items() if count == most]
+        first = min(min(self._places[pair]) for pair in tied)
+        candidates = {pair for pair in tied if first in self._places[pair]}
+        return next(pair for pair in _pairs(self._products[first]) if pair in candidates)
+
+    def replace(self, pair: Pair, name: str) -> None:
+        """A new name for a pair, wherever it stands."""
+        for place in sorted(self._places[pair]):
+            for each, count in _pairs(self._products[place]).items():
+                self._places[each].discard(place)
+                self._total[each] -= count
+                if not self._total[each]:
+                    del self._total[each], self._places[each]
+            self._products[place] = _replace(self._products[place], pair, name)
+            self._count(place)
+
+    def _count(self, place: int) -> None:
+        """Add the pairs of one product."""
+        pairs = _pairs(self._products[place])
+        self._total.update(pairs)
+        for each in pairs:
+            self._places.setdefault(each, set()).add(place)
 
 
 def _pairs(product: list[str]) -> Counter[Pair]:

@@ -70,6 +70,7 @@ class Functions:
 
     Attributes:
         obstacle: Why no values are known to satisfy all relations; else empty.
+        places: Of the argument of each function among those of its group, by generator.
         roots: The square roots of what is not a number.
         proper: Those that a point has shown to be new numbers.
     """
@@ -89,6 +90,12 @@ class Functions:
         self.arguments = {
             group: _distinct(a.argument for a in self.known if a.function in group)
             for group in (*GROUPS, LOGARITHMS)
+        }
+        self.places = {
+            a.generator: self.arguments[group].index(a.argument)
+            for group in GROUPS
+            for a in self.known
+            if a.function in group
         }
         roots = [a for a in self.known if a.function == "sqrt"]
         numbered = {a.generator: self._number(a.argument) for a in roots}
@@ -315,7 +322,7 @@ class FunctionsAtPoint:
             case "sqrt":
                 return self._root(each.generator, argument)
         group = next(group for group in GROUPS if each.function in group)
-        place = self._functions.arguments[group].index(each.argument)
+        place = self._functions.places[each.generator]
         multiples = self._functions.lattices[group].multiples[place]
         if multiples and not argument.value:  # the argument is 0, and nobody knew
             raise ZeroDivisionError(f"{each.function} of 0")

@@ -113,8 +113,8 @@ def check_function(system: System, function: str) -> None:
     known = KERNEL_FUNCTIONS.get(function)
     large = known is not None and known.looped == "never" and "jacobian_vector" in system.functions
     advice = (
-        " Its rates are loops over a table, and matrices of its size are not written out: take "
-        "jacobian_vector(state, vector), the Jacobian times a vector."
+        " Matrices of its size are not written out: take jacobian_vector(state, vector), the "
+        "Jacobian times a vector."
     )
     raise KernelArgumentError(
         f"{system.name} has no function {function!r}; expected one of "
