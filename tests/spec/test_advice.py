@@ -512,10 +512,10 @@ ADVICE = [
     ),
     (
         BY_BRACKETS,
-        write('= "e3" }', '= "sqrt(5)*e3" }'),
-        'Name a parameter here, with the default "sqrt(5)"',
-        write("sqrt(5)*e3", "k*e3")
-        + write("[variables]", '[parameters]\nk = { default = "sqrt(5)" }\n[variables]'),
+        write('= "e3" }', '= "sin(1)*e3" }'),
+        'Name a parameter here, with the default "sin(1)"',
+        write("sin(1)*e3", "k*e3")
+        + write("[variables]", '[parameters]\nk = { default = "sin(1)" }\n[variables]'),
     ),
     (
         BY_BRACKETS,
