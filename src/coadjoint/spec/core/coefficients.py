@@ -50,7 +50,7 @@ Coefficient = Any
 _Linear = dict[int | None, Coefficient]  # of each basis vector; None for the part without one
 
 #: Functions that take numbers.
-KNOWN = {*ELEMENTARY, "tan", "pow"}
+KNOWN = {*ELEMENTARY, "tan"}
 _COMBINATION = (
     "a linear combination of the basis",
     ("sums of basis names times numbers or polynomials of parameters, such as -2*e1 + e3/2, or 0"),
@@ -230,8 +230,6 @@ def _evaluate(node: Node, own: Arithmetic) -> Any:
                 return own.negate(below[0])
             case Call(function="tan"):
                 return own.divide(own.call("sin", *below), own.call("cos", *below))
-            case Call(function="pow"):
-                return own.call("exp", own.multiply(below[1], own.call("log", below[0])))
             case Call(function=function):
                 return own.call(function, *below)
             case Power(exponent=exponent):
