@@ -513,17 +513,17 @@ ADVICE = [
     ),
     (
         BY_BRACKETS,
-        write('= "e3" }', '= "sqrt(5)*e3" }'),
-        'Name a parameter here, with the default "sqrt(5)"',
-        write("sqrt(5)*e3", "k*e3")
-        + write("[variables]", '[parameters]\nk = { default = "sqrt(5)" }\n[variables]'),
+        write('= "e3" }', '= "sin(1)*e3" }'),
+        'Name a parameter here, with the default "sin(1)"',
+        write("sin(1)*e3", "k*e3")
+        + write("[variables]", '[parameters]\nk = { default = "sin(1)" }\n[variables]'),
     ),
     (
         BY_BRACKETS,
-        write('= "e3" }', '= "2*pi*e3" }'),
-        'Name a parameter here, with the default "pi"',
-        write("2*pi*e3", "2*k*e3")
-        + write("[variables]", '[parameters]\nk = { default = "pi" }\n[variables]'),
+        write('= "e3" }', '= "cos(2*pi/101)*e3" }'),
+        "Name a parameter for one of them",
+        write("cos(2*pi/101)*e3", "k*e3")
+        + write("[variables]", '[parameters]\nk = { default = "cos(2*pi/101)" }\n[variables]'),
     ),
     (
         BY_BRACKETS,

@@ -414,7 +414,8 @@ def _count_room(spec: Spec) -> int:
 
 def _count_numbers(spec: Spec) -> int:
     """The same for irrational numbers in algebras and their actions."""
-    algebras = [each.algebra for each in (spec, *spec.symmetries) if each.algebra is not None]
+    algebras = [symmetry.algebra for symmetry in spec.symmetries]
+    algebras += [spec.algebra] if spec.algebra is not None else []
     rows: list[Mapping[Any, Any]] = [row for a in algebras for row in a.constants.values()]
     rows += [matrix for a in algebras for matrix in (*a.matrices, *a.elements)]
     actions = (variable.representation for variable in spec.variables)

@@ -19,8 +19,8 @@ from sympy.polys.rings import PolyElement
 from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, evaluate, slopes_of
 from coadjoint.exact.dense import total
 from coadjoint.exact.element import Element, split_by_powers
-from coadjoint.exact.rationals import Rationals
 from coadjoint.exact.numbers import PI, Numbers
+from coadjoint.exact.rationals import Rationals
 from coadjoint.exact.region import Condition, Region
 
 Value = TypeVar("Value")

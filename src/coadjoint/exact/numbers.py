@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from itertools import combinations_with_replacement, count
+from itertools import chain, combinations_with_replacement, count
 from operator import add, mul
 from typing import Any
 
@@ -90,7 +90,7 @@ class Numbers:
             self.domain = QQ.algebraic_field(*generators)
         self.degree = self.domain.mod.degree() if generators else 1
         self._images = {e: self.domain.from_sympy(e) for e in irrational}
-        #: How many functions stand in the numbers: each, the pi in it, and what it is a function of.
+        #: How many functions stand in the numbers: each, what it is a function of, and pi.
         self.room = 2 * len(self._written) + 2
         self._products: list[tuple[Written, ...]] = []
         #: A basis over the rationals.
@@ -114,15 +114,16 @@ class Numbers:
             )
             if chosen
         ]
-        for length in count():
-            for factors in combinations_with_replacement(atoms, length):
-                if self._span.rank == self.degree:
-                    return
-                value = reduce(mul, (x for _, x in factors), self.domain.one)
-                if self._span.coordinates(self._row(value)) is None:
-                    self._span.add(self._row(value))
-                    self.basis.append(value)
-                    self._products.append(tuple(each for each, _ in factors))
+        products = chain.from_iterable(
+            combinations_with_replacement(atoms, length) for length in count()
+        )
+        while self._span.rank < self.degree:
+            factors = next(products)
+            value = reduce(mul, (x for _, x in factors), self.domain.one)
+            if self._span.coordinates(self._row(value)) is None:
+                self._span.add(self._row(value))
+                self.basis.append(value)
+                self._products.append(tuple(each for each, _ in factors))
 
     def _row(self, number: Any) -> Mapping[int, Fraction]:
         """Coordinates of a number along the powers of the field's generator."""
@@ -156,7 +157,7 @@ class Numbers:
         return reduce(own.add, values, own.number(Fraction(0)))
 
     def pi(self, own: Arithmetic) -> Any:
-        """pi in any arithmetic."""
+        """The number pi in any arithmetic."""
         return own.multiply(own.number(Fraction(4)), own.call("atan", own.number(Fraction(1))))
 
     def text_symbols(self, number: Any) -> Any:

@@ -29,7 +29,8 @@ def numbers_of(algebra: LieAlgebra) -> Numbers | None:
     held = [c for *_, c in algebra.structure() if not isinstance(c, int | Fraction)]
     if not held or any(algebraic(c) is None for c in held):
         return None
-    return held[0].factors.numbers
+    numbers: Numbers = held[0].factors.numbers
+    return numbers
 
 
 class AlgebraicCasimirs:
@@ -41,9 +42,7 @@ class AlgebraicCasimirs:
         numbers: The field of its constants.
     """
 
-    def __init__(
-        self, algebra: LieAlgebra, structure: PoissonStructure, numbers: Numbers
-    ) -> None:
+    def __init__(self, algebra: LieAlgebra, structure: PoissonStructure, numbers: Numbers) -> None:
         self.algebra, self.structure, self.numbers = algebra, structure, numbers
         self._rows: dict[tuple[int, int, int, int], dict[int, Fraction]] = {}
 

@@ -120,9 +120,15 @@ class Scalars:
         try:
             number, turns = self._numbers.index(self._places[node])
         except ValueError as error:
-            problem, expected = str(error), "a real algebraic number or a rational multiple of pi"
-            hint = "Name a parameter here, with this number as its default."
-            raise ExpressionError(problem, node.start, node.end, expected=expected, hint=hint)
+            shown = list(self._calls.values())[self._places[node]].text
+            raise ExpressionError(
+                str(error),
+                node.start,
+                node.end,
+                expected="a real algebraic number or a rational multiple of pi",
+                hint=f'Name a parameter here, with the default "{shown}": laws are proved for all '
+                "values.",
+            ) from None
         except OverflowError as error:
             problem = f"all numbers together are in a field of degree {error}"
             hint = "Name a parameter for one of them."
@@ -144,7 +150,7 @@ class Scalars:
             except ExpressionError:
                 continue  # refused where it is read
             for node in walk(tree):
-                if is_constant_call(node):
+                if isinstance(node, Call) and is_constant_call(node):
                     shown = text[node.start : node.end]
                     result.setdefault(node, Written(shown, partial(_evaluate, node)))
         return result
@@ -363,15 +369,7 @@ class _Reading:
 
     def _refusal(self, node: Node) -> ExpressionError:
         what, expected = self.wanted
-        hint = ""
-        if isinstance(node, Call) and not any(isinstance(n, Name | Index) for n in walk(node)):
-            part = self._text[node.start : node.end]
-            hint = (
-                f'Name a parameter here, with the default "{part}": laws are proved for all values.'
-            )
-        return ExpressionError(
-            f"this is not {what}", node.start, node.end, expected=expected, hint=hint
-        )
+        return ExpressionError(f"this is not {what}", node.start, node.end, expected=expected)
 
 
 def is_known_number(value: Coefficient) -> bool:
