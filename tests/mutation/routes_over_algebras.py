@@ -39,7 +39,7 @@ REDUCED = (
         "lie-poisson",
         "structure",
         ("quadratic_potential_so3",),  # symmetric matrices are not their own dual, vectors are
-        "momentum_algebra: bare action",
+        "exact_momentum_algebra: bare action",
     ),
     *of(
         "lie-poisson",

@@ -38,11 +38,8 @@ def exact_momentum_algebra(setting: Setting) -> LieAlgebra:
     """The same algebra with constants as they are declared, in which every zero is decided."""
     algebra = setting.spec.algebra
     assert algebra is not None, f"{setting.spec.name} has a declared bracket and no algebra"
-    actions = [
-        (variable.name, variable.representation.dual())
-        for variable in setting.advected
-        if variable.representation is not None
-    ]
+    declared = {each.name: each.representation for each in setting.advected}
+    actions = [(name, action.dual()) for name, action in declared.items() if action is not None]
     return semidirect_product(algebra, actions) if actions else algebra
 
 
