@@ -20,8 +20,6 @@ SHARED = (
         "setting",
         TOP,
         "sign: rewrite 1 if _1 else -1 -> -1 if _1 else 1",
-        "_action: rewrite declared.over(self.take_constant, _1)"
-        " -> declared.over(lambda v: -self.take_constant(v), _1)",
     ),
     *of(
         "setting",

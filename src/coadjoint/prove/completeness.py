@@ -16,7 +16,6 @@ from coadjoint.derive import Equations
 from coadjoint.derive.structure import (
     canonical_pairs,
     exact_momentum_algebra,
-    momentum_algebra,
     poisson_structure,
 )
 from coadjoint.errors import AlgebraError
