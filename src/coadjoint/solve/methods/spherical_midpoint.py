@@ -43,6 +43,11 @@ class Sphere:
     rows: tuple[int, ...]
     tangent: tuple[int, ...] = ()
 
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Each row with that of the tangent; none where there is no tangent."""
+        return list(zip(self.rows, self.tangent, strict=False))
+
 
 class SphericalMidpoint(LiePoisson):
     """A step through the middle of an arc of each sphere.
@@ -116,7 +121,7 @@ class _Scale:
             lean = lean + 2.0 * part * self.scale * self.slope
             self.slope = self.slope * rest - self.scale * lean
         self.scale = self.scale * rest
-        for row, tangent in zip(self.sphere.rows, self.sphere.tangent, strict=False):
+        for row, tangent in self.sphere.pairs:
             state[tangent] = self.scale * state[tangent] + self.slope * state[row]
         for row in self.sphere.rows:
             state[row] = self.scale * state[row]
