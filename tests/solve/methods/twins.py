@@ -35,9 +35,7 @@ NAMES = {
 def _cross(x: str, i: int, v: str, j: int) -> list[str]:
     """Rows of a cross product of three rows from i on with three from j on."""
     rows = [(1, 2), (2, 0), (0, 1)]
-    return [
-        f"({x}[{i + a}]*{v}[{j + b}] - {x}[{i + b}]*{v}[{j + a}])" for a, b in rows
-    ]
+    return [f"({x}[{i + a}]*{v}[{j + b}] - {x}[{i + b}]*{v}[{j + a}])" for a, b in rows]
 
 
 def _so(n: int) -> tuple[list[str], list[str]]:
@@ -146,7 +144,8 @@ INLINE V larger(V a, V b) { return choose(a > b, a, b); }
 INLINE int any(I mask) { int64_t found = 0; EACH(w) found |= mask[w]; return found != 0; }
 """
 _EPILOGUE = """
-void go(double *state, double *low, uint8_t *solved, double *made, size_t count, double h, long steps)
+void go(double *state, double *low, uint8_t *solved, double *made, size_t count, double h,
+        long steps)
 {
     const size_t members = count * LANES;
     for (size_t first = 0; first < count; first += BLOCKS) {
@@ -186,15 +185,21 @@ def render(written: Written) -> str:
         if (written.spheres or file != "spherical_midpoint")
         and (written.sandwich or file != "isospectral_midpoint")
     }
-    return environment().get_template("c/methods/lie_poisson.c.j2").render(
-        lie_poisson={
-            "names": names,
-            "stages": {order: list(map(repr, each)) for order, each in COMPOSITIONS.items()},
-            "spheres": written.spheres,
-            "sweeps": SWEEPS,
-        },
-        coadjoint_mean={name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},
-        spherical_midpoint={"NEAR": spherical_midpoint.NEAR},
+    return (
+        environment()
+        .get_template("c/methods/lie_poisson.c.j2")
+        .render(
+            lie_poisson={
+                "names": names,
+                "stages": {order: list(map(repr, each)) for order, each in COMPOSITIONS.items()},
+                "spheres": written.spheres,
+                "sweeps": SWEEPS,
+            },
+            coadjoint_mean={
+                name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")
+            },
+            spherical_midpoint={"NEAR": spherical_midpoint.NEAR},
+        )
     )
 
 
@@ -245,8 +250,8 @@ class Compiled:
             _PRELUDE + head + finite + "\n".join(functions) + text + _EPILOGUE, encoding="ascii"
         )
         (folder / "kernel.h").write_text(
-            "#include <stddef.h>\n#include <stdint.h>\nvoid go(double *, double *, uint8_t *, double *, "
-            "size_t, double, long);\n",
+            "#include <stddef.h>\n#include <stdint.h>\n"
+            "void go(double *, double *, uint8_t *, double *, size_t, double, long);\n",
             encoding="ascii",
         )
         source = Source("kernel", (f"-D{macro}",), is_loops=False)
