@@ -32,7 +32,9 @@ from coadjoint.crosscheck.replay import Replayed
 from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
+from coadjoint.render.solvers import select_programs
 from coadjoint.render.targets import BUILDS, TARGETS
 from coadjoint.solver_kinds import list_kinds
 
@@ -129,7 +131,14 @@ def crosscheck(
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
-            kind: start_compiling(pool, texts, folder, chosen, kind, noisy="noise" in programs)
+            kind: start_compiling(
+                pool,
+                texts,
+                folder,
+                chosen,
+                kind,
+                hold_sides(select_programs(programs.values(), kind)),
+            )
             for kind in list_kinds(programs)
         }
         loading = pool.submit(system.load_kernels, chosen)

@@ -23,9 +23,12 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
+from coadjoint.methods import list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.ensemble import Ensemble, Limits, Record
+from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.limits import Limits
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -40,13 +43,18 @@ CHOICES: Final = {
     "rk4": Choice("rk4", 4),
 }
 #: Those of systems with noise, in addition.
-NOISY: Final = {"heun": Choice("heun", 2), "midpoint": Choice("midpoint", 2)}
-_ALL: Final = {**CHOICES, **NOISY}
+NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpoint")}
+#: Those that keep structure and are compared for every system that has them; compositions of them
+#: take the same steps, of other lengths.
+STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
-    """The methods of a system, by the names of its functions."""
-    return _ALL if "noise" in functions else CHOICES
+    """The methods of a system that are compared, by the names of the functions of its solvers."""
+    if "noise" in functions:
+        return CHOICES | NOISY
+    own = {each.name for each in list_structured(functions)}
+    return CHOICES | {name: each for name, each in STRUCTURED.items() if name in own}
 
 
 class Advance(Protocol):
@@ -73,7 +81,8 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 3
-    compiler, kind = find_compiler(), replace(_ALL[method], kind=what).source
+    every = CHOICES | NOISY | STRUCTURED
+    compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
@@ -112,21 +121,24 @@ class NumpySolver:
     """The methods in NumPy.
 
     Attributes:
-        expand: The function of ``solver.py``.
-        branches: Its constant: whether the rates have branch points.
+        module: What names of ``solver.py`` stand for.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
     """
 
-    expand: Callable[..., Array]
-    branches: bool
+    module: Mapping[str, Any]
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
+
+    @property
+    def branches(self) -> bool:
+        """Whether the rates have branch points."""
+        return bool(self.module["BRANCHES"])
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
-        rates = partial(self._evaluate, "rates")
+        rates = self._hold if "KINKS" in self.module else partial(self._evaluate, "rates")
         if name == "taylor":
             return Taylor(
                 expand=self._expand,
@@ -141,6 +153,8 @@ class NumpySolver:
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
+        if name in self.module.get("STRUCTURED", ()):
+            return Structured(name, size, {"rates": rates})
         return METHODS[name](
             rates=rates,
             fields=self._fields,
@@ -155,7 +169,8 @@ class NumpySolver:
             partial(self._evaluate, each) if each in self.functions else None
             for each in ("domain", "projection")
         )
-        limits = Limits(domain=domain, strict=self.strict, projection=projection)
+        kinks = self._find_kinks if "KINKS" in self.module else None
+        limits = Limits(domain=domain, strict=self.strict, projection=projection, kinks=kinks)
 
         def go(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
             method = self.method(name, ensemble)
@@ -164,7 +179,20 @@ class NumpySolver:
         return go
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
-        return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
+        path: Array = self.module["expand"](
+            lanes.state, lanes.given, lanes.driving, lanes.slopes, order
+        )
+        return path
+
+    def _hold(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rates: Array = self.module["find_rates"](state, lanes.given, driving)
+        return rates
+
+    def _find_kinks(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rows: Array = self.module["find_kinks"](state, lanes.parameters, driving)
+        return rows
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise", lanes, after, state)
@@ -175,9 +203,8 @@ class NumpySolver:
         return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
-def load_numpy(text: str) -> tuple[Callable[..., Array], bool]:
-    """The function ``expand`` of the text of a solver in NumPy, and its constant ``BRANCHES``."""
+def load_numpy(text: str) -> dict[str, Any]:
+    """What names of the text of a solver in NumPy stand for."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
-    expand: Callable[..., Array] = module["expand"]
-    return expand, bool(module["BRANCHES"])
+    return module

@@ -13,7 +13,7 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +27,6 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
-    NOISY,
     Advance,
     Function,
     NumpySolver,
@@ -47,6 +46,8 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
+from coadjoint.elementary import ELEMENTARY
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -85,10 +86,11 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
-    noisy: bool = False,
+    functions: Collection[str] = (),
 ) -> Compiling:
     """Have the objects of some targets compiled in a private folder."""
-    objects = (*OBJECTS, *((method, "c", "exact") for method in NOISY if noisy))
+    others = (name for name in list_choices(functions) if name not in CHOICES)
+    objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
         for method, target, build in objects
@@ -113,7 +115,8 @@ def check_solvers(
     """
     functions = _list_functions(subject, kind)
     programs = select_programs(subject.programs.values(), kind)
-    subject, text = make_whole(subject, programs, kind), arrange(programs)
+    subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
+    text = arrange(programs)
     printed = SolverTexts(
         programs=programs,
         recurrences=text,
@@ -124,7 +127,8 @@ def check_solvers(
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
-    numpy = NumpySolver(*load_numpy(texts[kind.files[2]]), functions, _list_strict(subject))
+    module = load_numpy(texts[kind.files[2]])
+    numpy = NumpySolver(module, functions, _list_strict(subject))
     advance = _load(subject.system.name, numpy, compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
@@ -133,7 +137,7 @@ def check_solvers(
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
     equal, together = dict[str, int](), dict[str, int]()
     if compiling:
-        if not text.functions:
+        if all(ELEMENTARY[name].is_exact for name, _ in text.functions):
             equal = check_bits(solvers, batch, size)
         else:
             together = check_together(solvers, batch, size)
@@ -156,7 +160,7 @@ def _load(
     system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
 ) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    methods = list_choices(numpy.functions)
+    methods = list_choices([*numpy.functions, *(["kinks"] if "KINKS" in numpy.module else [])])
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), system, kind)

@@ -37,6 +37,8 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
+from coadjoint.methods import list_structured
+from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
@@ -134,6 +136,7 @@ class SolverText:
         branches: Whether the rates call functions of what moves that have branch points or jumps,
             as sqrt and log. A motion may be analytic there.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
+        kinks: What the sides are those of, which are the last parameters; None for no sides.
     """
 
     fixed: tuple[Line, ...]
@@ -148,6 +151,7 @@ class SolverText:
     fixed_reads: frozenset[str]
     branches: bool
     loops: LoopText | None = None
+    kinks: Program | None = None
 
 
 def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
@@ -222,6 +226,7 @@ def _arrange(
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
         branches=branches,
+        kinks=programs.get("kinks"),
     )
 
 
@@ -267,6 +272,25 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
         "noise": 0 if program is None else len(program.outputs) // len(program.state),
         "sweeps": normals.SWEEPS,
         "normals": {name: getattr(normals, name) for name in names},
+    }
+
+
+def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
+    """What templates read of methods that keep structure, under one name.
+
+    Args:
+        programs: As `select_programs` has them, with kinks.
+    """
+    methods = list_structured(programs)
+    orders = sorted({each.order for each in methods})
+    return {
+        "structured": {
+            "methods": methods,
+            "names": {each.macro: (each.file, each.order) for each in methods},
+            "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
+            "has_bracket": any("bracket_vector" in each.needs for each in methods),
+            "sweeps": normals.SWEEPS,
+        }
     }
 
 

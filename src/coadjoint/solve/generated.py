@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import STRUCTURED
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
-from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.comparison import count_rows, list_kinks
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
@@ -24,6 +26,7 @@ from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal,
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
+from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
@@ -38,10 +41,12 @@ from coadjoint.solver_kinds import list_kinds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.choices import Choice
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
+    from coadjoint.solver_kinds import SolverKind
 
     Array = NDArray[np.float64]
 
@@ -77,6 +82,28 @@ def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
     return system.stepwise if is_recorded else ""
+
+
+def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]:
+    """Why methods that keep structure do not apply to a system, by their names.
+
+    Args:
+        system: The System.
+        kind: What is integrated.
+    """
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+    if system.stepwise:
+        return {}
+    module = KernelModule(system, kind.files[2])
+    known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
+    why = "its rates have kinks" if module.has("KINKS") else "its folder was generated without it"
+    return {name: why for name in STRUCTURED if name not in known}
+
+
+def _tell_keeps(choice: Choice) -> str:
+    """What a method keeps by itself, of a motion with noise on each path; "" for nothing."""
+    return STRUCTURED[choice.name].keeps if choice.is_structured else KEEPS.get(choice.name, "")
 
 
 def find_series_obstacle(
@@ -136,7 +163,7 @@ def _make_course(
         method=request.choice.name,
         order=None if request.seed is not None else request.choice.order,
         seed=request.seed,
-        keeps=KEEPS.get(request.choice.name, ""),
+        keeps=_tell_keeps(request.choice),
         projection=describe_projection(system, request.choice.name),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,
@@ -149,6 +176,7 @@ def _make_course(
         below=run.state[n:].reshape(below.shape) if len(below) else None,
         driven=_find_driven(signal, run, batch),
         stepwise=request.stepwise,
+        kinks=list_kinks_met(run, list_kinks(system, request.choice), batch),
         start=_find_start(request, signal, below) if request.samples == 1 else None,
     )
 
@@ -203,6 +231,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         atol=request.atol,
         size=request.step or 0.0,
         max_steps=request.max_steps,
+        sides=len(list_kinks(system, request.choice)),
+        is_structured=request.choice.is_structured,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
@@ -342,7 +372,7 @@ def _make_solution(
     if recording is not None and status == "EVENT":
         message = recording.explain_end()
     else:
-        message = _explain_batch(run) if batch else _explain(system, request, run)
+        message = _explain_batch(run) if batch else _explain(system, request, run, course)
     return Solution(
         system,
         times,
@@ -394,7 +424,7 @@ def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
     return times, states
 
 
-def _explain(system: System, request: Request, run: Ensemble) -> str:
+def _explain(system: System, request: Request, run: Ensemble, course: Course) -> str:
     """Where one trajectory stopped and why; "" at its end."""
     status, time, state = Status(int(run.status[0])), float(run.time[0]), run.state[:, 0].copy()
     state = state[: system.STATE.size]
@@ -408,6 +438,12 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
     if status == Status.DOMAIN:
         rates = system.rhs(state, parameters, target="numpy", **driving.now)
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
+    if status == Status.SLIDING and course.kinks is not None:
+        return (
+            f"the motion slides along {describe_sliding(course.kinks)} from t = {time:.12g} on: "
+            "both sides of the kink push it back, or kinks follow one another without end. What it "
+            "does there the rates do not say: describe it by a system with this constraint"
+        )
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
@@ -416,6 +452,8 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
         else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
         if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
+        Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
+        f"{place}; take shorter steps",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 

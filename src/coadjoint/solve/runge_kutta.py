@@ -15,6 +15,7 @@ import numpy as np
 from coadjoint.lower.tableau import END, EXTRA, FIFTH, PATH, STAGES, THIRD, dop853
 from coadjoint.solve.steps import (
     Attempt,
+    Cubic,
     Lanes,
     find_fixed_step,
     find_step,
@@ -51,7 +52,7 @@ class RungeKutta4:
         branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
-    tries_again = False
+    tries_again = halves = False
 
     def __init__(
         self,
@@ -75,25 +76,13 @@ class RungeKutta4:
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
 
-        def parts() -> tuple[Array, Array, Array]:
-            chord = end - x
-            start = h * first - chord
-            return chord, start, h * (self.rates(lanes, h, end) - first) + 2.0 * start
-
-        def path(after: Array) -> Array:
-            part, (chord, start, both) = after / h, parts()
-            return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
-
-        def coefficients() -> Array:
-            _, start, both = parts()
-            return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
-
+        path = Cubic(h, x, end, lambda: first, lambda: self.rates(lanes, h, end))
         return Attempt(
             took=h,
             state=_check_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
-            path=path,
-            coefficients=coefficients,
+            path=path.follow,
+            coefficients=path.coefficients,
         )
 
 
@@ -118,7 +107,8 @@ class DormandPrince8:
         branches: bool = False,
     ) -> None:
         self.branches = branches
-        self.rates, self.table, self.tries_again = rates, dop853(), not size > 0
+        self.rates, self.table = rates, dop853()
+        self.tries_again = self.halves = not size > 0
         self.rtol, self.atol, self.size = rtol, atol, size
 
     def try_step(self, lanes: Lanes) -> Attempt:

@@ -23,7 +23,7 @@ _FUNCTIONS = {
         "const V *restrict _state, V *restrict _rows)"
         for name, kind in {
             "rates": "LINKAGE",
-            **dict.fromkeys(("domain", "projection", "noise"), "static"),
+            **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
         }.items()
     },
 }
