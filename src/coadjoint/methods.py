@@ -25,6 +25,7 @@ class StructuredMethod:
         needs: Functions of the kernel that its steps call, the rates apart.
         keeps: What it keeps exactly, as a clause.
         theorem: What it is and why it keeps that, with the source.
+        expects: Of a system to which it does not apply, what it expects of others.
     """
 
     name: str
@@ -33,6 +34,7 @@ class StructuredMethod:
     needs: tuple[str, ...]
     keeps: str
     theorem: str
+    expects: str = "rates without kinks"
 
     @property
     def macro(self) -> str:
@@ -42,6 +44,20 @@ class StructuredMethod:
 
 _QUADRATIC: Final = (
     "E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), theorem IV.2.1"
+)
+
+#: Functions of the kernel that act on a state where a motion stays on coadjoint orbits.
+ACTION: Final = ("energy_gradient", "bracket_vector")
+_ON_ORBITS: Final = (
+    "Casimirs, to the rounding of each step, and the Poisson bracket: it stays on coadjoint orbits"
+)
+_MEAN: Final = (
+    "the coadjoint-mean method, a Poisson map on the dual of any Lie algebra: the discrete "
+    "Hamilton-Pontryagin principle with tau = exp (N. Bou-Rabee and J. E. Marsden, Foundations of "
+    "Computational Mathematics 9 (2009) 197)"
+)
+_LIE_POISSON: Final = (
+    "a motion that is the bracket with its energy alone, which is linear in the state"
 )
 
 _ENTRIES: Final = (
@@ -70,6 +86,34 @@ _ENTRIES: Final = (
         keeps="linear and quadratic integrals, to the rounding of each step",
         theorem="nine steps of the implicit midpoint with the lengths of Kahan and Li (Mathematics "
         "of Computation 66 (1997) 1089), which keep quadratic integrals",
+    ),
+    StructuredMethod(
+        name="coadjoint_mean",
+        file="coadjoint_mean",
+        order=2,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem=_MEAN,
+        expects=_LIE_POISSON,
+    ),
+    StructuredMethod(
+        name="coadjoint_mean4",
+        file="coadjoint_mean",
+        order=4,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem="five steps with Suzuki's lengths of the coadjoint-mean method, a Poisson map",
+        expects=_LIE_POISSON,
+    ),
+    StructuredMethod(
+        name="coadjoint_mean6",
+        file="coadjoint_mean",
+        order=6,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem="nine steps with the lengths of Kahan and Li of the coadjoint-mean method, a "
+        "Poisson map",
+        expects=_LIE_POISSON,
     ),
 )
 
