@@ -19,7 +19,7 @@ from typing import Final
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.lower.program import Program, run
-from coadjoint.methods import ACTION
+from coadjoint.methods import ACTION, Sphere
 
 #: Points modulo a prime, of 61 bits, at which rates are compared, and those that are tried.
 POINTS: Final = 2
@@ -119,3 +119,81 @@ def _is_bracket(programs: Mapping[str, Program]) -> bool:
 def _call(function: str, *arguments: Residue, prime: int) -> Residue:
     """A number that a function has at an argument: any, but always the same."""
     return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)
+
+
+#: Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k`` by i and j, as entries by k.
+Brackets = Mapping[tuple[int, int], Mapping[int, Fraction]]
+
+
+def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
+    """The factors so(3) and se(3) of an algebra of these and of R; none of another one.
+
+    Rows of a factor follow one another in the state, in axes in which its bracket is a multiple of
+    the cross product.
+
+    Args:
+        programs: The functions of a kernel that moves on coadjoint orbits, by name.
+    """
+    program = programs["bracket_vector"]
+    n = len(program.state) // 2
+    if {*program.parameters, *program.inputs, *program.time} & program.names_used():
+        return ()
+    brackets = _find_brackets(program, n)
+    found, place = list[Sphere](), 0
+    while place < n:
+        for sphere, size in _list_spheres(place, n):
+            if _is_sphere(brackets, sphere, range(place, place + size), n):
+                found.append(sphere)
+                place += size
+                break
+        else:
+            if any(place in pair and entries for pair, entries in brackets.items()):
+                return ()
+            place += 1
+    return tuple(found)
+
+
+def _find_brackets(program: Program, n: int) -> Brackets:
+    """All brackets of basis vectors: the product with each vector, at each basis state."""
+    brackets: dict[tuple[int, int], dict[int, Fraction]] = {}
+    state, vector = program.state[:n], program.state[n:]
+    zeros = dict.fromkeys(program.names, Fraction(0))
+    for j, along in enumerate(vector):
+        for k, at in enumerate(state):
+            rows = run(program, zeros | {along: Fraction(1), at: Fraction(1)}, Fraction, _refuse)
+            for i, value in enumerate(rows):
+                if value:
+                    brackets.setdefault((i, j), {})[k] = value
+    return brackets
+
+
+def _refuse(function: str, *_: Fraction) -> Fraction:
+    """A bracket that is linear in the state calls no functions of it."""
+    raise NotLinearError(function)
+
+
+def _list_spheres(place: int, n: int) -> list[tuple[Sphere, int]]:
+    """Factors that may begin at a place, with their sizes, the larger ones first."""
+    first, second = tuple(range(place, place + 3)), tuple(range(place + 3, place + 6))
+    larger = [(Sphere(second, first), 6), (Sphere(first, second), 6)] if place + 6 <= n else []
+    return [*larger, (Sphere(first), 3)] if place + 3 <= n else []
+
+
+def _is_sphere(brackets: Brackets, sphere: Sphere, rows: range, n: int) -> bool:
+    """Whether the brackets of some rows are those of a factor, and vanish with all others."""
+    own, turning = sphere.rows, sphere.tangent or sphere.rows
+    scale = brackets.get((turning[0], turning[1]), {}).get(turning[2])
+    if not scale:
+        return False
+    expected: dict[tuple[int, int], dict[int, Fraction]] = {}
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        for i, j, sign in ((a, b, scale), (b, a, -scale)):
+            expected[turning[i], turning[j]] = {turning[c]: sign}
+            if sphere.tangent:
+                expected[turning[i], own[j]] = expected[own[i], turning[j]] = {own[c]: sign}
+    return all(
+        brackets.get((i, j), {}) == expected.get((i, j), {})
+        and brackets.get((j, i), {}) == expected.get((j, i), {})
+        for i in rows
+        for j in range(n)
+    )

@@ -19,6 +19,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
+from coadjoint.lower.orbits import find_spheres, stays_on_orbits
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
@@ -37,9 +38,8 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.lower.orbits import stays_on_orbits
 from coadjoint.methods import ACTION, list_structured
-from coadjoint.solve.methods import coadjoint_mean
+from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -290,7 +290,9 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     Args:
         programs: As `select_programs` has them, with kinks.
     """
-    methods, bracket = list_structured(programs), programs.get("bracket_vector")
+    bracket = programs.get("bracket_vector")
+    spheres = () if bracket is None else find_spheres(programs)
+    methods = list_structured([*programs, *(["spheres"] if spheres else [])])
     state = () if bracket is None else bracket.state
     orders = sorted({each.order for each in methods})
     return {
@@ -299,6 +301,8 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "names": {each.macro: (each.file, each.order) for each in methods},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
+            "spheres": spheres,
+            "near": spherical_midpoint.NEAR,
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
             "mean": {name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},

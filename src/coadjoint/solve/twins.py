@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.steps`, the methods.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -57,11 +57,13 @@ class NumpyStepper:
         functions = (*choice.kind.rates, "domain", "projection", "noise", *ACTION)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
-        self._held, kinks = None, None
+        self._held, kinks, self._spheres = None, None, ()
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
+            if module.has("SPHERES"):
+                self._spheres = module.value("SPHERES")
             if module.has("KINKS"):
                 self._held = module.function("find_rates")
                 kinks = partial(self._find_kinks, module.function("find_kinks"))
@@ -104,7 +106,8 @@ class NumpyStepper:
             return RungeKutta4(self._rates, run.size, branches=self._branches)
         if self._choice.is_structured:
             gradient = partial(self._evaluate, ("energy_gradient",))
-            functions = {"rates": self._rates, "gradient": gradient, "bracket": self._bracket}
+            functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
+            functions |= {"gradient": gradient, "bracket": self._bracket}
             return Structured(self._choice.name, run.size, functions)
         return METHODS[self._choice.name](
             rates=self._rates,

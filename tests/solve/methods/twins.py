@@ -15,12 +15,13 @@ import numpy as np
 
 from coadjoint.build.compiler import Source, compile_kernel, find_compiler
 from coadjoint.lower.normals import SWEEPS
+from coadjoint.methods import Sphere
 from coadjoint.render.environment import environment
 from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
-from coadjoint.solve.methods.spherical_midpoint import Sphere, SphericalMidpoint
+from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint
 from coadjoint.solve.steps import Lanes
 
 Array = Any
@@ -194,11 +195,12 @@ def render(written: Written) -> str:
                 "stages": {order: list(map(repr, each)) for order, each in COMPOSITIONS.items()},
                 "spheres": written.spheres,
                 "sweeps": SWEEPS,
+                "has_bracket": True,
+                "near": spherical_midpoint.NEAR,
+                "mean": {
+                    name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")
+                },
             },
-            coadjoint_mean={
-                name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")
-            },
-            spherical_midpoint={"NEAR": spherical_midpoint.NEAR},
         )
     )
 
