@@ -74,6 +74,26 @@ Systems whose rates are loops over a table have no such matrix.""",
         looped="never",
     ),
     KernelFunction(
+        name="energy_gradient",
+        summary="Derivative of the energy by the state",
+        shape="(n, *batch)",
+        doc="""Only free systems with an energy and a Poisson bracket have it: with `bracket_vector`
+it gives the motion, ``rhs = bracket_vector(state, energy_gradient)`` plus forces.""",
+        looped="never",
+    ),
+    KernelFunction(
+        name="bracket_vector",
+        summary="Poisson tensor at a state times a vector",
+        shape="(n, *batch)",
+        doc="""Only free systems with an energy and a Poisson bracket have it. On the dual of a Lie
+algebra it is the coadjoint action of the vector on the state. Its second argument is the vector, in
+the forms of the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector
+below the state.
+""",
+        below="vector",
+        looped="never",
+    ),
+    KernelFunction(
         name="noise",
         summary="What each Wiener process does to the state, one row for each component",
         shape="(n, w, *batch)",

@@ -15,6 +15,24 @@ from typing import Final
 
 
 @dataclass(frozen=True)
+class Sphere:
+    """A factor so(3) or se(3) of an algebra, by places in the state.
+
+    Attributes:
+        rows: Those of the vector on the sphere: Pi, or Gamma of se(3).
+        tangent: Those of Pi of se(3), or ().
+    """
+
+    rows: tuple[int, ...]
+    tangent: tuple[int, ...] = ()
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Each row with that of the tangent; none where there is no tangent."""
+        return list(zip(self.rows, self.tangent, strict=False))
+
+
+@dataclass(frozen=True)
 class StructuredMethod:
     """A method that keeps some structure of a motion, with steps of fixed length.
 
@@ -25,6 +43,7 @@ class StructuredMethod:
         needs: Functions of the kernel that its steps call, the rates apart.
         keeps: What it keeps exactly, as a clause.
         theorem: What it is and why it keeps that, with the source.
+        expects: Of a system to which it does not apply, what it expects of others.
     """
 
     name: str
@@ -33,6 +52,7 @@ class StructuredMethod:
     needs: tuple[str, ...]
     keeps: str
     theorem: str
+    expects: str = "rates without kinks"
 
     @property
     def macro(self) -> str:
@@ -42,6 +62,29 @@ class StructuredMethod:
 
 _QUADRATIC: Final = (
     "E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), theorem IV.2.1"
+)
+
+#: Functions of the kernel that act on a state where a motion stays on coadjoint orbits.
+ACTION: Final = ("energy_gradient", "bracket_vector")
+_ON_ORBITS: Final = (
+    "Casimirs, to the rounding of each step, and the Poisson bracket: it stays on coadjoint orbits"
+)
+_MEAN: Final = (
+    "the coadjoint-mean method, a Poisson map on the dual of any Lie algebra: the discrete "
+    "Hamilton-Pontryagin principle with tau = exp (N. Bou-Rabee and J. E. Marsden, Foundations of "
+    "Computational Mathematics 9 (2009) 197)"
+)
+_SPHERICAL: Final = (
+    "the spherical midpoint, a Poisson map on products of the duals of so(3) (R. I. McLachlan, "
+    "K. Modin and O. Verdier, Mathematics of Computation 86 (2017) 2325) and, as their limit in "
+    "dual numbers, of se(3) (docs/decisions/coadjoint-orbits.md)"
+)
+_SPHERES: Final = (
+    "a motion that is the bracket with its energy alone, on the dual of a product of so(3) and "
+    "se(3)"
+)
+_LIE_POISSON: Final = (
+    "a motion that is the bracket with its energy alone, which is linear in the state"
 )
 
 _ENTRIES: Final = (
@@ -71,6 +114,62 @@ _ENTRIES: Final = (
         theorem="nine steps of the implicit midpoint with the lengths of Kahan and Li (Mathematics "
         "of Computation 66 (1997) 1089), which keep quadratic integrals",
     ),
+    StructuredMethod(
+        name="coadjoint_mean",
+        file="coadjoint_mean",
+        order=2,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem=_MEAN,
+        expects=_LIE_POISSON,
+    ),
+    StructuredMethod(
+        name="coadjoint_mean4",
+        file="coadjoint_mean",
+        order=4,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem="five steps with Suzuki's lengths of the coadjoint-mean method, a Poisson map",
+        expects=_LIE_POISSON,
+    ),
+    StructuredMethod(
+        name="coadjoint_mean6",
+        file="coadjoint_mean",
+        order=6,
+        needs=ACTION,
+        keeps=_ON_ORBITS,
+        theorem="nine steps with the lengths of Kahan and Li of the coadjoint-mean method, a "
+        "Poisson map",
+        expects=_LIE_POISSON,
+    ),
+    StructuredMethod(
+        name="spherical_midpoint",
+        file="spherical_midpoint",
+        order=2,
+        needs=(*ACTION, "spheres"),
+        keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
+        theorem=_SPHERICAL,
+        expects=_SPHERES,
+    ),
+    StructuredMethod(
+        name="spherical_midpoint4",
+        file="spherical_midpoint",
+        order=4,
+        needs=(*ACTION, "spheres"),
+        keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
+        theorem="five steps with Suzuki's lengths of the spherical midpoint, a Poisson map",
+        expects=_SPHERES,
+    ),
+    StructuredMethod(
+        name="spherical_midpoint6",
+        file="spherical_midpoint",
+        order=6,
+        needs=(*ACTION, "spheres"),
+        keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
+        theorem="nine steps with the lengths of Kahan and Li of the spherical midpoint, a Poisson "
+        "map",
+        expects=_SPHERES,
+    ),
 )
 
 _TABLE: Final = {each.name: each for each in _ENTRIES}
@@ -84,7 +183,8 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
     Motions with noise have methods of their own, and steps that end at kinks are explicit.
 
     Args:
-        functions: Their names, ``kinks`` among them where the rates have some.
+        functions: Their names, ``kinks`` among them where the rates have some, and ``spheres``
+            where they are on spheres.
 
     >>> [method.name for method in list_structured(["rhs"])]
     ['midpoint', 'midpoint4', 'midpoint6']

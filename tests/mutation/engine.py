@@ -512,4 +512,33 @@ MUTANTS = (
         "outputs: use function.outputs[-loop.index][0] for row in plain_assignment row",
         "functions: use 1 for 0 in range",
     ),
+    *of(
+        "solve/methods/coadjoint_mean",
+        "_find_rest: rewrite length * 0.5 -> length",
+        "_follow: rewrite turn + _1 -> turn",
+        "sweep: rewrite 2.0 * parts -> parts",
+        tests=("tests/solve/methods/test_lie_poisson.py",),
+    ),
+    *of(
+        "solve/methods/spherical_midpoint",
+        "is_root: rewrite self.scale > 0.0 -> self.scale < 9.0",
+        "apply: rewrite 1.5 - part * both -> 1.25 - part * both",
+        tests=("tests/solve/methods/test_lie_poisson.py",),
+    ),
+    *of(
+        "solve/methods/isospectral_midpoint",
+        "sweep: rewrite half * both -> both",
+        tests=("tests/solve/methods/test_lie_poisson.py",),
+    ),
+    *of(
+        "lower/orbits",
+        "_is_sphere: rewrite (b, a, -scale) -> (b, a, scale)",
+        "_is_bracket: rewrite a + -b -> a + -a",
+        tests=("tests/lower/test_orbits.py",),
+    ),
+    *of(
+        "derive/times_vector",
+        "times_vector: rewrite wide.adopt(entry) * wide[v] -> -wide.adopt(entry) * wide[v]",
+        tests=("tests/derive/test_times_vector.py",),
+    ),
 )

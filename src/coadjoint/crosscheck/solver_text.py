@@ -102,6 +102,7 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
     name = function.removeprefix("find_")
     if name in texts.programs:
         found = arrange_function(name, texts.programs[name])
+        rows["state"] = texts.programs[name].state
         arrays = ("state", "parameters", "driving", *(["fixed"] if name == "rates" else []))
         return _body(rows, arrays, found.reads, found.lines)
     if solver.loops:

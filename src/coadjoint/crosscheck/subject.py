@@ -148,7 +148,12 @@ class Subject:
 
     def values(self, batch: Batch) -> dict[str, Any]:
         """State, parameters, inputs and time of a batch by name."""
-        return dict(zip(self._widest.names, batch.rows(), strict=True))
+        rest = batch.rows()[len(batch.state) :]
+        known = dict[str, Any]()
+        for program in self.programs.values():
+            own = (*batch.state[: len(program.state)], *rest)
+            known |= zip(program.names, own, strict=True)
+        return known
 
     @property
     def _widest(self) -> Program:

@@ -16,6 +16,8 @@ from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import turning_residuals
+from coadjoint.derive.setting import vector_names
+from coadjoint.derive.times_vector import times_vector
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -68,7 +70,7 @@ def jacobian(equations: Equations) -> Rows:
 def jacobian_vector(equations: Equations) -> Rows:
     """The derivative of the rates along a vector, which follows the state in the first argument."""
     state = equations.setting.state
-    vector = tuple(f"_h{n + 1}" for n in range(len(state)))
+    vector = vector_names(len(state))
     rates = _rows(equations, _rates(equations), state=(*state, *vector))
     return replace(rates, by=state, along=vector)
 
@@ -108,6 +110,30 @@ def poisson_tensor(equations: Equations) -> Rows | None:
         for b, entry in zip(state, row, strict=True)
     )
     return _rows(equations, brackets, (len(state), len(state)))
+
+
+def energy_gradient(equations: Equations) -> Rows | None:
+    """Derivatives of the energy by the state, velocities that the kernel solves for at rest.
+
+    By them the energy is stationary: it is ``<mu, xi> - l`` with ``mu = dl/dxi``.
+    """
+    energy = equations.exact.energy
+    if energy is None or times_vector(equations) is None:
+        return None
+    state, closed = equations.setting.state, equations.close(energy)
+    slopes = equations.setting.field.gradient(closed, state)
+    lines = ((f"d energy/d {name}", slope) for name, slope in zip(state, slopes, strict=True))
+    return replace(_rows(equations, lines), may_hide_zeros=True)
+
+
+def bracket_vector(equations: Equations) -> Rows | None:
+    """The Poisson tensor times a vector, which follows the state in the first argument."""
+    own = times_vector(equations)
+    if own is None:
+        return None
+    state = equations.setting.state
+    lines = [(f"{{{name}, v}}", row) for name, row in zip(state, own.exact.rates, strict=True)]
+    return _rows(own, lines, state=(*state, *vector_names(len(state))))
 
 
 def noise(equations: Equations) -> Rows | None:

@@ -79,7 +79,7 @@ class Reference:
     ) -> list[Value]:
         """What the elements of a function are, definitions first."""
         rows, definitions = self._functions[function]
-        field, factors = self.equations.setting.field, dict[int, Value]()
+        field, factors = rows.of.setting.field, dict[int, Value]()
         known: dict[str, Any] = dict(inputs)
 
         def value(element: Element) -> Any:

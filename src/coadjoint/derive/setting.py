@@ -40,6 +40,12 @@ _ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
     name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
 }
 
+
+def vector_names(count: int) -> tuple[str, ...]:
+    """What components of a vector are called that stands below a state."""
+    return tuple(f"_h{n + 1}" for n in range(count))
+
+
 #: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
 #: is projected to, and in claims about that.
 BALL = 4

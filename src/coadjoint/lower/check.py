@@ -40,7 +40,7 @@ def expected_outputs(equations: Equations, name: str) -> list[Element]:
     values = [rows.of.close(element) for element in rows.elements]
     if not rows.by:
         return values
-    return [slope for value in values for slope in equations.setting.field.gradient(value, rows.by)]
+    return [slope for value in values for slope in rows.of.setting.field.gradient(value, rows.by)]
 
 
 def check_programs(equations: Equations, programs: Mapping[str, Program]) -> None:
@@ -118,7 +118,9 @@ def check_inverse(equations: Equations, program: Program) -> None:
 
 def _find_differing_elements(equations: Equations, program: Program) -> Iterator[_Pair]:
     """Outputs that are not what the equations say, as elements."""
-    field = equations.setting.field
+    rows = rows_of(equations, program.name)
+    assert rows is not None, program.name
+    field = rows.of.setting.field
     inputs = {name: field[name] for name in program.names}
     computed = run(program, inputs, field.number, field.call)
     expected = expected_outputs(equations, program.name)

@@ -22,6 +22,7 @@ from coadjoint.lower.program import (
     walk,
     with_children,
 )
+from coadjoint.methods import ACTION
 
 #: What a side is called: no name of a spec begins with an underscore.
 SIDE = "_side"
@@ -48,7 +49,8 @@ def hold_sides(programs: Mapping[str, Program]) -> dict[str, Program]:
         if not set(find_kinks(form)) <= sides.keys():
             return dict(programs)  # recurrences are made of other arguments
         held = replace(held, factored=_hold(form, sides))
-    return {**programs, "rates": held, "kinks": _make_kinks(rates, kinks)}
+    bounds = {name: each for name, each in programs.items() if name not in ACTION}
+    return {**bounds, "rates": held, "kinks": _make_kinks(rates, kinks)}
 
 
 def find_kinks(rates: Program) -> tuple[Node, ...]:

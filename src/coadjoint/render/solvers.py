@@ -19,6 +19,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
+from coadjoint.lower.orbits import find_spheres, stays_on_orbits
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
@@ -37,7 +38,8 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import list_structured
+from coadjoint.methods import ACTION, list_structured
+from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -246,6 +248,8 @@ class FunctionText:
 def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> dict[str, Program]:
     """The rates, what bounds the motion and its noise, by their names in the texts of solvers.
 
+    Where a motion stays on coadjoint orbits, also what acts on a state there.
+
     Args:
         programs: The functions of the kernel.
         kind: What is integrated. What is reconstructed has no bounds, and a projection leaves it.
@@ -254,9 +258,14 @@ def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> d
     rates = reduce(join, (known[name] for name in kind.rates))
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
-    return {"rates": rates} | {
-        name: widen(program, rates.state, moves=name == "projection")
-        for name, program in bounds.items()
+    action = kind == SOLVER and stays_on_orbits(known)
+    return {
+        "rates": rates,
+        **{
+            name: widen(program, rates.state, moves=name == "projection")
+            for name, program in bounds.items()
+        },
+        **{name: known[name] for name in ACTION if action},
     }
 
 
@@ -281,14 +290,22 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     Args:
         programs: As `select_programs` has them, with kinks.
     """
-    methods = list_structured(programs)
+    bracket = programs.get("bracket_vector")
+    spheres = () if bracket is None else find_spheres(programs)
+    methods = list_structured([*programs, *(["spheres"] if spheres else [])])
+    state = () if bracket is None else bracket.state
     orders = sorted({each.order for each in methods})
     return {
         "structured": {
             "methods": methods,
             "names": {each.macro: (each.file, each.order) for each in methods},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
-            "has_bracket": any("bracket_vector" in each.needs for each in methods),
+            "has_bracket": bracket is not None,
+            "spheres": spheres,
+            "near": spherical_midpoint.NEAR,
+            # names of a vector below the state, with their rows
+            "vector": [*enumerate(state)][len(state) // 2 :],
+            "mean": {name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},
             "sweeps": normals.SWEEPS,
         }
     }

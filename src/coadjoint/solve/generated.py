@@ -97,8 +97,11 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         return {}
     module = KernelModule(system, kind.files[2])
     known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
-    why = "its rates have kinks" if module.has("KINKS") else "its folder was generated without it"
-    return {name: why for name in STRUCTURED if name not in known}
+    if not module.has("STRUCTURED"):
+        return dict.fromkeys(STRUCTURED, "its folder was generated without it")
+    return {
+        name: f"it expects {each.expects}" for name, each in STRUCTURED.items() if name not in known
+    }
 
 
 def _tell_keeps(choice: Choice) -> str:

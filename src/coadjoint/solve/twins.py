@@ -8,12 +8,13 @@ Read next: `coadjoint.solve.steps`, the methods.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
+from coadjoint.methods import ACTION
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
@@ -53,14 +54,16 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise")
+        functions = (*choice.kind.rates, "domain", "projection", "noise", *ACTION)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
-        self._held, kinks = None, None
+        self._held, kinks, self._spheres = None, None, ()
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
+            if module.has("SPHERES"):
+                self._spheres = module.value("SPHERES")
             if module.has("KINKS"):
                 self._held = module.function("find_rates")
                 kinks = partial(self._find_kinks, module.function("find_kinks"))
@@ -102,7 +105,10 @@ class NumpyStepper:
         if self._choice.name == "rk4":
             return RungeKutta4(self._rates, run.size, branches=self._branches)
         if self._choice.is_structured:
-            return Structured(self._choice.name, run.size, {"rates": self._rates})
+            gradient = partial(self._evaluate, ("energy_gradient",))
+            functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
+            functions |= {"gradient": gradient, "bracket": self._bracket}
+            return Structured(self._choice.name, run.size, functions)
         return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
@@ -123,6 +129,10 @@ class NumpyStepper:
             rates: Array = self._held(state, lanes.given, self._drive(lanes, after))
             return rates
         return self._evaluate(self._choice.kind.rates, lanes, after, state)
+
+    def _bracket(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
+        """The Poisson tensor at a state times a vector."""
+        return self._evaluate(("bracket_vector",), lanes, after, np.concatenate([state, vector]))
 
     def _find_kinks(
         self, find: Callable[..., Array], lanes: Lanes, after: Array, state: Array

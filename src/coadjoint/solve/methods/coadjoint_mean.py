@@ -18,6 +18,8 @@ from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 from coadjoint.solve.steps import larger
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -29,6 +31,12 @@ TERMS: Final = 40
 LEAST: Final = 2.0**-58
 #: Parts in which an arc is followed, at the most.
 PARTS: Final = 16.0
+
+
+def make(functions: Mapping[str, Callable[..., Array]], size: float, order: int) -> CoadjointMean:
+    """The method of an order, from functions of the kernel."""
+    gradient, bracket = functions["gradient"], functions["bracket"]
+    return CoadjointMean(gradient=gradient, bracket=bracket, size=size, order=order)
 
 
 class CoadjointMean(LiePoisson):

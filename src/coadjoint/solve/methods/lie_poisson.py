@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.lower.normals import SWEEPS
-from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step, larger
+from coadjoint.solve.steps import Lanes, larger
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -135,26 +135,11 @@ class LiePoisson:
         order: 2, or that of a composition: 4 or 6.
     """
 
-    tries_again = False
-
     def __init__(
         self, *, gradient: Gradient, bracket: Bracket, size: float, order: int = 2
     ) -> None:
         self.gradient, self.bracket, self.size = gradient, bracket, size
         self.stages = COMPOSITIONS[order]
-
-    def try_step(self, lanes: Lanes) -> Attempt:
-        """As `coadjoint.solve.steps.Method.try_step`."""
-        h = find_fixed_step(self.size, lanes.end - lanes.time)
-        start, low = lanes.state, np.zeros(lanes.state.shape)
-        end, low, solved, _ = self.advance(lanes, h, start, low)
-        return Attempt(
-            took=np.where(solved, h, 0.0),
-            state=end,
-            accepted=solved,
-            path=lambda after: np.asarray(start + after / h * (end - start)),
-            coefficients=lambda: np.stack([start, (end - start) / h], axis=1),
-        )
 
     def advance(
         self, lanes: Lanes, h: Array, state: Array, low: Array

@@ -14,14 +14,16 @@ Read next: `coadjoint.solve.methods.isospectral_midpoint`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.methods import Sphere
 from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -31,22 +33,15 @@ if TYPE_CHECKING:
 NEAR: Final = 2.0**-20
 
 
-@dataclass(frozen=True)
-class Sphere:
-    """A factor so(3) or se(3) of an algebra.
-
-    Attributes:
-        rows: Places of the vector on the sphere in the state: Pi, or Gamma of se(3).
-        tangent: Those of Pi of se(3), or ().
-    """
-
-    rows: tuple[int, ...]
-    tangent: tuple[int, ...] = ()
-
-    @property
-    def pairs(self) -> list[tuple[int, int]]:
-        """Each row with that of the tangent; none where there is no tangent."""
-        return list(zip(self.rows, self.tangent, strict=False))
+def make(functions: Mapping[str, Any], size: float, order: int) -> SphericalMidpoint:
+    """The method of an order, from functions of the kernel and the rows of spheres."""
+    return SphericalMidpoint(
+        gradient=functions["gradient"],
+        bracket=functions["bracket"],
+        size=size,
+        spheres=tuple(Sphere(*each) for each in functions["spheres"]),
+        order=order,
+    )
 
 
 class SphericalMidpoint(LiePoisson):

@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.methods.lie_poisson`.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from coadjoint.methods import STRUCTURED
 from coadjoint.solve.steps import Attempt, Cubic, Lanes, Left, find_fixed_step
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
@@ -37,7 +37,7 @@ class Structured:
 
     tries_again = halves = False
 
-    def __init__(self, name: str, size: float, functions: Mapping[str, Callable[..., Array]]):
+    def __init__(self, name: str, size: float, functions: Mapping[str, Any]):
         own = STRUCTURED[name]
         make = import_module(f"coadjoint.solve.methods.{own.file}").make
         self.rates, self.size = functions["rates"], size

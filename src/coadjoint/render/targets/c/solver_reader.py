@@ -24,6 +24,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
+            **dict.fromkeys(("energy_gradient", "bracket_vector"), "SPARED"),
         }.items()
     },
 }

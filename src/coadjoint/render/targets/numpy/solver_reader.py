@@ -119,7 +119,9 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
             return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
-            return name in ("KINKS", "STRUCTURED") or name.startswith(("TABLE_", "STAR_"))
+            return name in ("KINKS", "STRUCTURED", "SPHERES") or name.startswith(
+                ("TABLE_", "STAR_")
+            )
     return False
 
 

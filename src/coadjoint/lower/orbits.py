@@ -1,0 +1,199 @@
+"""Orbits: whether a motion stays on coadjoint orbits, decided by its Programs.
+
+Comes in: the functions of a kernel. Goes out: whether its rates are its bracket with the gradient
+of its energy, nothing added, and the bracket is linear in the state. Then that is a coadjoint
+action, and methods apply that move a state by elements of the group.
+Read next: `coadjoint.methods`.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from itertools import islice
+from typing import Final
+
+from coadjoint.exact.linear import primes
+from coadjoint.exact.residues import Residue, draw, residue
+from coadjoint.lower.program import Program, run
+from coadjoint.methods import ACTION, Sphere
+
+#: Points modulo a prime, of 61 bits, at which rates are compared, and those that are tried.
+POINTS: Final = 2
+TRIES: Final = 20
+
+
+class NotLinearError(Exception):
+    """A sum of values of two degrees, or a function or a quotient of the state."""
+
+
+@dataclass(frozen=True)
+class _Degree:
+    """The degree of a homogeneous value in the state, an arithmetic for `run`; None of zero."""
+
+    of: int | None
+
+    def __add__(self, other: _Degree) -> _Degree:
+        if self.of is None or other.of is None:
+            return other if self.of is None else self
+        if self.of != other.of:
+            raise NotLinearError
+        return self
+
+    def __mul__(self, other: _Degree) -> _Degree:
+        if self.of is None or other.of is None:
+            return _Degree(None)
+        return _Degree(self.of + other.of)
+
+    def __truediv__(self, other: _Degree) -> _Degree:
+        if other.of:
+            raise NotLinearError
+        return self
+
+    def __neg__(self) -> _Degree:
+        return self
+
+
+def stays_on_orbits(programs: Mapping[str, Program]) -> bool:
+    """Whether a motion is the coadjoint action of the gradient of its energy on its state.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    if not {*ACTION} <= programs.keys() or "noise" in programs:
+        return False
+    return _is_linear(programs) and _is_bracket(programs)
+
+
+def _is_linear(programs: Mapping[str, Program]) -> bool:
+    """Whether the bracket with a vector is homogeneous of degree 1 in the state."""
+    program, state = programs["bracket_vector"], {*programs["rhs"].state}
+    inputs = {name: _Degree(int(name in state)) for name in program.names}
+    try:
+        rows = run(program, inputs, _constant, _call_degree)
+    except NotLinearError:
+        return False
+    return all(row.of in (None, 1) for row in rows)
+
+
+def _constant(value: Fraction) -> _Degree:
+    return _Degree(0 if value else None)
+
+
+def _call_degree(_: str, *of: _Degree) -> _Degree:
+    if any(each.of for each in of):
+        raise NotLinearError
+    return _Degree(0)
+
+
+def _is_bracket(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are the bracket with the gradient, at points modulo primes.
+
+    Two functions of degree d that differ agree at such a point with a chance of ``d / 2^61``.
+    """
+    source, reached = random.Random(1), 0  # noqa: S311
+    rates, slopes, bracket = (
+        programs[name] for name in ("rhs", "energy_gradient", "bracket_vector")
+    )
+    vector = bracket.state[len(rates.state) :]
+    for prime in islice(primes(), TRIES):
+        number, call = partial(residue, prime=prime), partial(_call, prime=prime)
+        point = {name: Residue(source.randrange(1, prime), prime) for name in rates.names}
+        try:
+            expected = run(rates, point, number, call)
+            known = point | dict(zip(vector, run(slopes, point, number, call), strict=True))
+            found = run(bracket, known, number, call)
+        except ZeroDivisionError:
+            continue
+        if any((a + -b).value for a, b in zip(expected, found, strict=True)):
+            return False
+        reached += 1
+        if reached == POINTS:
+            return True
+    return False
+
+
+def _call(function: str, *arguments: Residue, prime: int) -> Residue:
+    """A number that a function has at an argument: any, but always the same."""
+    return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)
+
+
+#: Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k`` by i and j, as entries by k.
+Brackets = Mapping[tuple[int, int], Mapping[int, Fraction]]
+
+
+def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
+    """The factors so(3) and se(3) of an algebra of these and of R; none of another one.
+
+    Rows of a factor follow one another in the state, in axes in which its bracket is a multiple of
+    the cross product.
+
+    Args:
+        programs: The functions of a kernel that moves on coadjoint orbits, by name.
+    """
+    program = programs["bracket_vector"]
+    n = len(program.state) // 2
+    if {*program.parameters, *program.inputs, *program.time} & program.names_used():
+        return ()
+    brackets = _find_brackets(program, n)
+    found, place = list[Sphere](), 0
+    while place < n:
+        for sphere, size in _list_spheres(place, n):
+            if _is_sphere(brackets, sphere, range(place, place + size), n):
+                found.append(sphere)
+                place += size
+                break
+        else:
+            if any(place in pair and entries for pair, entries in brackets.items()):
+                return ()
+            place += 1
+    return tuple(found)
+
+
+def _find_brackets(program: Program, n: int) -> Brackets:
+    """All brackets of basis vectors: the product with each vector, at each basis state."""
+    brackets: dict[tuple[int, int], dict[int, Fraction]] = {}
+    state, vector = program.state[:n], program.state[n:]
+    zeros = dict.fromkeys(program.names, Fraction(0))
+    for j, along in enumerate(vector):
+        for k, at in enumerate(state):
+            rows = run(program, zeros | {along: Fraction(1), at: Fraction(1)}, Fraction, _refuse)
+            for i, value in enumerate(rows):
+                if value:
+                    brackets.setdefault((i, j), {})[k] = value
+    return brackets
+
+
+def _refuse(function: str, *_: Fraction) -> Fraction:
+    """A bracket that is linear in the state calls no functions of it."""
+    raise NotLinearError(function)
+
+
+def _list_spheres(place: int, n: int) -> list[tuple[Sphere, int]]:
+    """Factors that may begin at a place, with their sizes, the larger ones first."""
+    first, second = tuple(range(place, place + 3)), tuple(range(place + 3, place + 6))
+    larger = [(Sphere(second, first), 6), (Sphere(first, second), 6)] if place + 6 <= n else []
+    return [*larger, (Sphere(first), 3)] if place + 3 <= n else []
+
+
+def _is_sphere(brackets: Brackets, sphere: Sphere, rows: range, n: int) -> bool:
+    """Whether the brackets of some rows are those of a factor, and vanish with all others."""
+    own, turning = sphere.rows, sphere.tangent or sphere.rows
+    scale = brackets.get((turning[0], turning[1]), {}).get(turning[2])
+    if not scale:
+        return False
+    expected: dict[tuple[int, int], dict[int, Fraction]] = {}
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        for i, j, sign in ((a, b, scale), (b, a, -scale)):
+            expected[turning[i], turning[j]] = {turning[c]: sign}
+            if sphere.tangent:
+                expected[turning[i], own[j]] = expected[own[i], turning[j]] = {own[c]: sign}
+    return all(
+        brackets.get((i, j), {}) == expected.get((i, j), {})
+        and brackets.get((j, i), {}) == expected.get((j, i), {})
+        for i in rows
+        for j in range(n)
+    )

@@ -1,0 +1,93 @@
+"""Tests of what decides whether methods on coadjoint orbits apply to a system."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.lower.orbits import find_spheres, stays_on_orbits
+from coadjoint.lower.program import Negate
+from coadjoint.methods import STRUCTURED, Sphere, list_structured
+from coadjoint.render.solvers import describe_structured, select_programs
+from tests.specs import lowered
+
+#: Spheres by system, from the order of the momenta and vectors that its spec declares.
+SPHERES = {
+    "rigid_body": (Sphere((0, 1, 2)),),
+    "heavy_top": (Sphere((3, 4, 5), (0, 1, 2)),),
+    "kirchhoff": (Sphere((3, 4, 5), (0, 1, 2)),),
+    "steklov": (Sphere((3, 4, 5), (0, 1, 2)),),
+    "se2_pendulum": (),
+    "two_field_top": (),
+    "so5_body": (),
+    "sl2_r2": (),
+}
+
+
+@pytest.mark.parametrize("system", SPHERES)
+def test_spheres_are_those_of_the_algebra(system):
+    """One for each factor so(3) and se(3), and none where there is another factor."""
+    programs = lowered(system)
+    assert stays_on_orbits(programs)
+    assert find_spheres(programs) == SPHERES[system]
+
+
+@pytest.mark.parametrize(
+    ("system", "why"),
+    [
+        ("heavy_top_damped", "friction"),
+        ("lorenz_gyrostat", "a bracket that is affine"),
+        ("kepler", "a canonical bracket"),
+        ("magnetic_bottle", "a bracket with a field"),
+        ("quadrotor", "thrust"),
+        ("stochastic_rigid_body", "noise"),
+        ("chaplygin_ball", "constraints"),
+    ],
+)
+def test_other_motions_do_not_stay_on_orbits(system, why):
+    """Neither where something is added to the bracket, nor where it is not linear."""
+    assert not stays_on_orbits(lowered(system)), why
+
+
+def test_a_spoiled_function_is_caught():
+    """A sign that is wrong in the gradient or in the bracket makes the system another one."""
+    programs = lowered("heavy_top")
+    for name in ("energy_gradient", "bracket_vector"):
+        own = programs[name]
+        first, *others = own.outputs
+        wrong = replace(own, outputs=(replace(first, value=Negate(first.value)), *others))
+        assert not stays_on_orbits(programs | {name: wrong}), name
+    wrong = replace(
+        programs["bracket_vector"],
+        outputs=tuple(reversed(programs["bracket_vector"].outputs)),
+    )
+    assert find_spheres(programs | {"bracket_vector": wrong}) == ()
+
+
+@pytest.mark.parametrize(
+    ("system", "methods"),
+    [
+        ("heavy_top", {"midpoint", "coadjoint_mean", "spherical_midpoint"}),
+        ("so5_body", {"midpoint", "coadjoint_mean"}),
+        ("heavy_top_damped", {"midpoint"}),
+    ],
+)
+def test_a_system_lists_the_methods_that_apply(system, methods):
+    """By its functions, each method in three orders."""
+    found = describe_structured(select_programs(lowered(system).values()))["structured"]["methods"]
+    names = {each.name for each in found}
+    assert {each.file for each in found} == methods
+    assert all({f"{name}{order}" for order in ("", 4, 6)} <= names for name in methods)
+    assert {each.order for each in found} == {2, 4, 6}
+
+
+def test_every_method_says_what_it_expects():
+    """For messages: a clause about motions; and functions that are missing leave it out."""
+    for each in STRUCTURED.values():
+        assert each.expects
+        assert each.keeps
+        assert each not in list_structured(["rhs", "noise"])
+    names = {each.name for each in list_structured(["energy_gradient", "bracket_vector"])}
+    assert "coadjoint_mean" in names
+    assert "spherical_midpoint" not in names
