@@ -71,6 +71,19 @@ _ENTRIES: Final = (
         theorem="nine steps of the implicit midpoint with the lengths of Kahan and Li (Mathematics "
         "of Computation 66 (1997) 1089), which keep quadratic integrals",
     ),
+    *(
+        StructuredMethod(
+            name=f"gauss{order}",
+            file="gauss",
+            order=order,
+            needs=(),
+            keeps="linear and quadratic integrals, to the rounding of each step",
+            theorem=f"the method of Gauss with {order // 2} stages, which keeps quadratic integrals "
+            f"({_QUADRATIC}), with shares of stages that sum to 1 without rounding (M. Antonana, "
+            "J. Makazaga and A. Murua, Numerical Algorithms 76 (2017) 861)",
+        )
+        for order in (4, 6, 8)
+    ),
 )
 
 _TABLE: Final = {each.name: each for each in _ENTRIES}
@@ -87,7 +100,7 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
         functions: Their names, ``kinks`` among them where the rates have some.
 
     >>> [method.name for method in list_structured(["rhs"])]
-    ['midpoint', 'midpoint4', 'midpoint6']
+    ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']
     >>> list_structured(["rhs", "noise"])
     ()
     """

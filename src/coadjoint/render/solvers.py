@@ -38,6 +38,7 @@ from coadjoint.lower.program import (
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
 from coadjoint.methods import list_structured
+from coadjoint.solve.methods.gauss import TABLEAUS
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -282,13 +283,17 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
         programs: As `select_programs` has them, with kinks.
     """
     methods = list_structured(programs)
-    orders = sorted({each.order for each in methods})
+    composed = [each for each in methods if each.file != "gauss"]
+    orders = sorted({each.order for each in composed})
     return {
         "structured": {
             "methods": methods,
-            "names": {each.macro: (each.file, each.order) for each in methods},
+            "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": any("bracket_vector" in each.needs for each in methods),
+            "tableaus": {
+                each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
+            },
             "sweeps": normals.SWEEPS,
         }
     }
