@@ -78,9 +78,9 @@ _ENTRIES: Final = (
             order=order,
             needs=(),
             keeps="linear and quadratic integrals, to the rounding of each step",
-            theorem=f"the method of Gauss with {order // 2} stages, which keeps quadratic integrals "
-            f"({_QUADRATIC}), with shares of stages that sum to 1 without rounding (M. Antonana, "
-            "J. Makazaga and A. Murua, Numerical Algorithms 76 (2017) 861)",
+            theorem=f"the method of Gauss with {order // 2} stages, which keeps quadratic "
+            f"integrals ({_QUADRATIC}), with shares of stages that sum to 1 without rounding "
+            "(M. Antonana, J. Makazaga and A. Murua, Numerical Algorithms 76 (2017) 861)",
         )
         for order in (4, 6, 8)
     ),

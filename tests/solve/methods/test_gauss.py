@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -120,8 +121,8 @@ def find_orders(method: Gauss, x: Any, counts: tuple[int, ...]) -> list[float]:
         for _ in range(count):
             end = step(method, end, 2.0 / count)
         ends.append(end)
-    gaps = [abs(b - a).max() for a, b in zip(ends, ends[1:], strict=False)]
-    return [float(np.log2(a / b)) for a, b in zip(gaps, gaps[1:], strict=False)]
+    gaps = [abs(b - a).max() for a, b in pairwise(ends)]
+    return [float(np.log2(a / b)) for a, b in pairwise(gaps)]
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -178,7 +179,11 @@ def run_body(table_order: int, count: int) -> tuple[float, float]:
         ])  # fmt: skip
 
     x = np.random.default_rng(5).normal(size=(3, 64))
-    method, low, h = Gauss(rates=rates, size=0.2, order=table_order), np.zeros(x.shape), np.full(64, 0.2)
+    method, low, h = (
+        Gauss(rates=rates, size=0.2, order=table_order),
+        np.zeros(x.shape),
+        np.full(64, 0.2),
+    )
     integrals = [lambda y: (y * y / inertia).sum(axis=0), lambda y: (y * y).sum(axis=0)]
 
     def find(y: Any, rest: Any) -> list[Any]:

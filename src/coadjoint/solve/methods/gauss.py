@@ -4,9 +4,9 @@ They keep linear and quadratic integrals, carry a constant symplectic form along
 adjoints: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), IV.2 and VI.4.
 Rounded tables would lose that, by an error of one sign in each step. So stages are written as
 M. Antonana, J. Makazaga and A. Murua have them, Numerical Algorithms 76 (2017) 861: with
-``L_j = h b_j f(Y_j)``, stages ``Y_i = x + sum_j m_ij L_j`` and ``m_ij = a_ij/b_j``, all that quadratic
-integrals need is ``m_ij + m_ji = 1``, which holds here without rounding. Of the lengths ``h b_j`` the
-innermost ones are what the others leave of the step.
+``L_j = h b_j f(Y_j)``, ``Y_i = x + sum_j m_ij L_j`` and ``m_ij = a_ij/b_j``, all that quadratic
+integrals need is ``m_ij + m_ji = 1``, which holds here without rounding. Of the lengths ``h b_j``
+the innermost ones are what the others leave of the step.
 Comes in: rates, and where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.methods.lie_poisson`, whose search and sums it shares.
 """
@@ -140,7 +140,12 @@ class Gauss(LiePoisson):
         return [*outer, *([rest] if stages % 2 else [rest, rest]), *reversed(outer)]
 
     def _sweep_stages(
-        self, lanes: Lanes, h: Array, lengths: list[Array], start: tuple[Array, Array], middle: Array
+        self,
+        lanes: Lanes,
+        h: Array,
+        lengths: list[Array],
+        start: tuple[Array, Array],
+        middle: Array,
     ) -> Sweep:
         """Better stages, one below the other, and what the step adds with those before."""
         state, low = start

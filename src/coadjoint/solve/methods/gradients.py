@@ -1,9 +1,9 @@
 """Discrete gradients: steps that keep the energy, or balance it with the power of forces.
 
-A step is ``y - x = h (J(m) g + f(m))``, where m is the middle of x and y, J the tensor of the motion,
-f its forces, and g a discrete gradient of the energy: ``g.(y - x) = H(y) - H(x)``. J is antisymmetric,
-so ``H(y) - H(x) = h g.f(m)``, whatever J is: brackets that fail Jacobi's identity do as well. Since
-the rates at m are ``J(m) dH(m) + f(m)``, both follow from them and from ``J(m) (g - dH(m))``.
+A step is ``y - x = h (J(m) g + f(m))``, where m is the middle of x and y, J the tensor of the
+motion, f its forces, and g a discrete gradient of the energy: ``g.(y - x) = H(y) - H(x)``. J is
+antisymmetric, so ``H(y) - H(x) = h g.f(m)``; it need not fulfil Jacobi's identity. The rates at m
+are ``J(m) dH(m) + f(m)``, so that the step follows from them and from ``J(m) (g - dH(m))``.
 R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 (1999) 1021.
 Comes in: where members are. Goes out: the middle of a step by sweeps, and its chord.
 Read next: `coadjoint.solve.methods.lie_poisson`, whose search it shares.
