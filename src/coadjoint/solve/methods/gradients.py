@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 #: By what part of the energies at both ends the last correction may differ from the one before.
 ROUNDINGS: Final = 2.0**-49
+#: A chord whose square is a smaller part of that of the state has no correction that is no more
+#: than such roundings: divided by the square it would outgrow the derivatives of the energy.
+SHORT: Final = 2.0**-46
 _OUTER, _INNER = TABLEAUS[8].nodes[:2]
 _WEIGHT: Final = TABLEAUS[8].lengths[0]
 #: Nodes between the ends and their weights, of those nearer to the start.
@@ -91,13 +94,14 @@ class Corrections:
         self.factor, self.last = np.zeros(count), np.full(count, np.inf)
         self.done = np.zeros(count, bool)
 
-    def take(self, missing: Array, square: Array, size: Array) -> None:
-        """Go on to the factor that gives a missing energy, for the square of a chord."""
-        moves = square > 0.0
+    def take(self, missing: Array, square: Array, reach: Array, size: Array) -> None:
+        """Go on to the factor that gives a missing energy, for squares of a chord and a state."""
+        least = ROUNDINGS * size
+        moves = (square > SHORT * reach) | ((np.abs(missing) > least) & (square > 0.0))
         factor = np.where(moves, missing / np.where(moves, square, 1.0), 0.0)
         change = np.abs(factor - self.factor) * square
         self.factor = np.where(self.done, self.factor, factor)
-        ends = moves & (change <= ROUNDINGS * size) & (change >= self.last)
+        ends = moves & (change <= least) & (change >= self.last)
         self.last = np.where(self.done | ~moves, self.last, change)
         self.done = self.done | ends
 
@@ -126,8 +130,9 @@ class DiscreteGradient(AverageGradient):
         chord = 2.0 * (middle - arc.state)
         first = self.energy(arc.lanes, arc.middle, arc.state)[0]
         last = self.energy(arc.lanes, arc.middle, arc.state + chord)[0]
-        along, square = np.zeros(first.shape), np.zeros(first.shape)
-        for slope, part in zip(gradient, chord, strict=True):
-            along, square = along + slope * part, square + part * part
-        kept.take((last - first) - along, square, np.abs(first) + np.abs(last))
+        along, square, reach = (np.zeros(first.shape) for _ in range(3))
+        for slope, part, place in zip(gradient, chord, middle, strict=True):
+            along = along + slope * part
+            square, reach = square + part * part, reach + place * place
+        kept.take((last - first) - along, square, reach, np.abs(first) + np.abs(last))
         return self.move(arc, middle, kept.factor * chord)
