@@ -170,6 +170,19 @@ _ENTRIES: Final = (
         "map",
         expects=_SPHERES,
     ),
+    *(
+        StructuredMethod(
+            name=f"gauss{order}",
+            file="gauss",
+            order=order,
+            needs=(),
+            keeps="linear and quadratic integrals, to the rounding of each step",
+            theorem=f"the method of Gauss with {order // 2} stages, which keeps quadratic "
+            f"integrals ({_QUADRATIC}), with shares of stages that sum to 1 without rounding "
+            "(M. Antonana, J. Makazaga and A. Murua, Numerical Algorithms 76 (2017) 861)",
+        )
+        for order in (4, 6, 8)
+    ),
 )
 
 _TABLE: Final = {each.name: each for each in _ENTRIES}
@@ -187,7 +200,7 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
             where they are on spheres.
 
     >>> [method.name for method in list_structured(["rhs"])]
-    ['midpoint', 'midpoint4', 'midpoint6']
+    ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']
     >>> list_structured(["rhs", "noise"])
     ()
     """

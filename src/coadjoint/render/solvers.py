@@ -40,6 +40,7 @@ from coadjoint.lower.program import (
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
 from coadjoint.methods import ACTION, list_structured
 from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
+from coadjoint.solve.methods.gauss import TABLEAUS
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -294,11 +295,12 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     spheres = () if bracket is None else find_spheres(programs)
     methods = list_structured([*programs, *(["spheres"] if spheres else [])])
     state = () if bracket is None else bracket.state
-    orders = sorted({each.order for each in methods})
+    composed = [each for each in methods if each.file != "gauss"]
+    orders = sorted({each.order for each in composed})
     return {
         "structured": {
             "methods": methods,
-            "names": {each.macro: (each.file, each.order) for each in methods},
+            "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
             "spheres": spheres,
@@ -306,6 +308,9 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
             "mean": {name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},
+            "tableaus": {
+                each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
+            },
             "sweeps": normals.SWEEPS,
         }
     }
