@@ -1,21 +1,30 @@
 """Flows in closed form: motions by functions of coordinates that commute.
 
-Comes in: an affine Poisson tensor and a function of coordinates x_i whose brackets with one another
-are zero. These coordinates stay along its motion, ``x' = sum_i (df/dx_i) A_i x`` with constant
-matrices ``A_i x = {x, x_i}``, which commute by the Jacobi identity. So the motion over a time h is
-the product of ``exp(h (df/dx_i) A_i)``: kicks and drifts where A_i is nilpotent, rotations by sine
-and cosine where ``A_i^3 = -k^2 A_i``. Each flow is proved: its derivative by h is the motion, and at
-h = 0 it is the identity. Goes out: the state after a time h as elements.
+Comes in: an affine Poisson tensor and a function f of coordinates x_i whose brackets with one
+another are zero. These coordinates stay along its motion ``x' = sum_i (df/dx_i) A_i x``, with
+constant matrices ``A_i x = {x, x_i}`` that commute by the Jacobi identity. So the motion over a time
+h is the product of ``exp(h (df/dx_i) A_i)``: kicks and drifts where A_i is nilpotent, rotations where
+a block of it satisfies ``A^3 = -k^2 A``.
+
+A rotation by an angle a takes ``t = tan(a/2)`` and ``s = 2t/(1 + t^2) = sin(a)``, without a function:
+``exp = 1 + (s/k) A + (s t/k^2) A^2``. Where df/dx_i depends on x_i alone, t is the polynomial of order
+8 of the tangent: the flow is exactly that of another function of x_i, whose difference from f is of
+order h^8, so that it still is a Poisson map to the last bit and targets have the same bits.
+Otherwise only the exact angle gives a Poisson map, and sine and cosine are called.
+
+Each flow is proved: its derivative by its angles and by the time is the motion, and it begins at
+the identity. Goes out: the state after a time h as elements.
 Read next: `coadjoint.derive.splittings`, which takes an energy apart into such functions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt
-from typing import Any
+from typing import Any, Final
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive.setting import STEP
@@ -25,17 +34,73 @@ from coadjoint.exact import Element, Field, element_text
 #: A sparse square matrix, row by row; the last row and column are those of the number 1.
 _Matrix = Mapping[int, Mapping[int, Any]]
 Vector = tuple[Element, ...]
+#: Of ``tan y``, those of y, y^3, y^5 and y^7.
+TANGENT: Final = (Fraction(1), Fraction(1, 3), Fraction(2, 15), Fraction(17, 315))
 
 
 class NoFlow(Exception):
     """No flow in closed form is known; the text says why."""
 
 
+def list_symbols(size: int) -> tuple[str, ...]:
+    """What a field needs for the flows of so many coordinates."""
+    rotations = (f"_{name}{n + 1}" for n in range(size) for name in ("half", "tan", "sin"))
+    return (STEP, *rotations)
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A block of a matrix that turns.
+
+    Attributes:
+        half: Name of half its angle.
+        tangent: Name of the tangent of that.
+        sine: Name of the sine of the angle.
+        angle: Half the angle after a time `STEP`.
+        sign: 1 for a rotation, -1 for a hyperbolic one.
+        is_rational: Whether the tangent is a polynomial of half the angle.
+    """
+
+    half: str
+    tangent: str
+    sine: str
+    angle: Element
+    sign: int
+    is_rational: bool
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Where a motion leads in a time `STEP`.
+
+    Attributes:
+        values: The state there, in names of the state and of the rotations.
+        rotations: What these names are.
+    """
+
+    values: Vector
+    rotations: tuple[Rotation, ...] = field(default=())
+
+    def define(self, own: Field) -> Iterator[tuple[str, Element]]:
+        """The names of the rotations in the order in which they can be computed."""
+        for each in self.rotations:
+            half, tangent = own[each.half], own[each.tangent]
+            yield each.half, each.angle
+            if each.is_rational:
+                powers = (half ** (2 * n + 1) * c for n, c in enumerate(TANGENT))
+                yield each.tangent, own.sum(powers)
+            elif each.sign > 0:
+                yield each.tangent, own.call("sin", half) / own.call("cos", half)
+            else:
+                yield each.tangent, own.call("tanh", half)
+            yield each.sine, tangent * 2 / (own.one + tangent**2 * each.sign)
+
+
 class Flows:
     """Flows of functions on an affine Poisson structure.
 
     Args:
-        field: Has the symbol `STEP` and room for functions.
+        field: Has the names of `list_symbols`, and room for functions.
         state: Names of the coordinates.
         algebra: The brackets of the coordinates, and of the number 1 as one more of them where
             these have constant terms.
@@ -79,61 +144,84 @@ class Flows:
                     total[row] = total[row] + slope * entry
         return field.vector(total)
 
-    def follow(self, function: Element) -> Vector:
-        """The state after a time `STEP` of the motion by a function, proved.
+    def follow(self, function: Element) -> Flow:
+        """The flow of a function, proved.
 
         Raises:
             NoFlow: The coordinates of the function do not commute, or move the others by a matrix
                 whose exponential is not known here.
         """
         field = self.field
-        here = [i for i, name in enumerate(self.state) if name in field.reach(function)]
-        for n, i in enumerate(here):
-            for j in here[:n]:
-                if not self.commute(i, j):
-                    raise NoFlow(
-                        f"{element_text(field, function)} depends on {self.state[j]} and "
-                        f"{self.state[i]}, whose bracket is not zero"
-                    )
+        names = [name for name in self.state if name in field.reach(function)]
         values = [field[name] for name in self.state]
-        for i, slope in zip(
-            here, field.gradient(function, [self.state[i] for i in here]), strict=True
-        ):
-            values = self._turn(values, i, field[STEP] * slope)
-        flow = tuple(map(field.normal, values))
+        rotations: list[Rotation] = []
+        for name, slope in zip(names, field.gradient(function, names), strict=True):
+            i = self.state.index(name)
+            for other in names:
+                if not self.commute(i, self.state.index(other)):
+                    raise NoFlow(
+                        f"{element_text(field, function)} depends on {name} and {other}, whose "
+                        "bracket is not 0"
+                    )
+            is_rational = not field.reach(slope) & {*self.state} - {name}
+            values = self._turn(values, i, slope, rotations, is_rational=is_rational)
+        flow = Flow(tuple(map(field.normal, values)), tuple(rotations))
         self.check(function, flow)
         return flow
 
-    def check(self, function: Element, flow: Vector) -> None:
-        """Prove a flow.
+    def check(self, function: Element, flow: Flow) -> None:
+        """Prove a flow: its derivative by the time, with ``d tan(a/2) = (1 + tan^2) da/2``.
 
         Raises:
             DerivationError: Its derivative is not the motion where it leads, or it does not begin
                 at the identity; the message names the component.
         """
-        field, there = self.field, dict(zip(self.state, flow, strict=True))
-        for name, value, rate in zip(self.state, flow, self.motion(function), strict=True):
-            start = field.substitute(value, {STEP: field.zero})
-            moves = field.derivative(value, STEP) - field.substitute(rate, there)
-            for what, gap in (("at the start", start - field[name]), ("in its rate", moves)):
+        field, there = self.field, dict(zip(self.state, flow.values, strict=True))
+        sines = {name: value for name, value in flow.define(field) if name.startswith("_sin")}
+        begin = {STEP: field.zero} | {each.tangent: field.zero for each in flow.rotations}
+        for name, value, rate in zip(self.state, flow.values, self.motion(function), strict=True):
+            closed = field.substitute(value, sines)
+            moved = field.derivative(closed, STEP)
+            for each in flow.rotations:
+                faster = field.one + field[each.tangent] ** 2 * each.sign
+                speed = field.derivative(each.angle, STEP) * faster
+                moved = moved + field.derivative(closed, each.tangent) * speed
+            expected = field.substitute(field.substitute(rate, there), sines)
+            start = field.substitute(closed, begin) - field[name]
+            for what, gap in (("at the start", start), ("in its rate", moved - expected)):
                 if not field.is_zero(gap):
                     raise DerivationError(
                         f"the flow of {element_text(field, function)} is wrong {what}: {name} is "
-                        f"off by {element_text(field, field.normal(gap))}; expected 0.",
+                        f"off by {element_text(field, field.normal(gap))}; expected 0. This is a "
+                        "fault of coadjoint, please report it.",
                         found=name,
                     )
 
-    def _turn(self, values: Sequence[Element], i: int, time: Element) -> list[Element]:
-        """``exp(time A_i)`` applied to values, block by block of the matrix."""
+    def _turn(
+        self,
+        values: Sequence[Element],
+        i: int,
+        slope: Element,
+        rotations: list[Rotation],
+        *,
+        is_rational: bool,
+    ) -> list[Element]:
+        """``exp(h slope A_i)`` applied to values, block by block of the matrix."""
         field, known, result = self.field, (*values, self.field.one), list(values)
+        turns: dict[tuple[Fraction, int], Rotation] = {}
         for matrix in _blocks(self.generators[i], len(self.state)):
-            square = _multiply(matrix, matrix)
-            odd, even = time, time * time * Fraction(1, 2)
+            time, square = field[STEP] * slope, _multiply(matrix, matrix)
+            odd, even = time, time**2 * Fraction(1, 2)
             if cube := _multiply(square, matrix):
-                k, sine, cosine = self._find_frequency(i, matrix, cube)
-                odd = field.call(sine, time * k) * (1 / k)
-                even = (field.call(cosine, time * k) - field.one) * (1 / k**2)
-                even = even if sine == "sinh" else -even
+                k, sign = self._find_frequency(i, matrix, cube)
+                if (k, sign) not in turns:
+                    names = [f"_{name}{len(rotations) + 1}" for name in ("half", "tan", "sin")]
+                    rational = is_rational and sign > 0
+                    turns[k, sign] = Rotation(*names, time * (k / 2), sign, rational)
+                    rotations.append(turns[k, sign])
+                turn = turns[k, sign]
+                sine = field[turn.sine]
+                odd, even = sine * (1 / k), sine * field[turn.tangent] * (1 / k**2)
             for part, power in ((odd, matrix), (even, square)):
                 for row, entry in _apply(power, known).items():
                     result[row] = result[row] + part * entry
@@ -157,7 +245,7 @@ class Flows:
                 f"the motion by {self.state[i]} is no translation and turns by no single rational "
                 "frequency: the cube of a block of its matrix is not a multiple of the block"
             )
-        return (k, "sin", "cos") if ratio < 0 else (k, "sinh", "cosh")
+        return k, 1 if ratio < 0 else -1
 
 
 def _blocks(matrix: _Matrix, size: int) -> list[_Matrix]:

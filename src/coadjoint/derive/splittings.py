@@ -31,8 +31,7 @@ from numpy.typing import NDArray
 
 from coadjoint.derive import derive, registry
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.flows import Flows, NoFlow, Vector
-from coadjoint.derive.setting import STEP
+from coadjoint.derive.flows import Flow, Flows, NoFlow, list_symbols
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
@@ -49,17 +48,10 @@ WORK = 300_000
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the energy.
-
-    Attributes:
-        energy: The function.
-        flow: The state after a time `STEP`.
-        rotates: Whether that takes sines and cosines.
-    """
+    """A part of the energy, with its flow."""
 
     energy: Element
-    flow: Vector
-    rotates: bool
+    flow: Flow
 
 
 @dataclass(frozen=True)
@@ -67,7 +59,7 @@ class Splitting:
     """An energy in parts.
 
     Attributes:
-        equations: The motion in a field that has the symbol `STEP`.
+        equations: The motion in a field that has the symbols of flows.
         parts: In order: the first and the last factor of a symmetric product is the first part.
         errors: For each order that was compared, by the places of its parts here, the norm of
             ``J grad H_3``; empty where there was nothing to compare, or brackets are too long.
@@ -95,8 +87,8 @@ def find_splitting(equations: Equations) -> Splitting | NoSplitting:
     reason = _find_hindrance(equations)
     if reason:
         return NoSplitting(reason)
-    room = 2 * len(equations.setting.state)
-    setting = registry.make_setting(equations.spec, (STEP,), room)
+    size = len(equations.setting.state)
+    setting = registry.make_setting(equations.spec, list_symbols(size), 2 * size)
     own = derive(equations.spec, equations.route, setting=setting)
     try:
         return _Search(own).run()
@@ -138,7 +130,8 @@ class _Search:
         self.equations, self.setting = equations, equations.setting
         self.field, self.state = self.setting.field, self.setting.state
         exact = equations.exact
-        assert exact.poisson_tensor is not None and exact.energy is not None
+        assert exact.poisson_tensor is not None
+        assert exact.energy is not None
         tensor = tuple(tuple(map(equations.close, row)) for row in exact.poisson_tensor)
         self.structure = PoissonStructure(self.field, self.state, tensor)
         self.energy = equations.close(exact.energy)
@@ -156,11 +149,7 @@ class _Search:
         self._atoms = self._take_apart()
         chosen, errors = self._choose()
         parts = tuple(
-            Part(
-                energy=function,
-                flow=self.flows.follow(function),
-                rotates=any(map(self.flows.rotates, self._places(function))),
-            )
+            Part(function, self.flows.follow(function))
             for function in (self.field.sum(self._atoms[n] for n in group) for group in chosen)
         )
         rest = self.energy - self.field.sum(part.energy for part in parts)
