@@ -2,15 +2,15 @@
 
 Comes in: an affine Poisson tensor and a function f of coordinates x_i whose brackets with one
 another are zero. These coordinates stay along its motion ``x' = sum_i (df/dx_i) A_i x``, with
-constant matrices ``A_i x = {x, x_i}`` that commute by the Jacobi identity. So the motion over a time
-h is the product of ``exp(h (df/dx_i) A_i)``: kicks and drifts where A_i is nilpotent, rotations where
-a block of it satisfies ``A^3 = -k^2 A``.
+constant matrices ``A_i x = {x, x_i}`` that commute by the Jacobi identity. So the motion over a
+time h is the product of ``exp(h (df/dx_i) A_i)``: kicks and drifts where A_i is nilpotent,
+rotations where a block of it satisfies ``A^3 = -k^2 A``.
 
-A rotation by an angle a takes ``t = tan(a/2)`` and ``s = 2t/(1 + t^2) = sin(a)``, without a function:
-``exp = 1 + (s/k) A + (s t/k^2) A^2``. Where df/dx_i depends on x_i alone, t is the polynomial of order
-8 of the tangent: the flow is exactly that of another function of x_i, whose difference from f is of
-order h^8, so that it still is a Poisson map to the last bit and targets have the same bits.
-Otherwise only the exact angle gives a Poisson map, and sine and cosine are called.
+A rotation by an angle a takes ``t = tan(a/2)`` and ``s = 2t/(1 + t^2) = sin(a)``, and no function:
+``exp = 1 + (s/k) A + (s t/k^2) A^2``. Where df/dx_i depends on x_i alone, t is the polynomial of
+order 8 of the tangent: the flow is exactly that of another function of x_i, whose difference from f
+is of order h^8. So it is a Poisson map for every h, and targets have the same bits. Otherwise only
+the exact angle gives a Poisson map, and functions are called.
 
 Each flow is proved: its derivative by its angles and by the time is the motion, and it begins at
 the identity. Goes out: the state after a time h as elements.
@@ -38,7 +38,7 @@ Vector = tuple[Element, ...]
 TANGENT: Final = (Fraction(1), Fraction(1, 3), Fraction(2, 15), Fraction(17, 315))
 
 
-class NoFlow(Exception):
+class NoFlowError(Exception):
     """No flow in closed form is known; the text says why."""
 
 
@@ -148,8 +148,8 @@ class Flows:
         """The flow of a function, proved.
 
         Raises:
-            NoFlow: The coordinates of the function do not commute, or move the others by a matrix
-                whose exponential is not known here.
+            NoFlowError: The coordinates of the function do not commute, or move the others by a
+                matrix whose exponential is not known here.
         """
         field = self.field
         names = [name for name in self.state if name in field.reach(function)]
@@ -159,7 +159,7 @@ class Flows:
             i = self.state.index(name)
             for other in names:
                 if not self.commute(i, self.state.index(other)):
-                    raise NoFlow(
+                    raise NoFlowError(
                         f"{element_text(field, function)} depends on {name} and {other}, whose "
                         "bracket is not 0"
                     )
@@ -217,7 +217,14 @@ class Flows:
                 if (k, sign) not in turns:
                     names = [f"_{name}{len(rotations) + 1}" for name in ("half", "tan", "sin")]
                     rational = is_rational and sign > 0
-                    turns[k, sign] = Rotation(*names, time * (k / 2), sign, rational)
+                    turns[k, sign] = Rotation(
+                        half=names[0],
+                        tangent=names[1],
+                        sine=names[2],
+                        angle=time * (k / 2),
+                        sign=sign,
+                        is_rational=rational,
+                    )
                     rotations.append(turns[k, sign])
                 turn = turns[k, sign]
                 sine = field[turn.sine]
@@ -227,8 +234,8 @@ class Flows:
                     result[row] = result[row] + part * entry
         return result
 
-    def _find_frequency(self, i: int, matrix: _Matrix, cube: _Matrix) -> tuple[Fraction, str, str]:
-        """The k > 0 of ``A^3 = -k^2 A`` or ``A^3 = k^2 A``, with the functions that these need."""
+    def _find_frequency(self, i: int, matrix: _Matrix, cube: _Matrix) -> tuple[Fraction, int]:
+        """The k > 0 of ``A^3 = -k^2 A`` or ``A^3 = k^2 A``, with the sign 1 or -1."""
         ratio: Any = None
         for row, entries in matrix.items():
             for column, entry in entries.items():
@@ -241,7 +248,7 @@ class Flows:
         square = abs(Fraction(ratio)) if fits else Fraction(0)
         k = Fraction(isqrt(square.numerator), isqrt(square.denominator))
         if not k or k * k != square:
-            raise NoFlow(
+            raise NoFlowError(
                 f"the motion by {self.state[i]} is no translation and turns by no single rational "
                 "frequency: the cube of a block of its matrix is not a multiple of the block"
             )

@@ -9,9 +9,9 @@ after f_k. F. Fasso, Journal of Computational Physics 189 (2003) 527, found ener
 splittings of one body apart by orders of magnitude; so parts and order are chosen by H_3:
 
     of all ways to put the terms into at most `MOST` parts of commuting functions, and of all orders
-    of these, the one with the least ``work^4 sum |J grad H_3|^2``, where work is the number of flows
-    of a step and the sum is over the default state; where a component has no default, over states
-    with those of 1, 1/2, 1/3, ... in turn. The first one of equals to 12 digits.
+    of these, the one with the least ``work^4 sum |J grad H_3|^2``, where work is the number of
+    flows of a step and the sum is over the default state; where a component has no default, over
+    states with those of 1, 1/2, 1/3, ... in turn. The first one of equals to 12 digits.
 
 Read next: `coadjoint.derive.flows`, and `coadjoint.lower.compositions`.
 """
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from coadjoint.derive import derive, registry
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.flows import Flow, Flows, NoFlow, list_symbols
+from coadjoint.derive.flows import Flow, Flows, NoFlowError, list_symbols
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
@@ -92,7 +92,7 @@ def find_splitting(equations: Equations) -> Splitting | NoSplitting:
     own = derive(equations.spec, equations.route, setting=setting)
     try:
         return _Search(own).run()
-    except (NoFlow, AlgebraError) as error:
+    except (NoFlowError, AlgebraError) as error:
         return NoSplitting(str(error))
 
 
@@ -140,11 +140,11 @@ class _Search:
         """The splitting.
 
         Raises:
-            NoFlow: There is none; the text says why.
+            NoFlowError: There is none; the text says why.
         """
         algebra = self.structure.lie_algebra
         if algebra is None:
-            raise NoFlow("its Poisson tensor is not affine in the state")
+            raise NoFlowError("its Poisson tensor is not affine in the state")
         self.flows = Flows(self.field, self.state, algebra)
         self._atoms = self._take_apart()
         chosen, errors = self._choose()
@@ -169,7 +169,7 @@ class _Search:
             if places := frozenset(self._places(term)):
                 terms.setdefault(places, []).append(term)
         if not terms:
-            raise NoFlow("its energy does not depend on the state")
+            raise NoFlowError("its energy does not depend on the state")
         groups: list[tuple[frozenset[int], Element]] = []
         for places in sorted(terms, key=sorted):
             function = field.sum(terms[places])
@@ -187,7 +187,7 @@ class _Search:
         """Refuse what has no flow here."""
         for i, j in product(places, repeat=2):
             if not self.flows.commute(i, j):
-                raise NoFlow(
+                raise NoFlowError(
                     f"the term {element_text(self.field, function)} of its energy depends on "
                     f"{self.state[min(i, j)]} and {self.state[max(i, j)]}, whose bracket is not 0"
                 )
@@ -214,7 +214,7 @@ class _Search:
             return everything, {}
         partitions = [groups for groups in self._group(len(atoms)) if len(groups) <= MOST]
         if not partitions:
-            raise NoFlow(f"its energy has more than {MOST} parts that do not commute")
+            raise NoFlowError(f"its energy has more than {MOST} parts that do not commute")
         try:
             with self.field.budget(WORK):
                 brackets = self._find_brackets()
@@ -311,7 +311,7 @@ def _call(function: str, *arguments: Any) -> Any:
     own = getattr(mpmath, function, None)
     if own is None:
         entry = ELEMENTARY[function]
-        raise NoFlow(f"{entry.name} has no value here")
+        raise NoFlowError(f"{entry.name} has no value here")
     return own(*arguments)
 
 

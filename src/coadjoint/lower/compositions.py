@@ -1,7 +1,7 @@
 """Compositions: how much of each flow stands where in a step of a method.
 
-Comes in: a number of parts and an order. Goes out: a `Schedule`, pairs of a flow and the part of the
-step that it takes, from the first that acts to the last one.
+Comes in: a number of parts and an order. Goes out: a `Schedule`, pairs of a flow and the part of
+the step that it takes, from the first that acts to the last one.
 
 Coefficients are computed in 50 digits: of Blanes and Moan those published have 15, from which the
 conditions of order are solved again, and those of Kahan and Li are solved from theirs; the tests
@@ -204,7 +204,7 @@ def find_pair_errors(a: Sequence[Any], b: Sequence[Any], order: int) -> list[Any
 def find_symmetric_errors(steps: Sequence[Any], order: int) -> list[Any]:
     """The same of steps ``exp(c X + c^3 Y + c^5 Z)`` from ``exp X`` and any Y and Z."""
     weights = (1, 3, 5)
-    logs = [{(n,): c**weight for n, weight in enumerate(weights)} for c in steps]
+    logs: list[_Series] = [{(n,): c**weight for n, weight in enumerate(weights)} for c in steps]
     return _differences(_product(logs, weights, order), {(0,): 1}, weights, order)
 
 
