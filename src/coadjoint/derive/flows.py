@@ -10,7 +10,8 @@ A rotation by an angle a takes ``t = tan(a/2)`` and ``s = 2t/(1 + t^2) = sin(a)`
 ``exp = 1 + (s/k) A + (s t/k^2) A^2``. Where df/dx_i depends on x_i alone, t is the polynomial of
 order 8 of the tangent: the flow is exactly that of another function of x_i, whose difference from f
 is of order h^8. So it is a Poisson map for every h, and targets have the same bits. Otherwise only
-the exact angle gives a Poisson map, and functions are called.
+the exact angle gives a Poisson map, and functions are called; so they are for frequencies of one
+coordinate that are not equal or one and its double, as of a vector and a quaternion.
 
 Each flow is proved: its derivative by its angles and by the time is the motion, and it begins at
 the identity. Goes out: the state after a time h as elements.
@@ -59,6 +60,7 @@ class Rotation:
         angle: Half the angle after a time `STEP`.
         sign: 1 for a rotation, -1 for a hyperbolic one.
         is_rational: Whether the tangent is a polynomial of half the angle.
+        doubled: Of a block that turns twice as fast, the tangent that it follows from; else "".
     """
 
     half: str
@@ -67,6 +69,7 @@ class Rotation:
     angle: Element
     sign: int
     is_rational: bool
+    doubled: str = ""
 
 
 @dataclass(frozen=True)
@@ -86,7 +89,10 @@ class Flow:
         for each in self.rotations:
             half, tangent = own[each.half], own[each.tangent]
             yield each.half, each.angle
-            if each.is_rational:
+            if each.doubled:
+                slow = own[each.doubled]
+                yield each.tangent, slow * 2 / (own.one - slow**2)
+            elif each.is_rational:
                 powers = (half ** (2 * n + 1) * c for n, c in enumerate(TANGENT))
                 yield each.tangent, own.sum(powers)
             elif each.sign > 0:
@@ -209,21 +215,27 @@ class Flows:
         """``exp(h slope A_i)`` applied to values, block by block of the matrix."""
         field, known, result = self.field, (*values, self.field.one), list(values)
         turns: dict[tuple[Fraction, int], Rotation] = {}
-        for matrix in _blocks(self.generators[i], len(self.state)):
+        blocks = self._find_blocks(i)
+        speeds = [k for _, k, _ in blocks if k]
+        # angles have to agree to the last bit: a polynomial of each would not
+        is_rational &= all(k in (speeds[0], 2 * speeds[0]) for k in speeds)
+        is_rational &= all(sign > 0 for _, _, sign in blocks)
+        for matrix, k, sign in blocks:
             time, square = field[STEP] * slope, _multiply(matrix, matrix)
             odd, even = time, time**2 * Fraction(1, 2)
-            if cube := _multiply(square, matrix):
-                k, sign = self._find_frequency(i, matrix, cube)
+            if k:
                 if (k, sign) not in turns:
                     names = [f"_{name}{len(rotations) + 1}" for name in ("half", "tan", "sin")]
-                    rational = is_rational and sign > 0
                     turns[k, sign] = Rotation(
                         half=names[0],
                         tangent=names[1],
                         sine=names[2],
                         angle=time * (k / 2),
                         sign=sign,
-                        is_rational=rational,
+                        is_rational=is_rational,
+                        doubled=turns[speeds[0], 1].tangent
+                        if is_rational and k > speeds[0]
+                        else "",
                     )
                     rotations.append(turns[k, sign])
                 turn = turns[k, sign]
@@ -233,6 +245,16 @@ class Flows:
                 for row, entry in _apply(power, known).items():
                     result[row] = result[row] + part * entry
         return result
+
+    def _find_blocks(self, i: int) -> list[tuple[_Matrix, Fraction, int]]:
+        """Blocks of a matrix with their frequencies, 0 for kicks, and signs: slow ones first."""
+        found = []
+        for matrix in _blocks(self.generators[i], len(self.state)):
+            cube = _multiply(_multiply(matrix, matrix), matrix)
+            found.append(
+                (matrix, *(self._find_frequency(i, matrix, cube) if cube else (Fraction(0), 1)))
+            )
+        return sorted(found, key=lambda block: block[1])
 
     def _find_frequency(self, i: int, matrix: _Matrix, cube: _Matrix) -> tuple[Fraction, int]:
         """The k > 0 of ``A^3 = -k^2 A`` or ``A^3 = k^2 A``, with the sign 1 or -1."""
