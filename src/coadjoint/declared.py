@@ -141,6 +141,7 @@ class KernelContext:
         turning: Names of the attitudes that the projection moves back to rotations.
         written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
+        maps: What explicit methods make a step of: `coadjoint.lower.maps`.
     """
 
     name: str
@@ -161,3 +162,4 @@ class KernelContext:
     written: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()
     is_bound: bool = False
+    maps: tuple[Program, ...] = ()

@@ -29,6 +29,7 @@ from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
 from coadjoint.crosscheck.replay import Replayed
+from coadjoint.crosscheck.solver_objects import list_choices
 from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
@@ -106,6 +107,7 @@ def crosscheck(
     targets: Sequence[str] | None = None,
     oracle_points: int = ORACLE_POINTS,
     bit_points: int = BIT_POINTS,
+    maps: Sequence[Program] = (),
 ) -> Report:
     """Run rungs 3, 4 and 5.
 
@@ -118,6 +120,7 @@ def crosscheck(
         targets: What to compare; by default all, or those that need no compiler without one.
         oracle_points: Points against 50 digits, shared out among the functions.
         bit_points: Points of bitwise comparison for each function.
+        maps: What explicit methods make a step of.
 
     Raises:
         CompilerError: The compiler does not work, or fails on this kernel.
@@ -125,11 +128,13 @@ def crosscheck(
     """
     chosen = available_targets() if targets is None else tuple(targets)
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
-    subject = Subject(programs, Replayed(reference), system, chosen)
+    subject = Subject(programs, Replayed(reference), system, chosen, maps=tuple(maps))
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
-            kind: start_compiling(pool, texts, folder, chosen, kind, noisy="noise" in programs)
+            kind: start_compiling(
+                pool, texts, folder, chosen, kind, list_choices(subject.names_of(kind))
+            )
             for kind in list_kinds(programs)
         }
         loading = pool.submit(system.load_kernels, chosen)

@@ -33,7 +33,10 @@ from coadjoint.spec.model import Reconstructed
 
 
 def kernel_context(
-    equations: Equations, programs: Mapping[str, Program], supported: int = 0
+    equations: Equations,
+    programs: Mapping[str, Program],
+    supported: int = 0,
+    maps: tuple[Program, ...] = (),
 ) -> KernelContext:
     """What the generated files of a system say; of a spec's free text, nothing.
 
@@ -41,6 +44,7 @@ def kernel_context(
         equations: The emitted route.
         programs: Its functions.
         supported: How many claims are numerically supported and not proved.
+        maps: What explicit methods make a step of.
     """
     spec = equations.spec
     first, *others = spec.routes
@@ -64,6 +68,7 @@ def kernel_context(
         domain=tuple(bound for bound, _ in bounds(equations)),
         turning=tuple(v.name for v in spec.turning),
         is_bound=bool(equations.exact.residuals),
+        maps=maps,
     )
 
 

@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.maps import list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -29,7 +30,14 @@ from coadjoint.lower.program import (
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
-from coadjoint.render.solvers import arrange, arrange_function, describe_noise, select_programs
+from coadjoint.render.solvers import (
+    arrange,
+    arrange_function,
+    arrange_map,
+    describe_noise,
+    list_maps,
+    select_programs,
+)
 from coadjoint.render.tables import arrange_table, fill, tell_loops
 from coadjoint.render.targets import TARGETS
 from coadjoint.solver_kinds import FILES, SOLVER, SolverKind, list_kinds
@@ -199,13 +207,15 @@ def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, 
 
 def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
-    solved, table = select_programs(context.programs, kind), dop853()
+    solved, table = select_programs(context.programs, kind, context.maps), dop853()
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
+        "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
+        "schedules": list_schedules(list_maps(solved)),
         "strict": [bound.strict for bound in context.domain],
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
     }

@@ -133,6 +133,8 @@ class SolverText:
         fixed_reads: Names that ``fixed`` reads.
         branches: Whether the rates call functions of what moves that have branch points or jumps,
             as sqrt and log. A motion may be analytic there.
+        shared: What maps need of the parameters alone, which follows what is `fixed`.
+        shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
     """
 
@@ -147,6 +149,8 @@ class SolverText:
     reads: frozenset[str]
     fixed_reads: frozenset[str]
     branches: bool
+    shared: tuple[Line, ...] = ()
+    shared_reads: frozenset[str] = frozenset()
     loops: LoopText | None = None
 
 
@@ -205,6 +209,8 @@ def _arrange(
     )
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
+    maps = [programs[name] for name in list_maps(programs)]
+    shared = [Line(s.name, s.value) for each in maps for s in each.statements_at("parameters")]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
     branches = any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls)
     values = (value for program in programs.values() for value in program.values())
@@ -222,6 +228,8 @@ def _arrange(
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
         branches=branches,
+        shared=tuple(shared),
+        shared_reads=_reads(shared),
     )
 
 
@@ -238,12 +246,15 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> dict[str, Program]:
-    """The rates, what bounds the motion and its noise, by their names in the texts of solvers.
+def select_programs(
+    programs: Iterable[Program], kind: SolverKind = SOLVER, maps: Iterable[Program] = ()
+) -> dict[str, Program]:
+    """The rates, what bounds the motion, noise and maps, by their names in the texts of solvers.
 
     Args:
         programs: The functions of the kernel.
         kind: What is integrated. What is reconstructed has no bounds, and a projection leaves it.
+        maps: What explicit methods make a step of, which is of the state alone.
     """
     known = {program.name: program for program in programs}
     rates = reduce(join, (known[name] for name in kind.rates))
@@ -252,7 +263,23 @@ def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> d
     return {"rates": rates} | {
         name: widen(program, rates.state, moves=name == "projection")
         for name, program in bounds.items()
-    }
+    } | {each.name: _with_own_names(each) for each in maps if kind == SOLVER}
+
+
+def _with_own_names(program: Program) -> Program:
+    """A map with names of its own for what depends on parameters alone, which all maps share."""
+    names = {each.name: f"_{program.name}{each.name}" for each in program.statements_at("parameters")}
+    statements = tuple(
+        replace(each, name=names.get(each.name, each.name), value=rename(each.value, names))
+        for each in program.statements
+    )
+    outputs = tuple(replace(each, value=rename(each.value, names)) for each in program.outputs)
+    return replace(program, statements=statements, outputs=outputs)
+
+
+def list_maps(programs: Iterable[str]) -> list[str]:
+    """The names that are those of maps."""
+    return [name for name in programs if name == "kahan" or name.startswith("flow")]
 
 
 def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
@@ -274,15 +301,23 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     """The lines of a Program, whose rows go to ``_rows``.
 
     Args:
-        name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
+        name: Its name in a solver. Of rates and maps, what depends on parameters alone is left out.
         program: What to arrange.
     """
     if program.table is not None:  # the template has the loops
         return FunctionText((), frozenset())
-    statements = program.statements_at("member") if name == "rates" else program.statements
+    shares = name == "rates" or list_maps([name])
+    statements = program.statements_at("member") if shares else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
+
+
+def arrange_map(program: Program) -> FunctionText:
+    """The lines of a map with what it needs of the parameters, as the twin in NumPy has them."""
+    shared = [Line(each.name, each.value) for each in program.statements_at("parameters")]
+    lines = (*shared, *arrange_function(program.name, program).lines)
+    return FunctionText(lines, _reads(lines))
 
 
 def _count(function: FunctionText) -> int:
