@@ -142,6 +142,7 @@ class KernelContext:
         written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
         maps: What explicit methods make a step of: `coadjoint.lower.maps`.
+        refusals: Methods without such maps, each with the reason.
     """
 
     name: str
@@ -163,3 +164,4 @@ class KernelContext:
     turning: tuple[str, ...] = ()
     is_bound: bool = False
     maps: tuple[Program, ...] = ()
+    refusals: tuple[tuple[str, str], ...] = ()

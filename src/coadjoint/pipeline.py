@@ -98,11 +98,11 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     certificate = prove(spec, routes).require()
     check_programs(first, programs)
     progress("render")
-    maps = lower_maps(first, is_looped=programs["rhs"].table is not None).programs
+    maps = lower_maps(first, is_looped=programs["rhs"].table is not None)
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps)
     texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
     return Rendered(
-        equations=first, certificate=certificate, programs=programs, texts=texts, maps=maps
+        equations=first, certificate=certificate, programs=programs, texts=texts, maps=maps.programs
     )
 
 

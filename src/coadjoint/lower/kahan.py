@@ -85,7 +85,7 @@ def _eliminate(
     lines: list[tuple[str, int]] = []
 
     def define(name: str, node: int) -> int:
-        if graph.is_zero(node):
+        if graph.kinds[node] == "number":
             return node
         lines.append((name, node))
         return graph.symbol(name)

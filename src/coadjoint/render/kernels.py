@@ -216,6 +216,7 @@ def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
         "schedules": list_schedules(list_maps(solved)),
+        "refusals": dict(context.refusals) if kind == SOLVER else {},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
     }

@@ -260,15 +260,21 @@ def select_programs(
     rates = reduce(join, (known[name] for name in kind.rates))
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
-    return {"rates": rates} | {
-        name: widen(program, rates.state, moves=name == "projection")
-        for name, program in bounds.items()
-    } | {each.name: _with_own_names(each) for each in maps if kind == SOLVER}
+    return (
+        {"rates": rates}
+        | {
+            name: widen(program, rates.state, moves=name == "projection")
+            for name, program in bounds.items()
+        }
+        | {each.name: _with_own_names(each) for each in maps if kind == SOLVER}
+    )
 
 
 def _with_own_names(program: Program) -> Program:
     """A map with names of its own for what depends on parameters alone, which all maps share."""
-    names = {each.name: f"_{program.name}{each.name}" for each in program.statements_at("parameters")}
+    names = {
+        each.name: f"_{program.name}{each.name}" for each in program.statements_at("parameters")
+    }
     statements = tuple(
         replace(each, name=names.get(each.name, each.name), value=rename(each.value, names))
         for each in program.statements

@@ -12,8 +12,11 @@ from typing import Final
 from coadjoint.build.compiler import Source
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
+#: Methods that are a sequence of maps, with their orders; only some systems have the maps.
+ORDERS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6, "kahan": 2}
+MAPPED: Final = tuple(ORDERS)
 #: Methods that are generated.
-GENERATED: Final = ("taylor", "dop853", "rk4")
+GENERATED: Final = ("taylor", "dop853", "rk4", *MAPPED)
 #: Those of systems with noise.
 NOISY: Final = ("heun", "midpoint")
 
@@ -44,7 +47,9 @@ class Choice:
     @property
     def degree(self) -> int:
         """Of the polynomials that are recorded of its steps."""
-        return {"dop853": 7, "rk4": 3, "heun": 1, "midpoint": 1}.get(self.name, self.order)
+        return {"dop853": 7, "rk4": 3, **dict.fromkeys(MAPPED, 3), "heun": 1, "midpoint": 1}.get(
+            self.name, self.order
+        )
 
     def __str__(self) -> str:
         return self.name

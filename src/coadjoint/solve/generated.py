@@ -15,6 +15,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
+from coadjoint.solve.choices import MAPPED
 from coadjoint.solve.comparison import count_rows
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
@@ -64,6 +65,21 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     if target == "python":
         return "they are written for the targets c, c-fast and numpy"
     return ""
+
+
+def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
+    """Why methods that are a sequence of maps do not apply, as clauses, as far as they do not.
+
+    Args:
+        system: The System.
+        reconstruct: As `System.simulate` takes it.
+    """
+    if is_asked(reconstruct):
+        reason = "it moves the state alone, and what is reconstructed is asked for"
+        return dict.fromkeys(MAPPED, reason)
+    if system.stepwise:
+        return dict.fromkeys(MAPPED, system.stepwise)
+    return system._solvers.refusals
 
 
 def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:

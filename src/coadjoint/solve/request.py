@@ -20,7 +20,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
-from coadjoint.solve.choices import GENERATED, Choice
+from coadjoint.solve.choices import GENERATED, MAPPED, ORDERS, Choice
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.reconstruct import is_asked
 from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
@@ -39,7 +39,7 @@ SCIPY = "scipy:"
 #: Tolerances where none are given.
 RTOL, ATOL = 1e-10, 1e-12
 #: Orders of the generated methods whose order is fixed.
-_ORDER = {"dop853": 8, "rk4": 4, "heun": 2, "midpoint": 2}
+_ORDER = {"dop853": 8, "rk4": 4, "heun": 2, "midpoint": 2, **ORDERS}
 
 
 @dataclass(frozen=True)
@@ -346,8 +346,8 @@ def _normal(method: Any) -> str:
     """The name of a method as it is listed; letters of either case are the same."""
     if not isinstance(method, str):
         return str(method)
-    listed = ("auto", *GENERATED, *_scipy())
-    return next((each for each in listed if each.lower() == method.lower()), method)
+    listed, plain = ("auto", *GENERATED, *_scipy()), method.lower().replace("-", "_")
+    return next((each for each in listed if each.lower() == plain), method)
 
 
 def _scipy() -> tuple[str, ...]:
@@ -376,9 +376,9 @@ def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
     Raises:
         KernelArgumentError: It is missing, or does not go with the method.
     """
-    if step is None and name == "rk4":
+    if step is None and name in ("rk4", *MAPPED):
         raise KernelArgumentError(
-            "method 'rk4' has no estimate of its error; expected step=, the length of its steps.",
+            f"method {name!r} has no estimate of its error; expected step=, the length of its steps.",
             found=None,
         )
     if step is not None and name.startswith(SCIPY):

@@ -34,12 +34,46 @@ if TYPE_CHECKING:
 ROUNDING = 2.0**-48
 
 
-def _check_end(
+def end_where_rates_end(
     rates: Callable[[Lanes, Array, Array], Array], lanes: Lanes, h: Array, state: Array
 ) -> Array:
     """A state at which the rates are not finite is none: the motion ends before it."""
     finite = np.isfinite(rates(lanes, h, state)).all(axis=0)
     return np.where(finite, state, np.nan)
+
+
+def make_cubic(
+    rates: Callable[[Lanes, Array, Array], Array],
+    lanes: Lanes,
+    h: Array,
+    end: Array,
+    find_first: Callable[[], Array],
+) -> tuple[Callable[[Array], Array], Callable[[], Array]]:
+    """The cubic with the states and rates of both ends of a step, and its coefficients.
+
+    Args:
+        rates: Rates of lanes, at states some time later.
+        lanes: Where the step begins.
+        h: Its length.
+        end: The state where it ends.
+        find_first: The rates where it begins.
+    """
+    x = lanes.state
+
+    def parts() -> tuple[Array, Array, Array, Array]:
+        first, chord = find_first(), end - x
+        start = h * first - chord
+        return first, chord, start, h * (rates(lanes, h, end) - first) + 2.0 * start
+
+    def path(after: Array) -> Array:
+        part, (_, chord, start, both) = after / h, parts()
+        return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
+
+    def coefficients() -> Array:
+        first, _, start, both = parts()
+        return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
+
+    return path, coefficients
 
 
 class RungeKutta4:
@@ -74,23 +108,10 @@ class RungeKutta4:
         total = total + 2.0 * k
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
-
-        def parts() -> tuple[Array, Array, Array]:
-            chord = end - x
-            start = h * first - chord
-            return chord, start, h * (self.rates(lanes, h, end) - first) + 2.0 * start
-
-        def path(after: Array) -> Array:
-            part, (chord, start, both) = after / h, parts()
-            return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
-
-        def coefficients() -> Array:
-            _, start, both = parts()
-            return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
-
+        path, coefficients = make_cubic(self.rates, lanes, h, end, lambda: first)
         return Attempt(
             took=h,
-            state=_check_end(self.rates, lanes, h, end) if self.branches else end,
+            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
             path=path,
             coefficients=coefficients,
@@ -131,7 +152,7 @@ class DormandPrince8:
         h = find_step(lanes, self.size, lanes.step, most)
         k, x = self._find_stages(lanes, h)
         if self.branches:
-            x = _check_end(self.rates, lanes, h, x)
+            x = end_where_rates_end(self.rates, lanes, h, x)
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
             accepted = self._control(lanes, h, most, k, x)

@@ -113,6 +113,8 @@ def simulate(
             )
         )
         obstacles |= {"taylor": without} if without else {}
+        if not obstacle:
+            obstacles |= generated.find_missing_maps(system, reconstruct)
         name = choose_method(system, method, step, obstacles, tolerances=tolerances)
         within = "the path within steps is asked for" if recorded else obstacle or system.stepwise
         within = within or stepwise

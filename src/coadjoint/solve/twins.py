@@ -17,7 +17,9 @@ from coadjoint.build.library import tell_processor
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
+from coadjoint.solve.choices import MAPPED
 from coadjoint.solve.ensemble import Limits
+from coadjoint.solve.methods.maps import Maps, make_maps
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -93,6 +95,10 @@ class NumpyStepper:
             )
         if self._choice.name == "rk4":
             return RungeKutta4(self._rates, run.size, branches=self._branches)
+        if self._choice.name in MAPPED:
+            module = KernelModule(self._system, self._choice.kind.files[2])
+            maps = make_maps(module, self._choice.name)
+            return Maps(maps, self._rates, run.size, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
