@@ -48,7 +48,7 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, 
     E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, II.1, II.6.
     """
     half, two = number(Fraction(1, 2)), number(Fraction(2))
-    zero, one = number(Fraction(0)), number(Fraction(1))
+    zero = number(Fraction(0))
     middle = h * half
     k1 = rates(x, zero)
     k2 = rates([a + middle * k for a, k in zip(x, k1, strict=True)], middle)
@@ -56,14 +56,35 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, 
     k4 = rates([a + h * k for a, k in zip(x, k3, strict=True)], h)
     sums = [a + two * b + two * c + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
     end = [a + h * number(SIXTH) * each for a, each in zip(x, sums, strict=True)]
-    part, last = after / h, rates(end, h)
+    return _draw_cubic(x, end, k1, rates(end, h), h, after, number), end
+
+
+def _draw_cubic(x: Row, end: Row, k1: Row, last: Row, h: Any, after: Any, number: Number) -> Row:
+    """The cubic with the states and the rates of both ends, after a part of the step."""
+    part, one = after / h, number(Fraction(1))
     state = []
     for a, b, first, final in zip(x, end, k1, last, strict=True):
         chord = minus(b, a)
         start = minus(h * first, chord)
-        both = h * minus(final, first) + two * start
+        both = h * minus(final, first) + number(Fraction(2)) * start
         state.append(a + part * (chord + minus(one, part) * minus(start, part * both)))
-    return state, end
+    return state
+
+
+def composed(
+    maps: Sequence[tuple[Callable[[Row, Any], Row], Any]],
+    rates: Rates,
+    x: Row,
+    h: Any,
+    after: Any,
+    number: Number,
+) -> tuple[Row, Row]:
+    """A sequence of maps, each for its part of the step; between its ends the cubic of `rk4`."""
+    end = x
+    for move, part in maps:
+        end = move(end, h if part is None else h * part)
+    first, last = rates(x, number(Fraction(0))), rates(end, h)
+    return _draw_cubic(x, end, first, last, h, after, number), end
 
 
 def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:

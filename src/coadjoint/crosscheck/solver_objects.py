@@ -11,7 +11,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -23,9 +23,11 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
+from coadjoint.lower.maps import list_maps, list_schedules
 from coadjoint.solve.calls import call
-from coadjoint.solve.choices import Choice
+from coadjoint.solve.choices import ORDERS, Choice
 from coadjoint.solve.ensemble import Ensemble, Limits, Record
+from coadjoint.solve.methods.maps import Maps
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -41,12 +43,17 @@ CHOICES: Final = {
 }
 #: Those of systems with noise, in addition.
 NOISY: Final = {"heun": Choice("heun", 2), "midpoint": Choice("midpoint", 2)}
-_ALL: Final = {**CHOICES, **NOISY}
+#: Those that are a sequence of maps. Compilers make two of them, which have all the maps.
+MAPS: Final = {name: Choice(name, order) for name, order in ORDERS.items()}
+COMPILED_MAPS: Final = ("splitting4", "kahan")
+#: All of them.
+ALL: Final = {**CHOICES, **NOISY, **MAPS}
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
-    """The methods of a system, by the names of its functions."""
-    return _ALL if "noise" in functions else CHOICES
+    """The methods of a system, by the names of its functions and of its maps."""
+    found = {**CHOICES, **NOISY} if "noise" in functions else CHOICES
+    return {**found, **{name: MAPS[name] for name in list_schedules(list_maps(functions))}}
 
 
 class Advance(Protocol):
@@ -73,7 +80,7 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 3
-    compiler, kind = find_compiler(), replace(_ALL[method], kind=what).source
+    compiler, kind = find_compiler(), replace(ALL[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
@@ -116,12 +123,14 @@ class NumpySolver:
         branches: Its constant: whether the rates have branch points.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
+        module: What names of ``solver.py`` stand for.
     """
 
     expand: Callable[..., Array]
     branches: bool
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
+    module: Mapping[str, Any] = field(default_factory=dict)
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
@@ -141,6 +150,10 @@ class NumpySolver:
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
+        if name in MAPS:
+            parts = self.module["SCHEDULES"][name]
+            maps = [(self.module[f"find_{each}"], part) for each, part in parts]
+            return Maps(maps, rates, size, branches=self.branches)
         return METHODS[name](
             rates=rates,
             fields=self._fields,
@@ -175,9 +188,8 @@ class NumpySolver:
         return self.functions[function](np.ascontiguousarray(state), lanes.parameters, driving)
 
 
-def load_numpy(text: str) -> tuple[Callable[..., Array], bool]:
-    """The function ``expand`` of the text of a solver in NumPy, and its constant ``BRANCHES``."""
+def load_numpy(text: str) -> dict[str, Any]:
+    """What names of the text of a solver in NumPy stand for."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
-    expand: Callable[..., Array] = module["expand"]
-    return expand, bool(module["BRANCHES"])
+    return module

@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import ORDER, list_choices
+from coadjoint.crosscheck.solver_objects import ALL, COMPILED_MAPS, ORDER
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -213,7 +213,7 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    choices = list_choices(solvers.subject.programs)
+    choices = {name: ALL[name] for name, own in solvers.advance.items() if "c" in own}
     equal = dict.fromkeys(choices, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed, keeps in _runs(batch, size):
@@ -265,6 +265,10 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "rk4", given, size * 0.3125, True
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
+        for method in COMPILED_MAPS:
+            yield method, given, size * 0.3125, True
+    for method in COMPILED_MAPS:
+        yield method, batch, size * 0.15, False
     yield "taylor", batch, size * 0.75, True
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
@@ -281,7 +285,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
         CrossCheckError: Two are further apart.
     """
     few = _take_few(solvers, batch)
-    together = dict.fromkeys(list_choices(solvers.subject.programs), 0)
+    together = dict.fromkeys((m for m, targets in solvers.advance.items() if "c" in targets), 0)
     for method in together:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)

@@ -13,7 +13,7 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +27,7 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
+    COMPILED_MAPS,
     NOISY,
     Advance,
     Function,
@@ -47,6 +48,7 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
+from coadjoint.lower.maps import list_maps
 from coadjoint.lower.program import Program
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -85,10 +87,20 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
-    noisy: bool = False,
+    methods: Collection[str] = (),
 ) -> Compiling:
-    """Have the objects of some targets compiled in a private folder."""
-    objects = (*OBJECTS, *((method, "c", "exact") for method in NOISY if noisy))
+    """Have the objects of some targets compiled in a private folder.
+
+    Args:
+        pool: Who runs compilers.
+        texts: The files of the solver in C.
+        folder: The folder.
+        targets: What is compared.
+        kind: What the solvers integrate.
+        methods: Those of the system, in which others than those of all systems are looked up.
+    """
+    others = (method for method in (*NOISY, *COMPILED_MAPS) if method in methods)
+    objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
         for method, target, build in objects
@@ -112,7 +124,7 @@ def check_solvers(
         CrossCheckError: A rung failed.
     """
     functions = _list_functions(subject, kind)
-    programs = select_programs(subject.programs.values(), kind)
+    programs = select_programs(subject.programs.values(), kind, subject.maps)
     subject, text = make_whole(subject, programs, kind), arrange(programs)
     printed = SolverTexts(
         programs=programs,
@@ -124,8 +136,16 @@ def check_solvers(
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
-    numpy = NumpySolver(*load_numpy(texts[kind.files[2]]), functions, _list_strict(subject))
-    advance = _load(subject.system.name, numpy, compiling, kind)
+    module = load_numpy(texts[kind.files[2]])
+    numpy = NumpySolver(
+        expand=module["expand"],
+        branches=bool(module["BRANCHES"]),
+        functions=functions,
+        strict=_list_strict(subject),
+        module=module,
+    )
+    methods = list_choices((*numpy.functions, *list_maps(programs)))
+    advance = _load(subject.system.name, numpy, methods, compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
@@ -153,10 +173,13 @@ def _list_strict(subject: Subject) -> tuple[bool, ...]:
 
 
 def _load(
-    system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
+    system: str,
+    numpy: NumpySolver,
+    methods: Iterable[str],
+    compiling: Compiling,
+    kind: SolverKind,
 ) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    methods = list_choices(numpy.functions)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), system, kind)

@@ -3,10 +3,9 @@
 Comes in: a number of parts and an order. Goes out: a `Schedule`, pairs of a flow and the part of
 the step that it takes, from the first that acts to the last one.
 
-Coefficients are computed in 50 digits: of Blanes and Moan those published have 15, from which the
-conditions of order are solved again, and those of Kahan and Li are solved from theirs; the tests
-hold all to their order in the free algebra. In doubles the last coefficient of each flow is what
-the others leave, so that a step has its length to a rounding.
+Those of Blanes and Moan are published with 15 digits, from which the conditions of order are solved
+again in 50; the tests hold them to their order in the free algebra. In doubles the coefficient of
+each flow in the middle is what the others leave, so that a step has its length to a rounding.
 Read next: `coadjoint.lower.flows`.
 """
 
@@ -22,38 +21,6 @@ import mpmath
 Schedule = tuple[tuple[int, float], ...]
 Coefficients = tuple[Any, ...]
 DIGITS: Final = 50
-
-
-def suzuki4() -> Coefficients:
-    """Steps of a symmetric method of order 2 that make order 4.
-
-    M. Suzuki, Physics Letters A 146 (1990) 319.
-    """
-    with mpmath.workdps(DIGITS):
-        outer = 1 / (4 - mpmath.cbrt(4))
-        return (outer, outer, 1 - 4 * outer, outer, outer)
-
-
-def yoshida4() -> Coefficients:
-    """The same with three steps: the triple jump. H. Yoshida, Physics Letters A 150 (1990) 262."""
-    with mpmath.workdps(DIGITS):
-        outer = 1 / (2 - mpmath.cbrt(2))
-        return (outer, 1 - 2 * outer, outer)
-
-
-def yoshida6() -> Coefficients:
-    """Steps of a symmetric method of order 2 that make order 6: Yoshida's solution A."""
-    start = ("0.784513610477560", "0.235573213359357", "-1.17767998417887")
-    return _solve_symmetric(start)
-
-
-def kahan_li6() -> Coefficients:
-    """The same with nine shorter steps, the errors of which are much smaller.
-
-    W. Kahan and R.-C. Li, Mathematics of Computation 66 (1997) 1089, s9odr6a.
-    """
-    start = ("0.39216144400731413928", "0.33259913678935943860", "-0.70624617255763935981")
-    return _solve_symmetric((*start, "0.082213596293550800230"))
 
 
 def blanes_moan4() -> tuple[Coefficients, Coefficients]:
@@ -72,28 +39,42 @@ def blanes_moan6() -> tuple[Coefficients, Coefficients]:
     return _solve_pairs((*a, "0.541960678450780"), b, 6)
 
 
-#: What is composed of symmetric steps of two or more parts, by its order.
-SYMMETRIC: Final = {2: lambda: (mpmath.mpf(1),), 4: suzuki4, 6: kahan_li6}
-#: What is composed of two flows.
-PAIRS: Final = {4: blanes_moan4, 6: blanes_moan6}
+def strang() -> tuple[Coefficients, Coefficients]:
+    """The symmetric product of two flows, of order 2. G. Strang, SIAM J. Numer. Anal. 5 (1968)."""
+    half = mpmath.mpf(1) / 2
+    return (half, half), (mpmath.mpf(1),)
+
+
+#: Parts of two flows in turn, by the order of their product.
+PAIRS: Final = {2: strang, 4: blanes_moan4, 6: blanes_moan6}
+
+
+def find_sweeps(a: Coefficients, b: Coefficients) -> Coefficients:
+    """The lengths of sweeps through the flows, forth and back in turn, whose pairs are a and b.
+
+    With ``a_1 = c_1, b_1 = c_1 + c_2, a_2 = c_2 + c_3`` a product of two flows is one of sweeps
+    ``exp(c A) exp(c B)`` and ``exp(c B) exp(c A)``. It has the same order for sweeps through any
+    number of flows: R. I. McLachlan, SIAM Journal on Scientific Computing 16 (1995) 151.
+    """
+    sweeps: list[Any] = []
+    for n in range(len(a) + len(b) - 1):
+        whole = (a, b)[n % 2][n // 2]
+        sweeps.append(whole - sweeps[-1] if sweeps else whole)
+    return tuple(sweeps)
 
 
 @cache
 def schedule(parts: int, order: int) -> Schedule:
-    """A step: of two parts by Blanes and Moan, of more by symmetric steps of Suzuki, Kahan and Li.
+    """A step of Strang, or of Blanes and Moan, for any number of parts.
 
     >>> schedule(3, 2)
     ((0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5))
     """
-    if parts == 2 and order in PAIRS:
-        a, b = PAIRS[order]()
-        flows = [(n % 2, (a, b)[n % 2][n // 2]) for n in range(len(a) + len(b))]
-    else:
-        flows = []
-        for c in SYMMETRIC[order]():
-            up = [(n, c / 2) for n in range(parts - 1)]
-            flows += [*up, (parts - 1, c), *reversed(up)]
-    return _round(_merge(flows))
+    with mpmath.workdps(DIGITS):
+        sweeps = find_sweeps(*PAIRS[order]())
+        forth = range(parts)
+        flows = [(n, c) for k, c in enumerate(sweeps) for n in (forth, forth[::-1])[k % 2]]
+        return _round(_merge(flows))
 
 
 def _merge(flows: Sequence[tuple[int, Any]]) -> list[tuple[int, Any]]:
@@ -123,13 +104,6 @@ def _round(flows: Sequence[tuple[int, Any]]) -> Schedule:
 
 
 # -- conditions of order ---------------------------------------------------------------------------
-
-
-def _solve_symmetric(start: Sequence[str]) -> Coefficients:
-    """Outer coefficients of symmetric steps, the last one given by the others, for order 6."""
-    with mpmath.workdps(DIGITS):
-        outer = _solve(list(map(mpmath.mpf, start)), lambda c: find_symmetric_errors(_mirror(c), 6))
-        return _mirror(outer)
 
 
 def _mirror(outer: Sequence[Any]) -> Coefficients:
@@ -191,34 +165,37 @@ def _choose_rows(columns: Sequence[Sequence[Any]], count: int) -> list[int]:
 
 
 #: Coefficients of words in letters that do not commute.
-_Series = dict[tuple[int, ...], Any]
+Series = dict[tuple[int, ...], Any]
 
 
 def find_pair_errors(a: Sequence[Any], b: Sequence[Any], order: int) -> list[Any]:
     """What a product of ``exp(a_i A) exp(b_i B)`` differs by from ``exp(A + B)``, word by word."""
     flows = [(n % 2, (a, b)[n % 2][n // 2]) for n in range(len(a) + len(b))]
-    found = _product([{(letter,): time} for letter, time in flows], (1, 1), order)
-    return _differences(found, {(0,): 1, (1,): 1}, (1, 1), order)
+    found = multiply_exponentials([{(letter,): time} for letter, time in flows], (1, 1), order)
+    return compare_series(found, {(0,): 1, (1,): 1}, (1, 1), order)
 
 
-def find_symmetric_errors(steps: Sequence[Any], order: int) -> list[Any]:
-    """The same of steps ``exp(c X + c^3 Y + c^5 Z)`` from ``exp X`` and any Y and Z."""
-    weights = (1, 3, 5)
-    logs: list[_Series] = [{(n,): c**weight for n, weight in enumerate(weights)} for c in steps]
-    return _differences(_product(logs, weights, order), {(0,): 1}, weights, order)
+def find_sweep_errors(sweeps: Sequence[Any], order: int) -> list[Any]:
+    """The same of sweeps ``exp(c X + c^2 Y + c^3 Z + ...)`` and their adjoints, in turn."""
+    weights = tuple(range(1, order + 1))
+    logs: list[Series] = [
+        {(n,): c**weight * (-1) ** (k * (weight - 1)) for n, weight in enumerate(weights)}
+        for k, c in enumerate(sweeps)
+    ]
+    return compare_series(multiply_exponentials(logs, weights, order), {(0,): 1}, weights, order)
 
 
-def _product(logs: Sequence[_Series], weights: Sequence[int], order: int) -> _Series:
+def multiply_exponentials(logs: Sequence[Series], weights: Sequence[int], order: int) -> Series:
     """A product of exponentials up to words of some weight, the first one to act on the left."""
-    total: _Series = {(): mpmath.mpf(1)}
+    total: Series = {(): mpmath.mpf(1)}
     for log in logs:
         total = _multiply(total, _exponential(log, weights, order), weights, order)
     return total
 
 
-def _exponential(log: _Series, weights: Sequence[int], order: int) -> _Series:
+def _exponential(log: Series, weights: Sequence[int], order: int) -> Series:
     """The exponential of a series without constant term."""
-    total: _Series = {(): mpmath.mpf(1)}
+    total: Series = {(): mpmath.mpf(1)}
     power = total
     for n in range(1, order + 1):
         power = {w: c / n for w, c in _multiply(power, log, weights, order).items()}
@@ -227,9 +204,9 @@ def _exponential(log: _Series, weights: Sequence[int], order: int) -> _Series:
     return total
 
 
-def _multiply(a: _Series, b: _Series, weights: Sequence[int], order: int) -> _Series:
+def _multiply(a: Series, b: Series, weights: Sequence[int], order: int) -> Series:
     """The product of two series, longer words left out."""
-    result: _Series = {}
+    result: Series = {}
     for one, left in a.items():
         for two, right in b.items():
             if sum(weights[letter] for letter in one + two) <= order:
@@ -237,7 +214,7 @@ def _multiply(a: _Series, b: _Series, weights: Sequence[int], order: int) -> _Se
     return result
 
 
-def _differences(found: _Series, log: _Series, weights: Sequence[int], order: int) -> list[Any]:
+def compare_series(found: Series, log: Series, weights: Sequence[int], order: int) -> list[Any]:
     """What two series differ by, in the order of words."""
     expected = _exponential(log, weights, order)
     words = sorted(found.keys() | expected.keys(), key=lambda word: (len(word), word))

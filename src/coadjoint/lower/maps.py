@@ -61,6 +61,11 @@ def lower_maps(equations: Equations, *, is_looped: bool) -> Maps:
     return Maps(tuple(programs), refusals)
 
 
+def list_maps(programs: Iterable[str]) -> list[str]:
+    """The names that are those of maps."""
+    return [name for name in programs if name == KAHAN or name.startswith("flow")]
+
+
 def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
     """The methods of a system: which map acts for which part of a step, in order.
 

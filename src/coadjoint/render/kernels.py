@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from coadjoint.lower.maps import list_schedules
+from coadjoint.lower.maps import list_maps, list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -35,7 +35,6 @@ from coadjoint.render.solvers import (
     arrange_function,
     arrange_map,
     describe_noise,
-    list_maps,
     select_programs,
 )
 from coadjoint.render.tables import arrange_table, fill, tell_loops

@@ -19,6 +19,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
+from coadjoint.lower.maps import list_maps
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
@@ -281,11 +282,6 @@ def _with_own_names(program: Program) -> Program:
     )
     outputs = tuple(replace(each, value=rename(each.value, names)) for each in program.outputs)
     return replace(program, statements=statements, outputs=outputs)
-
-
-def list_maps(programs: Iterable[str]) -> list[str]:
-    """The names that are those of maps."""
-    return [name for name in programs if name == "kahan" or name.startswith("flow")]
 
 
 def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:

@@ -378,7 +378,8 @@ def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
     """
     if step is None and name in ("rk4", *MAPPED):
         raise KernelArgumentError(
-            f"method {name!r} has no estimate of its error; expected step=, the length of its steps.",
+            f"method {name!r} has no estimate of its error; expected step=, the length of its "
+            "steps.",
             found=None,
         )
     if step is not None and name.startswith(SCIPY):

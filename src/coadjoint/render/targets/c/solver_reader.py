@@ -24,6 +24,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise"), "static"),
+            **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan"), "INLINE"),
         }.items()
     },
 }
