@@ -77,6 +77,11 @@ class Elementary:
         return set(self.slopes) == {"0"}
 
     @property
+    def is_exact(self) -> bool:
+        """Whether its values are rounded alike everywhere, as those of roots and signs are."""
+        return self.name == "sqrt" or self.is_locally_constant
+
+    @property
     def calls_others(self) -> bool:
         """Whether its derivative calls functions other than its partner."""
         return not self.partner and any(map(_has_call, self.slopes))

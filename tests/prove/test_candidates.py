@@ -263,3 +263,11 @@ def test_a_solved_constraint_may_have_a_pole_at_the_defaults(turned):
     certificate = prove(spec(text.replace("a*u == a*v", "R*u == a*v")))
     assert certificate.holds
     assert any(each.kind == "integrals" for each in (*certificate.claims, *certificate.findings))
+
+
+@pytest.mark.parametrize("name", ["chaplygin_ball", "routh_sphere", "veselova"])
+@pytest.mark.parametrize("degrees", [(0, 0), (1, 0), (2, 1), (3, 2)])
+def test_monomials_are_counted_without_a_list(name, degrees):
+    """There may be more than memory holds."""
+    search = CandidateSearch(motion(name))
+    assert search.count_largest(degrees) == max(map(len, search.sectors(degrees)))

@@ -284,3 +284,12 @@ def test_windows_are_large_enough_for_what_is_claimed():
     assert counts(read(RING, wide)) == [6, 7]
     assert counts(read(CHAIN)) == [4, 5]
     assert counts(read(VORTICES)) == [2, 3]
+
+
+def test_a_fault_in_what_is_written_out_names_the_key_of_the_text():
+    """Members have names of their own, which stand in no file."""
+    lists = ('index = "i" }\nv', 'index = "i", default = [[0], [1], [2], [3], [4], [5]] }\nv')
+    with pytest.raises(SpecError, match=r"variables\.q\.default: the default of 'q'") as found:
+        read(SPRINGS, lists)
+    assert "a list with one such entry for each member" in str(found.value)
+    read(SPRINGS, (lists[0], 'index = "i", default = [0, 1, 2, 3, 4, 5] }\nv'))

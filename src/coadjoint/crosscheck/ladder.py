@@ -29,11 +29,12 @@ from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.parse_back import check_text
 from coadjoint.crosscheck.replay import Replayed
-from coadjoint.crosscheck.solver_objects import list_choices
 from coadjoint.crosscheck.solvers import SolverFigures, check_solvers, start_compiling
 from coadjoint.crosscheck.subject import Subject, work
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
+from coadjoint.render.solvers import select_programs
 from coadjoint.render.targets import BUILDS, TARGETS
 from coadjoint.solver_kinds import list_kinds
 
@@ -133,7 +134,12 @@ def crosscheck(
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
             kind: start_compiling(
-                pool, texts, folder, chosen, kind, list_choices(subject.names_of(kind))
+                pool,
+                texts,
+                folder,
+                chosen,
+                kind,
+                hold_sides(select_programs(programs.values(), kind, maps)),
             )
             for kind in list_kinds(programs)
         }

@@ -56,14 +56,15 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, 
     k4 = rates([a + h * k for a, k in zip(x, k3, strict=True)], h)
     sums = [a + two * b + two * c + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
     end = [a + h * number(SIXTH) * each for a, each in zip(x, sums, strict=True)]
-    return _draw_cubic(x, end, k1, rates(end, h), h, after, number), end
+    return _draw_cubic(rates, (x, end), h, after, number), end
 
 
-def _draw_cubic(x: Row, end: Row, k1: Row, last: Row, h: Any, after: Any, number: Number) -> Row:
-    """The cubic with the states and the rates of both ends, after a part of the step."""
-    part, one = after / h, number(Fraction(1))
-    state = []
-    for a, b, first, final in zip(x, end, k1, last, strict=True):
+def _draw_cubic(rates: Rates, ends: tuple[Row, Row], h: Any, after: Any, number: Number) -> Row:
+    """The cubic with the states and rates of both ends of a step, after a part of it."""
+    one = number(Fraction(1))
+    part, state = after / h, list[Any]()
+    slopes = rates(ends[0], number(Fraction(0))), rates(ends[1], h)
+    for a, b, first, final in zip(*ends, *slopes, strict=True):
         chord = minus(b, a)
         start = minus(h * first, chord)
         both = h * minus(final, first) + number(Fraction(2)) * start
@@ -83,8 +84,7 @@ def composed(
     end = x
     for move, part in maps:
         end = move(end, h if part is None else h * part)
-    first, last = rates(x, number(Fraction(0))), rates(end, h)
-    return _draw_cubic(x, end, first, last, h, after, number), end
+    return _draw_cubic(rates, (x, end), h, after, number), end
 
 
 def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:
@@ -100,12 +100,30 @@ def midpoint(
     rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int
 ) -> tuple[Row, Row]:
     """The implicit midpoint by so many sweeps, and between its ends a straight line."""
-    half, middle = h * number(Fraction(1, 2)), list(x)
-    for _ in range(sweeps):
-        middle = [a + half * k for a, k in zip(x, rates(middle, half), strict=True)]
+    middle = _find_middle(rates, x, h, number, sweeps)
     two = number(Fraction(2))
     end = [minus(two * m, a) for a, m in zip(x, middle, strict=True)]
     return _draw_line(x, end, h, after), end
+
+
+def structured_midpoint(
+    rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """The same with the rates at the middle, and between its ends the cubic of `rk4`."""
+    middle = _find_middle(rates, x, h, number, sweeps)
+    rises = rates(middle, h * number(Fraction(1, 2)))
+    end = [a + h * k for a, k in zip(x, rises, strict=True)]
+    return _draw_cubic(rates, (x, end), h, after, number), end
+
+
+def _find_middle(rates: Rates, x: Row, h: Any, number: Number, sweeps: int) -> Row:
+    """The middle of an implicit step by so many sweeps, or until they change it no more."""
+    half, middle = h * number(Fraction(1, 2)), list(x)
+    for _ in range(sweeps):
+        last, middle = middle, [a + half * k for a, k in zip(x, rates(middle, half), strict=True)]
+        if last == middle:
+            break
+    return middle
 
 
 def _draw_line(x: Row, end: Row, h: Any, after: Any) -> Row:

@@ -23,7 +23,8 @@ from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.series import Rates, solve
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Program, Symbol, evaluate, settled, walk
+from coadjoint.lower.kinks import SIDE
+from coadjoint.lower.program import Program, Symbol, evaluate, run, settled, walk
 from coadjoint.render.solvers import Line, SolverText
 
 Value = TypeVar("Value")
@@ -75,6 +76,10 @@ class _Running:
             if len(values) == 1:
                 self.known[name] = values[0]
             self.known |= {f"{name}[{k}]": value for k, value in enumerate(values)}
+        if text.kinks is not None:
+            known = {**state, **{name: values[0] for name, values in given.items()}}
+            sides = (apply("sign", kink) for kink in run(text.kinks, known, number, apply))
+            self.known |= {f"{SIDE}{n}": side for n, side in enumerate(sides, 1)}
         self._read: dict[int, frozenset[str]] = {}  # lines live as long as this
         self._driving = [name for name, values in given.items() if len(values) > 1]
 

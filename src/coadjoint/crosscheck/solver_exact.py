@@ -34,11 +34,12 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, Advance
+from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, STRUCTURED, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.maps import list_schedules
 from coadjoint.lower.program import run
+from coadjoint.methods import list_structured
 from coadjoint.render.solvers import SolverText
 from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.normals import draw_normals
@@ -58,8 +59,8 @@ PART: Final = 0.375
 SEED: Final = 0x243F6A8885A308D3
 BOUND: Final = 0.75
 #: Sweeps of an implicit step in 60 digits, and those that bound its roundings, of which each is a
-#: fraction of the one before. Steps with noise are this part of others, so that sweeps end soon.
-SWEEPS, BOUNDING_SWEEPS, NOISY_PART = 120, 8, 0.125
+#: fraction of the one before. These are this part of others, so that sweeps end soon.
+SWEEPS, BOUNDING_SWEEPS, IMPLICIT_PART = 120, 8, 0.125
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,17 @@ class Solvers:
     text: SolverText
     advance: Mapping[str, Mapping[str, Advance]]
     depths: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """The names of its functions, ``kinks`` among them where the rates have some."""
+        maps = (each.name for each in self.subject.maps)
+        return (*self.subject.programs, *maps, *(["kinks"] if self.text.kinks else []))
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether Wiener processes move the state."""
+        return "noise" in self.subject.programs
 
     def begin(self, batch: Batch, samples: Array, *, size: float, steps: int) -> Ensemble:
         """Members at the start of a run."""
@@ -96,6 +108,8 @@ class Solvers:
             max_steps=steps,
             seed=SEED,
             bound=BOUND,
+            is_structured=bool(list_structured(self.functions)),
+            sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
         ensemble.begin(START)
         return ensemble
@@ -133,7 +147,7 @@ def find_steps(
 
     The step is made shorter where none has one: its stages are outside of where rates have values.
     """
-    size = size * NOISY_PART if method in NOISY else size
+    size = size * IMPLICIT_PART if method in (*NOISY, *STRUCTURED) else size
     samples = np.array([START + PART * size, START + size])
     known = dict(list_exact_steps(solvers, method, batch, samples))
     if not known and size > SHORTEST:
@@ -150,7 +164,11 @@ def list_exact_steps(
         point = find_point(solvers, batch, member)
         try:
             with localcontext(CONTEXT):
-                noise = find_noise(solvers, member, length) if method in NOISY else []
+                noise = (
+                    find_noise(solvers, member, length)
+                    if solvers.is_noisy and method in NOISY
+                    else []
+                )
                 step = _exact_step(solvers, method, point, after, length, noise)
                 if "projection" in solvers.subject.programs:
                     step = _project(solvers, point, step, after, length)
@@ -187,6 +205,8 @@ def _exact_step(
     reference, programs = solvers.subject.reference.evaluate, solvers.subject.programs
     step: Any = methods.composed if method in MAPS else getattr(methods, method)
     bounding = step
+    if method == "midpoint" and not solvers.is_noisy:
+        step = bounding = methods.structured_midpoint
     if method == "midpoint":
         step, bounding = (partial(step, sweeps=n) for n in (SWEEPS, BOUNDING_SWEEPS))
 
@@ -194,6 +214,8 @@ def _exact_step(
         return run(programs[function], known, number, apply)
 
     def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
+        apply = _refuse_crossings(apply) if solvers.text.kinks is not None else apply
+
         def at(x: methods.Row, after: Any) -> methods.Row:
             known = dict(zip(program.state, x, strict=True))
             for name, first in given.items():
@@ -244,6 +266,25 @@ def _exact_step(
         depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
         solvers.depths[method] = max(each.count for each in depth)
     return ExactStep(within, end, solvers.depths[method])
+
+
+def _refuse_crossings(apply: Any) -> Any:
+    """Functions of which signs stay those of the first stage, as long as sides are held.
+
+    Raises:
+        OutsideDomain: A sign is another one: the stage is beyond a kink, where rates are held.
+    """
+    known = set[Decimal]()
+
+    def call(function: str, *of: Any) -> Any:
+        value = apply(function, *of)
+        if function == "sign" and isinstance(value, Bounded):
+            known.add(value.value)
+            if len(known) > 1:
+                raise OutsideDomain
+        return value
+
+    return call
 
 
 def _raise_level(_: str, *of: Levels) -> Levels:

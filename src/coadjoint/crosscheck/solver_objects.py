@@ -11,7 +11,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -24,10 +24,13 @@ from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.lower.maps import list_maps, list_schedules
+from coadjoint.methods import MAPPED, list_structured
 from coadjoint.solve.calls import call
-from coadjoint.solve.choices import ORDERS, Choice
-from coadjoint.solve.ensemble import Ensemble, Limits, Record
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.limits import Limits
 from coadjoint.solve.methods.maps import Maps
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS
@@ -42,18 +45,23 @@ CHOICES: Final = {
     "rk4": Choice("rk4", 4),
 }
 #: Those of systems with noise, in addition.
-NOISY: Final = {"heun": Choice("heun", 2), "midpoint": Choice("midpoint", 2)}
+NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpoint")}
+#: Those that keep structure and are compared for every system that has them; compositions of them
+#: take the same steps, of other lengths.
+STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
 #: Those that are a sequence of maps. Compilers make two of them, which have all the maps.
-MAPS: Final = {name: Choice(name, order) for name, order in ORDERS.items()}
+MAPS: Final = {name: Choice(name, each.order) for name, each in MAPPED.items()}
 COMPILED_MAPS: Final = ("splitting4", "kahan")
-#: All of them.
-ALL: Final = {**CHOICES, **NOISY, **MAPS}
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
-    """The methods of a system, by the names of its functions and of its maps."""
-    found = {**CHOICES, **NOISY} if "noise" in functions else CHOICES
-    return {**found, **{name: MAPS[name] for name in list_schedules(list_maps(functions))}}
+    """The methods of a system that are compared, by the names of the functions of its solvers."""
+    if "noise" in functions:
+        return CHOICES | NOISY
+    own = {each.name for each in list_structured(functions)}
+    own |= list_schedules(list_maps(functions)).keys()
+    others = STRUCTURED | MAPS
+    return CHOICES | {name: each for name, each in others.items() if name in own}
 
 
 class Advance(Protocol):
@@ -80,7 +88,8 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 3
-    compiler, kind = find_compiler(), replace(ALL[method], kind=what).source
+    every = CHOICES | NOISY | STRUCTURED | MAPS
+    compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
     work.mkdir()
@@ -119,23 +128,24 @@ class NumpySolver:
     """The methods in NumPy.
 
     Attributes:
-        expand: The function of ``solver.py``.
-        branches: Its constant: whether the rates have branch points.
+        module: What names of ``solver.py`` stand for.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
-        module: What names of ``solver.py`` stand for.
     """
 
-    expand: Callable[..., Array]
-    branches: bool
+    module: Mapping[str, Any]
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
-    module: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def branches(self) -> bool:
+        """Whether the rates have branch points."""
+        return bool(self.module["BRANCHES"])
 
     def method(self, name: str, ensemble: Ensemble) -> Method:
         """A method for the tolerances and the step of an ensemble."""
         rtol, atol, size = ensemble.rtol, ensemble.atol, ensemble.size
-        rates = partial(self._evaluate, "rates")
+        rates = self._hold if "KINKS" in self.module else partial(self._evaluate, "rates")
         if name == "taylor":
             return Taylor(
                 expand=self._expand,
@@ -154,6 +164,8 @@ class NumpySolver:
             parts = self.module["SCHEDULES"][name]
             maps = [(self.module[f"find_{each}"], part) for each, part in parts]
             return Maps(maps, rates, size, branches=self.branches)
+        if name in self.module.get("STRUCTURED", ()):
+            return Structured(name, size, {"rates": rates})
         return METHODS[name](
             rates=rates,
             fields=self._fields,
@@ -168,7 +180,8 @@ class NumpySolver:
             partial(self._evaluate, each) if each in self.functions else None
             for each in ("domain", "projection")
         )
-        limits = Limits(domain=domain, strict=self.strict, projection=projection)
+        kinks = self._find_kinks if "KINKS" in self.module else None
+        limits = Limits(domain=domain, strict=self.strict, projection=projection, kinks=kinks)
 
         def go(ensemble: Ensemble, work: int, record: Record | None = None) -> int:
             method = self.method(name, ensemble)
@@ -177,7 +190,20 @@ class NumpySolver:
         return go
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
-        return self.expand(lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order)
+        path: Array = self.module["expand"](
+            lanes.state, lanes.given, lanes.driving, lanes.slopes, order
+        )
+        return path
+
+    def _hold(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rates: Array = self.module["find_rates"](state, lanes.given, driving)
+        return rates
+
+    def _find_kinks(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        driving = lanes.driving + after * lanes.slopes
+        rows: Array = self.module["find_kinks"](state, lanes.parameters, driving)
+        return rows
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise", lanes, after, state)

@@ -17,7 +17,7 @@ Read next: `coadjoint.crosscheck.solvers`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import ALL, COMPILED_MAPS, ORDER
+from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, ORDER, list_choices
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -60,7 +60,20 @@ MOST_STEPS: Final = 12
 OCTAVES: Final = 0.02 / (ORDER - 1) + 3e-4
 #: The same where the first order bounds it.
 ROUGH: Final = 0.02 + 3e-4
-_KEPT: Final = ("out", "state", "time", "step", "next", "steps", "rejected", "status")
+_KEPT: Final = (
+    "out",
+    "state",
+    "time",
+    "step",
+    "next",
+    "steps",
+    "rejected",
+    "status",
+    "low",
+    "sweeps",
+)
+#: What is kept of kinks in addition, where there are some.
+_KINKED: Final = ("kinks", "brief")
 
 
 def choose_size(solvers: Solvers, batch: Batch) -> float:
@@ -115,7 +128,8 @@ def _measure(
     worst, out, compared = 0.0, ensemble.out, 0
     assert out is not None
     for member, step in known.items():
-        if ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW):
+        ended = ensemble.status[member] in (Status.DOMAIN, Status.STEP_UNDERFLOW, Status.NOT_SOLVED)
+        if ended or _has_met_kink(ensemble, member):
             continue
         compared += 1
         for row, name in enumerate(solvers.subject.programs["rhs"].state):
@@ -137,6 +151,11 @@ def _measure(
     if not compared:
         raise solvers.failure(4, f"no step of {method} was compared with 60 digits")
     return Figures(worst, 0.0, compared)
+
+
+def _has_met_kink(ensemble: Ensemble, member: int) -> bool:
+    """Whether a step of a member ended at a kink."""
+    return ensemble.kinks is not None and bool(ensemble.kinks[member])
 
 
 def check_choice(solvers: Solvers, batch: Batch) -> int:
@@ -165,7 +184,10 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
             if octaves < -20:  # the time, to which the step is added, has too few digits for it
                 continue
             compared += 1
-            if abs(math.log2(taken) - octaves) > allowed:
+            octaves_off = math.log2(taken) - octaves
+            if _has_met_kink(ensemble, member):  # which ended the step: it is no longer than that
+                octaves_off = max(octaves_off, 0.0)
+            if abs(octaves_off) > allowed:
                 raise solvers.failure(
                     4,
                     f"the Taylor method, {target}, takes the step {taken!r}; expected "
@@ -204,7 +226,14 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> tuple[float, float]
 # -- rung 5 ---------------------------------------------------------------------------------------
 
 
-def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
+def _list_compiled(solvers: Solvers) -> list[str]:
+    """The methods that are compared in C as well."""
+    return [name for name, targets in solvers.advance.items() if "c" in targets]
+
+
+def check_bits(
+    solvers: Solvers, batch: Batch, size: float, methods: Iterable[str] | None = None
+) -> dict[str, int]:
     """Rung 5: NumPy and exact C take the same steps, bit for bit.
 
     Returns:
@@ -213,7 +242,10 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    choices = {name: ALL[name] for name, own in solvers.advance.items() if "c" in own}
+    known = list_choices(solvers.functions)
+    choices = {
+        name: known[name] for name in (_list_compiled(solvers) if methods is None else methods)
+    }
     equal = dict.fromkeys(choices, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed, keeps in _runs(batch, size):
@@ -227,7 +259,9 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
             for _ in range(2 * MOST_STEPS):
                 if not targets[target](ensemble, most, record if keeps else None):
                     break
-            found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in _KEPT}
+            kept = (*_KEPT, *(_KINKED if ensemble.sides else ()))
+            found[target] = {name: np.asarray(getattr(ensemble, name), float) for name in kept}
+            found[target]["met"] = ensemble.list_met()
             order = np.argsort(record.member, kind="stable")
             found[target]["record"] = record.rows[: record.count][order]
         for name, one in found["numpy"].items():
@@ -265,6 +299,7 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "rk4", given, size * 0.3125, True
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
+        yield "midpoint", given, size * 0.15, True
         for method in COMPILED_MAPS:
             yield method, given, size * 0.3125, True
     for method in COMPILED_MAPS:
@@ -272,10 +307,13 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
     yield "taylor", batch, size * 0.75, True
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
+    yield "midpoint", batch, size * 0.03, False
     yield "dop853", batch, size * 0.15, False
 
 
-def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
+def check_together(
+    solvers: Solvers, batch: Batch, size: float, methods: Iterable[str] | None = None
+) -> dict[str, int]:
     """Rung 5 with functions beyond sqrt: steps of NumPy and of exact C are within the bound.
 
     Returns:
@@ -285,7 +323,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
         CrossCheckError: Two are further apart.
     """
     few = _take_few(solvers, batch)
-    together = dict.fromkeys((m for m, targets in solvers.advance.items() if "c" in targets), 0)
+    together = dict.fromkeys(_list_compiled(solvers) if methods is None else methods, 0)
     for method in together:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)
@@ -293,7 +331,10 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
             ensemble = solvers.begin(few, samples, size=float(samples[-1] - START), steps=2)
             solvers.advance[method][target](ensemble, 1)
             found.append(ensemble.state)
-            left |= np.isin(ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW))
+            left |= np.isin(
+                ensemble.status, (Status.DOMAIN, Status.STEP_UNDERFLOW, Status.NOT_SOLVED)
+            )
+            left |= np.array([_has_met_kink(ensemble, n) for n in range(few.size)])
         for member, step in known.items():
             if left[member]:
                 continue

@@ -22,7 +22,13 @@ from coadjoint.lower.maps import list_maps, list_schedules
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.kernels import TEMPLATES, Row, name_solver
+from coadjoint.render.kernels import (
+    TEMPLATES,
+    Row,
+    arrange_sides,
+    elementary_functions,
+    name_solver,
+)
 from coadjoint.render.solvers import (
     FunctionText,
     Line,
@@ -30,6 +36,7 @@ from coadjoint.render.solvers import (
     arrange_function,
     arrange_map,
     describe_noise,
+    describe_structured,
 )
 from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets.body import Loop, SolverBody, failure
@@ -85,7 +92,12 @@ def check_solver_texts(texts: SolverTexts) -> int:
         body = numpy_reader.read_map(texts.files[numpy], name, numpy)
         compared += _check_body(body, _expected_map(texts, name), numpy, f"find_{name}")
     body = numpy_reader.read_expand(texts.files[numpy], numpy, is_looped=loops is not None)
-    return compared + _check_body(body, _expected(texts, numpy), numpy, "expand")
+    compared += _check_body(body, _expected(texts, numpy), numpy, "expand")
+    for name, program in texts.programs.items():
+        if name in numpy_reader.HELD and texts.recurrences.kinks is not None:
+            body = numpy_reader.read_rows(texts.files[numpy], f"find_{name}", numpy)
+            compared += _check_body(body, _expect_rows(program), numpy, f"find_{name}")
+    return compared
 
 
 # -- the lines of the system ----------------------------------------------------------------------
@@ -126,6 +138,13 @@ def _expected_map(texts: SolverTexts, name: str) -> SolverBody:
     rows = {"parameters": program.parameters, "state": program.state}
     found = arrange_map(texts.programs[name])
     return _body(rows, ("state", "parameters"), found.reads, found.lines)
+
+
+def _expect_rows(program: Program) -> SolverBody:
+    """What a function in NumPy is to do that computes all rows of a Program."""
+    found, driven = arrange_function("held", program), (*program.inputs, *program.time)
+    rows = {"parameters": program.parameters, "state": program.state, "driving": driven}
+    return _body(rows, tuple(rows), found.reads, found.lines)
 
 
 def _body(
@@ -236,6 +255,8 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
     """The files of a system of this name and these sizes that has no recurrences."""
     program, solver = texts.programs["rates"], texts.recurrences
     nothing = FunctionText((), frozenset())
+    kinks = arrange_sides(texts.programs)
+    known = len(program.parameters) - len(kinks["sides"])
     bare = SolverText(
         fixed=solver.fixed,
         kept=(),
@@ -259,14 +280,20 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             **name_solver(texts.system, texts.kind),
             **_head(texts.kind.files[2], texts.files[texts.kind.files[2]]),
             "state": _rows(program.state),
-            "parameters": _rows(program.parameters),
+            "parameters": _rows(program.parameters[:known]),
+            **kinks,
+            "held": dict.fromkeys(kinks["held"], nothing),
             "driving": {name: rows for name, rows in driving.items() if rows},
             **describe_noise(texts.programs),
+            **describe_structured(texts.programs),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "maps": dict.fromkeys(list_maps(texts.programs), nothing),
             "schedules": list_schedules(list_maps(texts.programs)),
+            "exact_maps": not elementary_functions(
+                texts.programs[name] for name in list_maps(texts.programs)
+            ),
             "refusals": numpy_reader.read_refusals(texts.files[texts.kind.files[2]]),
             "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},

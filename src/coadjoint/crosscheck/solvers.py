@@ -28,7 +28,7 @@ from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
     COMPILED_MAPS,
-    NOISY,
+    MAPS,
     Advance,
     Function,
     NumpySolver,
@@ -48,8 +48,11 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
+from coadjoint.elementary import ELEMENTARY
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.maps import list_maps
 from coadjoint.lower.program import Program
+from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -87,19 +90,11 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
-    methods: Collection[str] = (),
+    functions: Collection[str] = (),
 ) -> Compiling:
-    """Have the objects of some targets compiled in a private folder.
-
-    Args:
-        pool: Who runs compilers.
-        texts: The files of the solver in C.
-        folder: The folder.
-        targets: What is compared.
-        kind: What the solvers integrate.
-        methods: Those of the system, in which others than those of all systems are looked up.
-    """
-    others = (method for method in (*NOISY, *COMPILED_MAPS) if method in methods)
+    """Have the objects of some targets compiled in a private folder."""
+    spared = {*CHOICES, *MAPS}.difference(COMPILED_MAPS)
+    others = (name for name in list_choices(functions) if name not in spared)
     objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
@@ -125,7 +120,8 @@ def check_solvers(
     """
     functions = _list_functions(subject, kind)
     programs = select_programs(subject.programs.values(), kind, subject.maps)
-    subject, text = make_whole(subject, programs, kind), arrange(programs)
+    subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
+    text = arrange(programs)
     printed = SolverTexts(
         programs=programs,
         recurrences=text,
@@ -137,15 +133,8 @@ def check_solvers(
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
     module = load_numpy(texts[kind.files[2]])
-    numpy = NumpySolver(
-        expand=module["expand"],
-        branches=bool(module["BRANCHES"]),
-        functions=functions,
-        strict=_list_strict(subject),
-        module=module,
-    )
-    methods = list_choices((*numpy.functions, *list_maps(programs)))
-    advance = _load(subject.system.name, numpy, methods, compiling, kind)
+    numpy = NumpySolver(module, functions, _list_strict(subject))
+    advance = _load(subject.system.name, numpy, list_choices(programs), compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
@@ -153,10 +142,10 @@ def check_solvers(
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
     equal, together = dict[str, int](), dict[str, int]()
     if compiling:
-        if not text.functions:
-            equal = check_bits(solvers, batch, size)
-        else:
-            together = check_together(solvers, batch, size)
+        methods = _list_equal(programs, [each for each in advance if "c" in advance[each]])
+        others = [each for each in advance if "c" in advance[each] and each not in methods]
+        equal = check_bits(solvers, batch, size, methods) if methods else equal
+        together = check_together(solvers, batch, size, others) if others else together
     return SolverFigures(
         coefficients=coefficients,
         lines=lines,
@@ -165,6 +154,20 @@ def check_solvers(
         equal=equal,
         together=together,
     )
+
+
+def _list_equal(programs: Mapping[str, Program], methods: Iterable[str]) -> list[str]:
+    """The methods whose bits are promised: nothing that they call depends on a library."""
+    maps = {name: programs[name] for name in list_maps(programs)}
+    others = [each for name, each in programs.items() if name not in maps]
+    return [
+        each
+        for each in methods
+        if all(
+            ELEMENTARY[function].is_exact
+            for function in list_called([*others, *(maps.values() if each in MAPS else ())])
+        )
+    ]
 
 
 def _list_strict(subject: Subject) -> tuple[bool, ...]:

@@ -100,7 +100,8 @@ def magnetic(
         a, b = places(momenta, (first, second))
         entries[n + a, n + b] = value
     structure = PoissonStructure(field, names, antisymmetric(field, 2 * n, entries), "magnetic")
-    _check_closed(structure, coordinates, momenta, scale)
+    if two_form:  # none is closed
+        _check_closed(structure, coordinates, momenta, scale)
     return structure
 
 

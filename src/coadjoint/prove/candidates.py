@@ -33,7 +33,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import islice
-from math import prod
+from math import comb, prod
 
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.exact import Element, element_text
@@ -111,6 +111,13 @@ class CandidateSearch(PolynomialFamily):
         if not self.reversible:
             return [whole]
         return [[e for e in whole if sum(e[:count]) % 2 == parity] for parity in (0, 1)]
+
+    def count_largest(self, degrees: Degrees) -> int:
+        """How many monomials the largest sector has, of which there may be too many to list."""
+        n, most = len(self.velocities), degrees[0]
+        of_degree = [comb(n + k - 1, k) if n else int(k == 0) for k in range(most + 1)]
+        parts = [of_degree[::2], of_degree[1::2]] if self.reversible else [of_degree]
+        return max(map(sum, parts)) * comb(len(self.positions) + degrees[1], degrees[1])
 
     def integrals(self, members: Sequence[Exponents]) -> list[Solution[Exponents]]:
         """A basis of the integrals among combinations of monomials."""
@@ -316,7 +323,7 @@ def default_numbers(spec: Spec) -> dict[str, Fraction]:
 def affordable(search: CandidateSearch) -> Degrees:
     """The degrees that are searched, lower where there are very many monomials."""
     most, degree = DEGREES
-    while max(map(len, search.sectors((most, degree)))) > MONOMIALS and most + degree > 1:
+    while search.count_largest((most, degree)) > MONOMIALS and most + degree > 1:
         most, degree = (most, degree - 1) if degree else (most - 1, degree)
     return most, degree
 

@@ -75,12 +75,50 @@ def bind_size(spec: Spec, certificate: Certificate) -> Certificate:
     if not spec.written:
         return certificate
     (index,) = spec.index
-    scope = f", for {index.count or 'N'} = {index.size}"
+
+    def tell(statement: str) -> str:
+        return f"{shorten_runs(statement)}, for {index.count or 'N'} = {index.size}"
+
     return replace(
         certificate,
-        claims=tuple(replace(c, statement=c.statement + scope) for c in certificate.claims),
-        findings=tuple(replace(f, statement=f.statement + scope) for f in certificate.findings),
+        claims=tuple(replace(c, statement=tell(c.statement)) for c in certificate.claims),
+        findings=tuple(replace(f, statement=tell(f.statement)) for f in certificate.findings),
     )
+
+
+#: A name of a member, as it is or with a differential or a change of sign.
+_OF_MEMBER = re.compile(r"\b(\w+_)(\d+)\b(?: -> -\1\2\b)?")
+#: Members that are listed in a row.
+_LISTED = 4
+
+
+def shorten_runs(statement: str) -> str:
+    """A statement with the first and the last of names that follow one another by their numbers.
+
+    >>> shorten_runs("dq_0 dq_1 dq_2 dq_3 dq_4 dp_0, and p_0 -> -p_0, p_1 -> -p_1")
+    'dq_0 ... dq_4 dp_0, and p_0 -> -p_0, p_1 -> -p_1'
+    """
+    runs = list[list[re.Match[str]]]()
+    for found in _OF_MEMBER.finditer(statement):
+        if runs and _follows(statement, runs[-1], found):
+            runs[-1].append(found)
+        else:
+            runs.append([found])
+    for run in reversed(runs):
+        if len(run) > _LISTED:
+            between = statement[run[0].end() : run[1].start()]
+            statement = (
+                f"{statement[: run[0].end()]}{between}...{between}{statement[run[-1].start() :]}"
+            )
+    return statement
+
+
+def _follows(statement: str, run: Sequence[re.Match[str]], found: re.Match[str]) -> bool:
+    """Whether a name is the next one of a run, with the same between them as before."""
+    last, between = run[-1], statement[run[-1].end() : found.start()]
+    alike = last[1] == found[1] and ("->" in last[0]) == ("->" in found[0])
+    before = statement[run[0].end() : run[1].start()] if len(run) > 1 else between
+    return alike and int(found[2]) == int(last[2]) + 1 and between == before in (", ", " ")
 
 
 def _examine_lax(family: Windows) -> Claim:

@@ -16,7 +16,9 @@ from functools import partial
 from typing import Any, Final
 
 from coadjoint.declared import Bound, KernelContext, Quantity
+from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.maps import list_maps, list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
@@ -35,6 +37,7 @@ from coadjoint.render.solvers import (
     arrange_function,
     arrange_map,
     describe_noise,
+    describe_structured,
     select_programs,
 )
 from coadjoint.render.tables import arrange_table, fill, tell_loops
@@ -137,9 +140,12 @@ def fingerprint(texts: Mapping[str, str]) -> str:
 
 
 def elementary_functions(programs: Iterable[Program]) -> tuple[str, ...]:
-    """Functions beyond sqrt that Programs call; where there are none, all targets agree in bits."""
+    """Functions that are not exact and that Programs call.
+
+    Where there are none, all targets agree in bits.
+    """
     called = list_called(programs)
-    return tuple(name for name in FUNCTIONS if name in called and name != "sqrt")
+    return tuple(name for name in FUNCTIONS if name in called and not ELEMENTARY[name].is_exact)
 
 
 def list_called(programs: Iterable[Program]) -> list[str]:
@@ -206,18 +212,43 @@ def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, 
 
 def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
-    solved, table = select_programs(context.programs, kind, context.maps), dop853()
+    solved = hold_sides(select_programs(context.programs, kind, context.maps))
+    table = dop853()
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
+        **describe_structured(solved),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
+        **arrange_sides(solved),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
         "schedules": list_schedules(list_maps(solved)),
+        "exact_maps": not elementary_functions(solved[name] for name in list_maps(solved)),
         "refusals": dict(context.refusals) if kind == SOLVER else {},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
+    }
+
+
+def arrange_sides(solved: Mapping[str, Program]) -> dict[str, Any]:
+    """What templates read of kinks: a row of the parameters for each side, and what it is that of.
+
+    Args:
+        solved: As `coadjoint.lower.kinks.hold_sides` has them.
+    """
+    kinks = solved.get("kinks")
+    if kinks is None:
+        return {"sides": [], "kinks": [], "held": {}}
+    names = solved["rates"].parameters
+    known = len(kinks.parameters)
+    return {
+        "sides": [Row(index, name, "") for index, name in enumerate(names) if index >= known],
+        "kinks": [quote(Printer("").text(output.value)) for output in kinks.outputs],
+        "held": {
+            "rates": arrange_function("held", solved["rates"]),
+            "kinks": arrange_function("kinks", kinks),
+        },
     }
 
 

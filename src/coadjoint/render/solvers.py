@@ -38,6 +38,8 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
+from coadjoint.methods import list_structured
+from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Sums that one loop runs over: as many as vector registers hold with their factors.
@@ -137,6 +139,7 @@ class SolverText:
         shared: What maps need of the parameters alone, which follows what is `fixed`.
         shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
+        kinks: What the sides are those of, which are the last parameters; None for no sides.
     """
 
     fixed: tuple[Line, ...]
@@ -153,6 +156,7 @@ class SolverText:
     shared: tuple[Line, ...] = ()
     shared_reads: frozenset[str] = frozenset()
     loops: LoopText | None = None
+    kinks: Program | None = None
 
 
 def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
@@ -231,6 +235,7 @@ def _arrange(
         branches=branches,
         shared=tuple(shared),
         shared_reads=_reads(shared),
+        kinks=programs.get("kinks"),
     )
 
 
@@ -296,6 +301,25 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
         "noise": 0 if program is None else len(program.outputs) // len(program.state),
         "sweeps": normals.SWEEPS,
         "normals": {name: getattr(normals, name) for name in names},
+    }
+
+
+def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
+    """What templates read of methods that keep structure, under one name.
+
+    Args:
+        programs: As `select_programs` has them, with kinks.
+    """
+    methods = list_structured(programs)
+    orders = sorted({each.order for each in methods})
+    return {
+        "structured": {
+            "methods": methods,
+            "names": {each.macro: (each.file, each.order) for each in methods},
+            "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
+            "has_bracket": any("bracket_vector" in each.needs for each in methods),
+            "sweeps": normals.SWEEPS,
+        }
     }
 
 

@@ -10,8 +10,9 @@ import ctypes
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from coadjoint.solve.choices import NOISY
-from coadjoint.solve.ensemble import Ensemble, Record
+import numpy as np
+
+from coadjoint.solve.ensemble import MET, Ensemble, Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,14 +22,17 @@ if TYPE_CHECKING:
 
 #: What a first call may add up, by the numbers of a path and their orders.
 FIRST_SUMS = 2**22
-#: What a step with noise counts for each component, in such sums.
-NOISY_SUMS = 2**10
+#: What a step with noise, or an implicit one, counts for each component, in such sums.
+IMPLICIT_SUMS = 2**10
+
+#: Kinks of which a call of a solver can tell, by how many the rates have.
+KINK_ROOM = 512
 
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
 class _Run(ctypes.Structure):
-    """``NAME_run`` of the headers, field by field; the last two where a system has noise."""
+    """``NAME_run`` of the headers, field by field; then come those of noise, or those of kinks."""
 
     _fields_ = (
         ("members", _SIZE),
@@ -61,8 +65,30 @@ class _Run(ctypes.Structure):
         ("recorded", _SIZE),
         ("terms", _PLACE),
         ("term_count", _SIZE),
-        ("seed", ctypes.c_uint64),
-        ("bound", _DOUBLE),
+    )
+
+
+class _StructuredRun(_Run):
+    """With the fields of a system that has methods that keep structure."""
+
+    _fields_ = (("low", _PLACE), ("sweeps", _PLACE))
+
+
+class _NoisyRun(_Run):
+    """With the fields that a system with noise has in addition."""
+
+    _fields_ = (("seed", ctypes.c_uint64), ("bound", _DOUBLE))
+
+
+class _KinkedRun(_Run):
+    """With the fields that a system with kinks has in addition."""
+
+    _fields_ = (
+        ("kinks", _PLACE),
+        ("brief", _PLACE),
+        ("met", _PLACE),
+        ("met_room", _SIZE),
+        ("met_count", _SIZE),
     )
 
 
@@ -79,7 +105,7 @@ class CStepper:
         self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._rows, self._sums = (
             rows,
-            NOISY_SUMS if choice.name in NOISY else (choice.degree + 1) ** 2,
+            IMPLICIT_SUMS if choice.is_implicit else (choice.degree + 1) ** 2,
         )
         self._advance = library.take(choice.kind.advance)
 
@@ -113,21 +139,34 @@ def call(
     """
     run = _describe(ensemble)
     run.first, run.last, run.work = members.start, members.stop, work
-    if record is None:
-        return advance(ctypes.byref(run))
-    run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
-    run.recorded = record.count
-    if record.terms is not None:
-        run.terms, run.term_count = _place(record.terms), len(record.terms)
+    met = np.empty((ensemble.sides * KINK_ROOM, MET))
+    if isinstance(run, _KinkedRun):
+        run.met, run.met_room = _place(met), len(met)
+    if record is not None:
+        run.record, run.record_room = record.rows.ctypes.data, len(record.rows)
+        run.recorded = record.count
+        if record.terms is not None:
+            run.terms, run.term_count = _place(record.terms), len(record.terms)
     on = advance(ctypes.byref(run))
-    record.count = run.recorded
+    if record is not None:
+        record.count = run.recorded
+    if isinstance(run, _KinkedRun) and run.met_count:
+        ensemble.met.append(met[: run.met_count].copy())
     return on
 
 
 def _describe(ensemble: Ensemble) -> _Run:
     """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
     members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
-    return _Run(
+    further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound}
+    kind: type[_Run] = _NoisyRun
+    if ensemble.low is not None and ensemble.sweeps is not None:
+        kind = _StructuredRun
+        further = {"low": _place(ensemble.low), "sweeps": _place(ensemble.sweeps)}
+    if ensemble.kinks is not None and ensemble.brief is not None:
+        kind = _KinkedRun
+        further = {"kinks": _place(ensemble.kinks), "brief": _place(ensemble.brief)}
+    return kind(
         members=members,
         state=_place(ensemble.state),
         time=_place(ensemble.time),
@@ -150,8 +189,7 @@ def _describe(ensemble: Ensemble) -> _Run:
         atol=ensemble.atol,
         size=ensemble.size,
         max_steps=ensemble.max_steps,
-        seed=ensemble.seed,
-        bound=ensemble.bound,
+        **further,
     )
 
 

@@ -23,7 +23,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.driving import Function
-from coadjoint.solve.ensemble import Ensemble
+from coadjoint.solve.ensemble import MET, Ensemble
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.lookout import take_below
 
@@ -45,6 +45,8 @@ _HEAD: Final = "head"
 _FORM: Final = 2
 #: What stands before the names of what is known of events and steps.
 _RECORDING: Final = "recording"
+#: The name of the kinks that were met.
+_MET: Final = "met"
 
 
 def check_checkpoint(path: Any) -> Path | None:
@@ -116,6 +118,11 @@ class Checkpoint:
             if (found.shape, found.dtype) != (array.shape, array.dtype):
                 raise self._explain_unread(f"its {name} has the shape {found.shape}")
             array[...] = found
+        if run.kinks is not None:
+            met = arrays.get(_MET, np.empty(0))
+            if met.shape[1:] != (MET,) or met.dtype != np.float64:
+                raise self._explain_unread(f"its {_MET} has the shape {met.shape}")
+            run.met[:] = [met]
         if self._recording is not None:
             try:
                 self._recording.restore(take_below(arrays, _RECORDING))
@@ -139,6 +146,7 @@ class Checkpoint:
         head = json.dumps({"form": _FORM, "build": self._build, "asked": self._asked})
         with write_whole(self.path) as place, place.open("wb") as file:
             arrays: dict[str, Any] = {_HEAD: np.array(head), **_arrays(run)}
+            arrays |= {_MET: run.list_met()} if run.kinks is not None else {}
             known = {} if self._recording is None else self._recording.save()
             arrays |= {f"{_RECORDING}.{name}": array for name, array in known.items()}
             np.savez(file, **arrays)
@@ -202,7 +210,8 @@ class Checkpoint:
 def _arrays(run: Ensemble) -> dict[str, Array]:
     """The arrays of an ensemble that change on its way."""
     changing = ("state", "out", *(each.name for each in fields(run) if not each.init))
-    return {name: array for name in changing if (array := getattr(run, name)) is not None}
+    found = {name: getattr(run, name) for name in changing if name != _MET}
+    return {name: array for name, array in found.items() if array is not None}
 
 
 def _describe(

@@ -10,13 +10,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from coadjoint.build.compiler import Source
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
-#: Methods that are a sequence of maps, with their orders; only some systems have the maps.
-ORDERS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6, "kahan": 2}
-MAPPED: Final = tuple(ORDERS)
 #: Methods that are generated.
-GENERATED: Final = ("taylor", "dop853", "rk4", *MAPPED)
+GENERATED: Final = ("taylor", "dop853", "rk4")
 #: Those of systems with noise.
 NOISY: Final = ("heun", "midpoint")
 
@@ -26,16 +24,18 @@ class Choice:
     """A method of integration.
 
     Attributes:
-        name: One of `GENERATED` or `NOISY`.
+        name: One of `GENERATED`, `NOISY`, `STRUCTURED` or `MAPPED`.
         order: Of the method.
         few: Whether it is for members that fill no more than half of the longest vectors.
         kind: What it integrates.
+        is_noisy: Whether Wiener processes move the state.
     """
 
     name: str
     order: int
     few: bool = False
     kind: SolverKind = SOLVER
+    is_noisy: bool = False
 
     @property
     def source(self) -> Source:
@@ -47,9 +47,20 @@ class Choice:
     @property
     def degree(self) -> int:
         """Of the polynomials that are recorded of its steps."""
-        return {"dop853": 7, "rk4": 3, **dict.fromkeys(MAPPED, 3), "heun": 1, "midpoint": 1}.get(
-            self.name, self.order
-        )
+        if self.is_noisy:
+            return 1
+        fixed = dict.fromkeys((*STRUCTURED, *MAPPED), 3) | {"dop853": 7, "rk4": 3}
+        return fixed.get(self.name, self.order)
+
+    @property
+    def is_implicit(self) -> bool:
+        """Whether a step may take many evaluations."""
+        return self.is_noisy or self.is_structured
+
+    @property
+    def is_structured(self) -> bool:
+        """Whether its steps are those of a method that keeps structure."""
+        return self.name in STRUCTURED and not self.is_noisy
 
     def __str__(self) -> str:
         return self.name

@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import CrossCheckError
+from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import ROUNDINGS
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Record
+from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,12 +46,15 @@ def compare_steps(
         CrossCheckError: They differ.
         OutputError: The NumPy twin does not run.
     """
-    exact = target == "c" and not system.elementary
-    n = count_rows(system, choice)
+    exact = target == "c" and has_same_bits(system, choice.name)
+    n, sides = count_rows(system, choice), len(list_kinks(system, choice))
     adaptive = exact and choice.name in ("taylor", "dop853")
     runs = [*([(0.0, MOST_STEPS, True)] if adaptive else []), (2.0**-7, MOST_STEPS, True)]
     for size, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
-        found, expected = (_probe(system, n, size, most) for _ in range(2))
+        found, expected = (
+            _probe(system, n, sides, size, most, is_structured=choice.is_structured)
+            for _ in range(2)
+        )
         room = most * PROBES + ROOM
         one, other = (Record.make(n, choice.degree, room) for _ in range(2))
         while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
@@ -66,12 +72,29 @@ def compare_steps(
             )
 
 
+def has_same_bits(system: System, method: str) -> bool:
+    """Whether a method has the same bits in NumPy and exact C: nothing it calls is a library's."""
+    if system.elementary:
+        return False
+    return method not in MAPPED or bool(KernelModule(system, SOLVER.files[2]).value("EXACT"))
+
+
 def count_rows(system: System, choice: Choice) -> int:
     """How many components a method integrates."""
     return system.rows(choice.kind.rates[-1]).size
 
 
-def _probe(system: System, rows: int, size: float, most: int) -> Ensemble:
+def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
+    """Arguments at whose zeros the rates of a method have kinks, as text."""
+    if system.stepwise:
+        return ()
+    module = KernelModule(system, choice.kind.files[2])
+    return tuple(module.value("KINKS")) if module.has("KINKS") else ()
+
+
+def _probe(
+    system: System, rows: int, sides: int, size: float, most: int, *, is_structured: bool
+) -> Ensemble:
     """A few members at the start of a few steps, driven by two lines, with four samples."""
     source = np.random.default_rng(0)
     samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
@@ -95,6 +118,8 @@ def _probe(system: System, rows: int, size: float, most: int) -> Ensemble:
         size=size,
         max_steps=most,
         seed=1,
+        sides=sides,
+        is_structured=is_structured,
     )
     run.begin(0.0)
     return run
@@ -102,12 +127,17 @@ def _probe(system: System, rows: int, size: float, most: int) -> Ensemble:
 
 def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
     """Whether two ensembles went the same way: to the bit, or but for roundings."""
-    counts = ("status", "steps", "rejected", "next")
+    counts = ("status", "steps", "rejected", "next", "kinks", "brief")
     if not all(np.array_equal(getattr(found, n), getattr(expected, n)) for n in counts):
+        return False
+    if found.list_met().shape != expected.list_met().shape:
         return False
     pairs: Any = [(getattr(found, n), getattr(expected, n)) for n in ("state", "time", "step")]
     pairs.append((found.out, expected.out))
+    pairs += [(found.list_met(), expected.list_met())]
     if exact:
+        if found.low is not None and expected.low is not None:
+            pairs += [(found.low, expected.low), (found.sweeps, expected.sweeps)]
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
     return all(_are_close(a, b) for a, b in pairs)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.kinks import Kinks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,6 +63,7 @@ class Course:
             update; empty without noise.
         projection: Onto what states are moved, and when; empty where they are not.
         start: Where the trajectories began, if no sample has it.
+        kinks: The kinks that they met; None where the rates have none, or from SciPy.
     """
 
     method: str
@@ -81,6 +83,7 @@ class Course:
     keeps: str = ""
     projection: str = ""
     start: Start | None = None
+    kinks: Kinks | None = None
 
     def tell_stepwise(self) -> str:
         """That Python led the steps, and why: C may have made some in a row; "" elsewhere."""
@@ -117,7 +120,8 @@ class Course:
             for name in ("last", "below", "driven")
             if (values := getattr(self, name)) is not None
         }
-        return replace(self, **of_each, start=start)
+        kinks = None if self.kinks is None else self.kinks.take(place)
+        return replace(self, **of_each, start=start, kinks=kinks)
 
     def as_record(self) -> dict[str, Any]:
         """What no sample of a Solution shows, as JSON values."""
@@ -130,6 +134,8 @@ class Course:
                 name: value.tolist() if isinstance(value, np.ndarray) else value
                 for name, value in start.items()
             }
+        if self.kinks is not None:
+            record["kinks"] = self.kinks.as_record()
         return record
 
 
@@ -156,6 +162,8 @@ def read_record(record: dict[str, Any]) -> dict[str, Any]:
             if name in ("state", "inputs", "reconstructed")
         }
         found["start"] = Start(**(record["start"] | arrays))
+    if "kinks" in record:
+        found["kinks"] = Kinks.read_record(record["kinks"])
     return found
 
 

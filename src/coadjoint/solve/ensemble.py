@@ -18,11 +18,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coadjoint.solve.limits import NEAR, NONE, Limits, Step
 from coadjoint.solve.steps import Lanes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from coadjoint.solve.steps import Attempt, Method
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Counts = NDArray[np.uint64]
     Mask = NDArray[np.bool_]
-    #: Rows of a function at states, some time after lanes.
-    Function = Callable[[Lanes, Array, Array], Array]
 
 
 class Status(IntEnum):
@@ -44,46 +41,14 @@ class Status(IntEnum):
     MAX_STEPS = 4
     DOMAIN = 5
     EVENT = 6
+    SLIDING = 7
+    NOT_SOLVED = 8
 
 
-#: Halvings of a step that leaves the domain: its last state inside is known to 1e-12 of it.
-HALVINGS = 40
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What bounds a motion.
-
-    Attributes:
-        domain: Rows that are positive in the domain; None where there is none.
-        strict: For each row, whether it may not be zero.
-        projection: The nearest states on the constraints; None where none are kept.
-    """
-
-    domain: Function | None = None
-    strict: tuple[bool, ...] = ()
-    projection: Function | None = None
-
-    def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
-        """Where states are in the domain, some time after that of the lanes."""
-        if self.domain is None:
-            return np.ones(after.shape, bool)
-        rows = self.domain(lanes, after, state)
-        least = np.where(self.strict, np.nextafter(0.0, 1.0), 0.0)[:, np.newaxis]
-        return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
-
-    def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
-        """The nearest states on the constraints; where there is none, the state itself."""
-        if self.projection is None:
-            return state
-        nearest = self.projection(lanes, after, state)
-        return np.where(np.isfinite(nearest).all(axis=0), nearest, state)
-
-
-#: Nothing.
-NONE = Limits()
 #: Numbers of a recorded step before its polynomials.
 HEAD = 5
+#: Numbers that tell of a kink that was met.
+MET = 4
 #: The fewest steps that a record has room for: one of each lane of the blocks of a solver.
 ROOM = 32
 
@@ -220,12 +185,21 @@ class Ensemble:
         max_steps: A trajectory ends after so many.
         seed: Of the noise, where there is some.
         bound: The largest size of its normal numbers.
+        sides: How many kinks the rates have.
+        is_structured: Whether the method keeps structure: what rounding took is kept.
         time: Where they are in time, ``(N,)``.
         step: The steps to try next, ``(N,)``; 0 to have them chosen.
         next: The sample that comes next, ``(N,)``.
         steps: Steps that were taken, ``(N,)``.
         rejected: Steps that were not, ``(N,)``.
         status: One of `Status`, ``(N,)``.
+        kinks: Kinks that they have met, ``(N,)``; None where rates have none.
+        brief: How many of the last of these followed one another within 2^-30 of a step, or of the
+            time; likewise.
+        low: What rounding took of the state, ``(n, N)``; None where the method keeps none.
+        sweeps: Sweeps of all steps, ``(N,)``; likewise.
+        met: The kinks that were met: rows of the member, how many steps that made with it, which
+            kink, and the time; in no order.
     """
 
     state: Array
@@ -240,12 +214,19 @@ class Ensemble:
     max_steps: int
     seed: int = 0
     bound: float = np.inf
+    sides: int = 0
+    is_structured: bool = False
+    low: Array | None = field(init=False, default=None)
+    sweeps: Counts | None = field(init=False, default=None)
     time: Array = field(init=False)
     step: Array = field(init=False)
     next: Counts = field(init=False)
     steps: Counts = field(init=False)
     rejected: Counts = field(init=False)
     status: NDArray[np.int8] = field(init=False)
+    kinks: Counts | None = field(init=False, default=None)
+    brief: Counts | None = field(init=False, default=None)
+    met: list[Array] = field(init=False, default_factory=list)
 
     def begin(self, start: float) -> None:
         """Set all members to the start; a sample there is their state."""
@@ -257,11 +238,20 @@ class Ensemble:
         self.next = np.full(members, first, np.uint64)
         self.steps, self.rejected = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
         self.status = np.zeros(members, np.int8)
+        if self.is_structured:
+            self.low, self.sweeps = np.zeros(self.state.shape), np.zeros(members, np.uint64)
+        if self.sides:
+            self.kinks, self.brief = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
 
     @property
     def end(self) -> float:
         """When they end."""
         return float(self.samples[-1])
+
+    def list_met(self) -> Array:
+        """The kinks that were met, as rows of `met` by member and time, ``(count, 4)``."""
+        rows = np.concatenate([np.empty((0, MET)), *self.met])
+        return rows[np.lexsort((rows[:, 2], rows[:, 1], rows[:, 0]))]
 
     def advance(
         self,
@@ -299,6 +289,7 @@ class Ensemble:
     ) -> None:
         """Try one step of some members."""
         lanes = self._lanes(going)
+        limits.find_sides(lanes)
         attempt = method.try_step(lanes)
         took, state = attempt.took, limits.project(lanes, attempt.took, attempt.state)
         time = lanes.time + took
@@ -306,17 +297,30 @@ class Ensemble:
         finite = np.isfinite(state).all(axis=0)
         stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
-        step = _Step(lanes=lanes, attempt=attempt, limits=limits, time=time, accepted=accepted)
-        inside, outside = self._store_samples(going, step)
+        step = Step(lanes=lanes, attempt=attempt, limits=limits, accepted=accepted)
+        outside = step.find_dips()
+        if method.halves:  # the error of a step is that of its end, which is far beyond the kink
+            far = accepted & (outside <= took * 0.5) & (outside > took * NEAR)
+            lanes.step = np.where(far, took * 0.5, lanes.step)
+            accepted &= ~far
+            outside = np.where(far, took, outside)
+        until = np.where(outside < took, lanes.time + outside, time)
+        inside, outside = self._store_samples(going, step, until, outside)
         left = outside < took
-        left |= accepted & ~limits.are_inside(lanes, took, state)
+        left |= accepted & ~limits.are_held(lanes, took, state)
+        met = np.zeros(left.shape, bool)
         if left.any():
-            inside, last = step.find_exit(inside, outside)
-            state = np.where(left, last, state)
+            inside, outside = step.find_exit(inside, outside)
+            state = np.where(left, step.find_state(inside), state)
             time = np.where(left, lanes.time + inside, time)
+            crossing = step.cross(left, outside, (state, time))
+            met, state, time = crossing.met, crossing.state, crossing.time
+            left &= ~met
+            self._store_kinks(going, crossing.kinks, time)
         if record is not None and accepted.any():
             self._record(record, going, attempt, time - lanes.time, accepted)
         self.state[:, going] = np.where(accepted, state, lanes.state)
+        self._take_left(going, attempt, accepted, limits)
         self.time[going] = np.where(accepted, time, lanes.time)
         self.step[going] = lanes.step
         self.steps[going] += accepted
@@ -325,11 +329,28 @@ class Ensemble:
         over = self.steps[going] >= self.max_steps
         status[accepted & over] = Status.MAX_STEPS
         status[accepted & (self.time[going] >= self.end)] = Status.OK
+        short = outside < step.find_brief()
+        status[accepted & self._count_kinks(going, met, accepted, short)] = Status.SLIDING
         status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
+        if attempt.left is not None:
+            status[~accepted & stuck & ~attempt.left.solved] = Status.NOT_SOLVED
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
         self.status[going] = status
+
+    def _take_left(
+        self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
+    ) -> None:
+        """Keep what rounding took of a step that was accepted.
+
+        What moves a state onto constraints is no rounding, and there the sums begin anew.
+        """
+        if attempt.left is None or self.low is None or self.sweeps is None:
+            return
+        low = attempt.left.low if limits.projection is None else np.zeros(attempt.state.shape)
+        self.low[:, going] = np.where(accepted, low, self.low[:, going])
+        self.sweeps[going] += np.where(accepted, attempt.left.sweeps, np.uint64(0))
 
     def _record(
         self,
@@ -386,27 +407,48 @@ class Ensemble:
             slopes=slopes,
             member=going.astype(np.uint64),
             steps=self.steps[going],
+            low=None if self.low is None else self.low[:, going],
         )
 
-    def _store_samples(self, going: NDArray[np.intp], step: _Step) -> tuple[Array, Array]:
-        """Store states at the samples that a step passes.
+    def _store_kinks(self, going: NDArray[np.intp], crossed: Mask, time: Array) -> None:
+        """Add the kinks that were met by the end of a step to the others."""
+        kink, lane = np.nonzero(crossed)
+        if kink.size:
+            whose = going[lane]
+            rows = [whose, self.steps[whose] + 1.0, kink, time[lane]]
+            self.met.append(np.array(rows, np.float64).T)
+
+    def _count_kinks(self, going: NDArray[np.intp], met: Mask, accepted: Mask, short: Mask) -> Mask:
+        """Count the kinks that were met. Where too many followed one another, a member slides."""
+        if self.kinks is None or self.brief is None:
+            return np.zeros(met.shape, bool)
+        self.kinks[going] += met
+        brief = met & short
+        self.brief[going[brief]] += np.uint64(1)
+        self.brief[going[accepted & ~brief]] = 0
+        return np.asarray(self.brief[going] > 2 * self.sides + 8)
+
+    def _store_samples(
+        self, going: NDArray[np.intp], step: Step, until: Array, outside: Array
+    ) -> tuple[Array, Array]:
+        """Store states at the samples that a step passes until some time.
 
         Returns:
             A time after its start at which a member is in the domain, and a later one: at which it
             is outside, or the end of the step.
         """
         took, out = step.attempt.took, self.out
-        inside, outside, open_ = np.zeros(took.shape), took.copy(), step.accepted.copy()
+        inside, open_ = np.zeros(took.shape), step.accepted.copy()
         while out is not None:
             place = self.next[going].astype(np.intp)
             known = place < len(self.samples)
             at = self.samples[np.where(known, place, 0)]
-            wanted = open_ & known & (at <= step.time)
+            wanted = open_ & known & (at <= until)
             if not wanted.any():
                 break
             after = np.where(wanted, at - step.lanes.time, took)
             state = step.find_state(after)
-            good = step.limits.are_inside(step.lanes, after, state)
+            good = step.limits.are_held(step.lanes, after, state)
             outside = np.where(wanted & ~good, after, outside)
             open_ &= ~wanted | good
             wanted &= good
@@ -415,35 +457,3 @@ class Ensemble:
             out[:, members, place[wanted]] = state[:, wanted]
             self.next[members] += np.uint64(1)
         return inside, outside
-
-
-@dataclass(frozen=True)
-class _Step:
-    """A step of some members.
-
-    Attributes:
-        lanes: Where it begins.
-        attempt: Where it leads.
-        limits: What bounds the motion.
-        time: When it ends.
-        accepted: Whether its end is taken.
-    """
-
-    lanes: Lanes
-    attempt: Attempt
-    limits: Limits
-    time: Array
-    accepted: Mask
-
-    def find_state(self, after: Array) -> Array:
-        """The state after a part of the step, on the constraints."""
-        return self.limits.project(self.lanes, after, self.attempt.path(after))
-
-    def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
-        """How far the step is in the domain, and the last state there."""
-        for _ in range(HALVINGS):
-            middle = (inside + outside) * 0.5
-            good = self.limits.are_inside(self.lanes, middle, self.find_state(middle))
-            inside = np.where(good, middle, inside)
-            outside = np.where(good, outside, middle)
-        return inside, self.find_state(inside)

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
-from coadjoint.solve.choices import MAPPED
-from coadjoint.solve.comparison import count_rows
+from coadjoint.solve.comparison import count_rows, has_same_bits, list_kinks
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
@@ -25,6 +26,7 @@ from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal,
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
+from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
 from coadjoint.solve.noisy import KEEPS
 from coadjoint.solve.reconstruct import find_start, is_asked
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
+    from coadjoint.solver_kinds import SolverKind
 
     Array = NDArray[np.float64]
 
@@ -77,8 +80,8 @@ def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
     if is_asked(reconstruct):
         reason = "it moves the state alone, and what is reconstructed is asked for"
         return dict.fromkeys(MAPPED, reason)
-    if system.stepwise:
-        return dict.fromkeys(MAPPED, system.stepwise)
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(MAPPED, "its solvers are loops over equal members, without it")
     return system._solvers.refusals
 
 
@@ -93,6 +96,23 @@ def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
     if callable(inputs) and system.INPUTS:
         return "inputs are a function of Python, which tells their values alone"
     return system.stepwise if is_recorded else ""
+
+
+def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]:
+    """Why methods that keep structure do not apply to a system, by their names.
+
+    Args:
+        system: The System.
+        kind: What is integrated.
+    """
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+    if system.stepwise:
+        return {}
+    module = KernelModule(system, kind.files[2])
+    known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
+    why = "its rates have kinks" if module.has("KINKS") else "its folder was generated without it"
+    return {name: why for name in STRUCTURED if name not in known}
 
 
 def find_series_obstacle(
@@ -165,6 +185,7 @@ def _make_course(
         below=run.state[n:].reshape(below.shape) if len(below) else None,
         driven=_find_driven(signal, run, batch),
         stepwise=request.stepwise,
+        kinks=list_kinks_met(run, list_kinks(system, request.choice), batch),
         start=_find_start(request, signal, below) if request.samples == 1 else None,
     )
 
@@ -219,6 +240,8 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         atol=request.atol,
         size=request.step or 0.0,
         max_steps=request.max_steps,
+        sides=len(list_kinks(system, request.choice)),
+        is_structured=request.choice.is_structured,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
@@ -316,13 +339,13 @@ def _make_checkpoint(
     """The checkpoint of a run, which stands where it was broken off; None if none was asked for."""
     if request.checkpoint is None:
         return None
-    has_same_bits = request.target != "c-fast" and not system.elementary
+    same_bits = request.target != "c-fast" and has_same_bits(system, request.method)
     checkpoint = Checkpoint(
         path=request.checkpoint,
         system=system,
         request=request,
         run=run,
-        build="" if has_same_bits else stepper.key,
+        build="" if same_bits else stepper.key,
         recording=recording,
         signal=signal,
     )
@@ -358,7 +381,7 @@ def _make_solution(
     if recording is not None and status == "EVENT":
         message = recording.explain_end()
     else:
-        message = _explain_batch(run) if batch else _explain(system, request, run)
+        message = _explain_batch(run) if batch else _explain(system, request, run, course)
     return Solution(
         system,
         times,
@@ -410,7 +433,7 @@ def _cut(times: Array, states: Array, run: Ensemble) -> tuple[Array, Array]:
     return times, states
 
 
-def _explain(system: System, request: Request, run: Ensemble) -> str:
+def _explain(system: System, request: Request, run: Ensemble, course: Course) -> str:
     """Where one trajectory stopped and why; "" at its end."""
     status, time, state = Status(int(run.status[0])), float(run.time[0]), run.state[:, 0].copy()
     state = state[: system.STATE.size]
@@ -424,6 +447,12 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
     if status == Status.DOMAIN:
         rates = system.rhs(state, parameters, target="numpy", **driving.now)
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
+    if status == Status.SLIDING and course.kinks is not None:
+        return (
+            f"the motion slides along {describe_sliding(course.kinks)} from t = {time:.12g} on: "
+            "both sides of the kink push it back, or kinks follow one another without end. What it "
+            "does there the rates do not say: describe it by a system with this constraint"
+        )
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
@@ -432,6 +461,8 @@ def _explain(system: System, request: Request, run: Ensemble) -> str:
         else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
         if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
+        Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
+        f"{place}; take shorter steps",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
 

@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
-from coadjoint.solve.choices import GENERATED, MAPPED, ORDERS, Choice
+from coadjoint.solve.choices import GENERATED, Choice
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.reconstruct import is_asked
 from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
@@ -39,7 +40,8 @@ SCIPY = "scipy:"
 #: Tolerances where none are given.
 RTOL, ATOL = 1e-10, 1e-12
 #: Orders of the generated methods whose order is fixed.
-_ORDER = {"dop853": 8, "rk4": 4, "heun": 2, "midpoint": 2, **ORDERS}
+_FIXED_STEP = {**STRUCTURED, **MAPPED}
+_ORDER = {"dop853": 8, "rk4": 4, "heun": 2} | {n: each.order for n, each in _FIXED_STEP.items()}
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class Request:
         """The generated method."""
         order = _ORDER.get(self.method) or choose_order(self.rtol)
         kind = find_kind(self.reconstruct)
-        return Choice(self.method, order, kind=kind)
+        return Choice(self.method, order, kind=kind, is_noisy=self.seed is not None)
 
 
 def check_state(system: System, state: Any) -> Array:
@@ -319,19 +321,19 @@ def choose_method(
         name = (fit or [SCIPY + "DOP853"])[0] if step is None else "dop853"
     if name in obstacles:
         asked = f"method {method!r}" if step is None else f"method {method!r} with a fixed step"
-        without = " without step" if len(obstacles) == len(GENERATED) else ""
+        without = " without step" if len(obstacles) == len(_generated()) else ""
         raise KernelArgumentError(
             f"{asked} is a generated solver, which does not apply to {system.name} here: "
             f"{obstacles[name]}. Expected {_list(obstacles)}{without}.",
             found=str(method),
             reason=obstacles[name],
         )
-    if name not in GENERATED and name not in _scipy():
+    if name not in _generated() and name not in _scipy():
         raise KernelArgumentError(
             f"method is {method!r}; expected one of {_list(obstacles)} for {system.name}."
             + _suggest(name),
             found=str(method)[:80],
-            expected=["auto", *GENERATED, *_scipy()],
+            expected=["auto", *_generated(), *_scipy()],
         )
     _check_step(name, step, tolerances=tolerances)
     return name
@@ -342,12 +344,22 @@ def is_auto(method: Any) -> bool:
     return _normal(method) == "auto"
 
 
+def is_structured(method: Any) -> bool:
+    """Whether a method is one of those that keep structure."""
+    return _normal(method) in STRUCTURED
+
+
 def _normal(method: Any) -> str:
     """The name of a method as it is listed; letters of either case are the same."""
     if not isinstance(method, str):
         return str(method)
-    listed, plain = ("auto", *GENERATED, *_scipy()), method.lower().replace("-", "_")
+    listed, plain = ("auto", *_generated(), *_scipy()), method.lower().replace("-", "_")
     return next((each for each in listed if each.lower() == plain), method)
+
+
+def _generated() -> tuple[str, ...]:
+    """The methods that are generated, those that keep structure the last ones."""
+    return (*GENERATED, *_FIXED_STEP)
 
 
 def _scipy() -> tuple[str, ...]:
@@ -357,7 +369,7 @@ def _scipy() -> tuple[str, ...]:
 
 def _list(obstacles: Mapping[str, str]) -> str:
     """The methods that fit."""
-    fit = ("auto", *(name for name in GENERATED if name not in obstacles), *_scipy())
+    fit = ("auto", *(name for name in _generated() if name not in obstacles), *_scipy())
     return ", ".join(repr(each) for each in fit)
 
 
@@ -366,7 +378,7 @@ def _suggest(name: str) -> str:
     meant = [each for each in _scipy() if each.lower() == (SCIPY + name).lower()]
     if meant:
         return f" Write method={meant[0]!r} for that of SciPy."
-    near = get_close_matches(name, ("auto", *GENERATED, *_scipy()), n=1)
+    near = get_close_matches(name, ("auto", *_generated(), *_scipy()), n=1)
     return f" Did you mean {near[0]!r}?" if near else ""
 
 
@@ -376,7 +388,7 @@ def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
     Raises:
         KernelArgumentError: It is missing, or does not go with the method.
     """
-    if step is None and name in ("rk4", *MAPPED):
+    if step is None and (name == "rk4" or name in _FIXED_STEP):
         raise KernelArgumentError(
             f"method {name!r} has no estimate of its error; expected step=, the length of its "
             "steps.",
@@ -385,7 +397,7 @@ def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
     if step is not None and name.startswith(SCIPY):
         raise KernelArgumentError(
             f"step is {step!r}, and method {name!r} chooses its steps by the tolerances; expected "
-            "step=None, or one of the methods " + ", ".join(map(repr, GENERATED)) + ".",
+            "step=None, or one of the methods " + ", ".join(map(repr, _generated())) + ".",
             found=str(step),
         )
     if step is not None and tolerances and name != "taylor":

@@ -15,6 +15,7 @@ import numpy as np
 from coadjoint.lower.tableau import END, EXTRA, FIFTH, PATH, STAGES, THIRD, dop853
 from coadjoint.solve.steps import (
     Attempt,
+    Cubic,
     Lanes,
     find_fixed_step,
     find_step,
@@ -42,40 +43,6 @@ def end_where_rates_end(
     return np.where(finite, state, np.nan)
 
 
-def make_cubic(
-    rates: Callable[[Lanes, Array, Array], Array],
-    lanes: Lanes,
-    h: Array,
-    end: Array,
-    find_first: Callable[[], Array],
-) -> tuple[Callable[[Array], Array], Callable[[], Array]]:
-    """The cubic with the states and rates of both ends of a step, and its coefficients.
-
-    Args:
-        rates: Rates of lanes, at states some time later.
-        lanes: Where the step begins.
-        h: Its length.
-        end: The state where it ends.
-        find_first: The rates where it begins.
-    """
-    x = lanes.state
-
-    def parts() -> tuple[Array, Array, Array, Array]:
-        first, chord = find_first(), end - x
-        start = h * first - chord
-        return first, chord, start, h * (rates(lanes, h, end) - first) + 2.0 * start
-
-    def path(after: Array) -> Array:
-        part, (_, chord, start, both) = after / h, parts()
-        return np.asarray(x + part * (chord + (1.0 - part) * (start - part * both)))
-
-    def coefficients() -> Array:
-        first, _, start, both = parts()
-        return np.stack([x, first, -(both + start) / h / h, both / h / h / h], axis=1)
-
-    return path, coefficients
-
-
 class RungeKutta4:
     """The classical method of order 4 with a fixed step.
 
@@ -85,7 +52,7 @@ class RungeKutta4:
         branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
-    tries_again = False
+    tries_again = halves = False
 
     def __init__(
         self,
@@ -108,13 +75,13 @@ class RungeKutta4:
         total = total + 2.0 * k
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
-        path, coefficients = make_cubic(self.rates, lanes, h, end, lambda: first)
+        path = Cubic(h, x, end, lambda: first, lambda: self.rates(lanes, h, end))
         return Attempt(
             took=h,
             state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
-            path=path,
-            coefficients=coefficients,
+            path=path.follow,
+            coefficients=path.coefficients,
         )
 
 
@@ -139,7 +106,8 @@ class DormandPrince8:
         branches: bool = False,
     ) -> None:
         self.branches = branches
-        self.rates, self.table, self.tries_again = rates, dop853(), not size > 0
+        self.rates, self.table = rates, dop853()
+        self.tries_again = self.halves = not size > 0
         self.rtol, self.atol, self.size = rtol, atol, size
 
     def try_step(self, lanes: Lanes) -> Attempt:

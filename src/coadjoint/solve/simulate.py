@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve import generated
 from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
@@ -43,6 +44,7 @@ from coadjoint.solve.request import (
     choose_method,
     find_kind,
     is_auto,
+    is_structured,
     list_times,
     prefers_dop853,
 )
@@ -104,7 +106,9 @@ def simulate(
             raise _explain_obstacle(system, name, obstacle)
     else:
         check_no_noise(system, method, seed)
-        obstacles = dict.fromkeys(GENERATED, obstacle) if obstacle else {}
+        obstacles = dict.fromkeys((*GENERATED, *STRUCTURED, *MAPPED), obstacle) if obstacle else {}
+        if is_structured(method) and not obstacle:
+            obstacles |= generated.find_structure_obstacles(system, find_kind(reconstruct))
         without = (
             ""
             if obstacle
@@ -113,7 +117,7 @@ def simulate(
             )
         )
         obstacles |= {"taylor": without} if without else {}
-        if not obstacle:
+        if not obstacle and not is_auto(method):
             obstacles |= generated.find_missing_maps(system, reconstruct)
         name = choose_method(system, method, step, obstacles, tolerances=tolerances)
         within = "the path within steps is asked for" if recorded else obstacle or system.stepwise

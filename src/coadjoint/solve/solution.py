@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from coadjoint.solve.dense_output import Dense
+    from coadjoint.solve.kinks import Kinks
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -42,7 +43,8 @@ class Solution:
         course: How they were computed: method, tolerances, steps of each.
         status: ``OK``, ``DOMAIN`` (the motion left where the system is defined; the last sample is
             the last point inside), ``NONFINITE`` (rates or steps are not finite),
-            ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS`` or ``EVENT`` (terminal).
+            ``STEP_UNDERFLOW`` (no step was small enough), ``MAX_STEPS``, ``EVENT`` (terminal) or
+            ``SLIDING`` (both sides of a kink push the motion back to it).
         message: Where it stopped and why, or how many of a batch did; empty if all is well.
         reconstructed: What follows from the motion, ``(k, T)`` or ``(k, *batch, T)``; None if it
             was not asked for.
@@ -130,6 +132,11 @@ class Solution:
     def rejected(self) -> Any:
         """Steps that were tried in vain, of a batch an array; None where SciPy took them."""
         return None if self.course.rejected is None else self.course.rejected[()]
+
+    @property
+    def kinks(self) -> Kinks | None:
+        """Where the kinks of the rates were met; None where they have none, or from SciPy."""
+        return self.course.kinks
 
     def member(self, *place: int) -> Solution:
         """One trajectory of a batch, as long as it came.
@@ -428,17 +435,17 @@ class Solution:
     def __repr__(self) -> str:
         from coadjoint.solve.drift import describe_drift
 
-        span = f"{len(self)} samples, t = {self.time[0]:g} .. {self.time[-1]:g}>"
-        span = span if len(self) > 1 else f"1 sample, t = {self.time[0]:g}>"
+        last = f" .. {self.time[-1]:g}" if len(self) > 1 else ""
+        count = f"{len(self)} samples" if last else "1 sample"
+        span = f"{count}, t = {self.time[0]:g}{last}>"
         if self.batch:
             whole = "x".join(map(str, self.batch))
             lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
             lines += [f"  {self.message}"] if self.message else []
         else:
             lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        lines += [
-            f"  {told}" for told in [self.course.tell_stepwise(), self.course.tell_keeps()] if told
-        ]
+        told = (self.course.tell_stepwise(), self.course.tell_keeps())
+        lines += [f"  {each}" for each in told if each]
         return "\n".join([*lines, *describe_drift(self)])
 
     def _repr_html_(self) -> str:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Final, Protocol
 from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.calls import CStepper
-from coadjoint.solve.choices import MAPPED
 from coadjoint.solve.comparison import compare_steps, count_rows
 from coadjoint.solve.costs import Costs, read_costs
 from coadjoint.solve.ensemble import Ensemble, Record
@@ -93,8 +93,9 @@ class Solvers:
     def refusals(self) -> dict[str, str]:
         """Why methods that are a sequence of maps do not apply, as far as they do not."""
         module = KernelModule(self.system, SOLVER.files[2])
-        known: dict[str, str] = getattr(module._module, "REFUSALS", {})
-        found: dict[str, str] = getattr(module._module, "SCHEDULES", {})
+        known, found = (
+            module.value(name) if module.has(name) else {} for name in ("REFUSALS", "SCHEDULES")
+        )
         missing = "its folder was generated without them: run `coadjoint regenerate`"
         return {name: known.get(name, missing) for name in MAPPED if name not in found}
 

@@ -39,6 +39,8 @@ class Lanes:
         slopes: Their rates, ``(m, N)``.
         member: Places of the members in the whole batch, ``(N,)``.
         steps: Steps that they have made, ``(N,)``.
+        low: What rounding took of the state, ``(n, N)``; None where nobody keeps it.
+        sides: The sides of kinks on which they are, -1, 0 or 1, ``(m, N)``; None without kinks.
     """
 
     state: Array
@@ -50,6 +52,17 @@ class Lanes:
     slopes: Array
     member: NDArray[np.uint64]
     steps: NDArray[np.uint64]
+    low: Array | None = None
+    sides: Array | None = None
+
+    @property
+    def given(self) -> Array:
+        """Parameters with the sides below them, as solvers take them."""
+        if self.sides is None:
+            return self.parameters
+        shape = (len(self.parameters), self.sides.shape[1])
+        own = self.parameters if self.parameters.ndim > 1 else self.parameters[:, np.newaxis]
+        return np.concatenate([np.broadcast_to(own, shape), self.sides])
 
 
 @dataclass
@@ -63,6 +76,7 @@ class Attempt:
         path: The state after a part of it.
         coefficients: Those of the path as polynomials in the time since the step began, that of
             order 0 first, ``(n, degree + 1, N)``.
+        left: Of methods that keep structure, what the step leaves besides its end; else None.
     """
 
     took: Array
@@ -70,6 +84,56 @@ class Attempt:
     accepted: Mask
     path: Callable[[Array], Array]
     coefficients: Callable[[], Array]
+    left: Left | None = None
+
+
+@dataclass
+class Left:
+    """What an implicit step leaves besides its end.
+
+    Attributes:
+        low: What rounding took of the state, ``(n, N)``.
+        sweeps: How many sweeps its equation took, ``(N,)``.
+        solved: Where that was solved, ``(N,)``.
+    """
+
+    low: Array
+    sweeps: NDArray[np.uint64]
+    solved: Mask
+
+
+@dataclass(frozen=True)
+class Cubic:
+    """The path between the ends of a step: the cubic with the states and rates of both.
+
+    Attributes:
+        h: The length of the step, ``(N,)``.
+        start: Where it begins, ``(n, N)``.
+        end: Where it ends.
+        first: The rates at its start, when they are asked for.
+        last: Those at its end.
+    """
+
+    h: Array
+    start: Array
+    end: Array
+    first: Callable[[], Array]
+    last: Callable[[], Array]
+
+    def _parts(self) -> tuple[Array, Array, Array, Array]:
+        first, chord = self.first(), self.end - self.start
+        rise = self.h * first - chord
+        return first, chord, rise, self.h * (self.last() - first) + 2.0 * rise
+
+    def follow(self, after: Array) -> Array:
+        """The state some time after the start."""
+        part, (_, chord, rise, both) = after / self.h, self._parts()
+        return np.asarray(self.start + part * (chord + (1.0 - part) * (rise - part * both)))
+
+    def coefficients(self) -> Array:
+        """Those of the path in the time since the start, ``(n, 4, N)``."""
+        h, (first, _, rise, both) = self.h, self._parts()
+        return np.stack([self.start, first, -(both + rise) / h / h, both / h / h / h], axis=1)
 
 
 class Method(Protocol):
@@ -77,9 +141,11 @@ class Method(Protocol):
 
     Attributes:
         tries_again: Whether a step that is not finite is tried again, a tenth as long.
+        halves: Whether a step that meets a kink in its first half is tried again, half as long.
     """
 
     tries_again: bool
+    halves: bool
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """Try a step of each lane; its `Lanes.step` becomes the next one to try."""
@@ -126,6 +192,8 @@ class Taylor:
         size: A fixed step, or 0.
         branches: Whether the rates have branch points: each step is then compared with them.
     """
+
+    halves = False
 
     def __init__(
         self,

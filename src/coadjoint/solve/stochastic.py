@@ -53,7 +53,7 @@ class _Noisy:
         bound: The largest size of a normal number.
     """
 
-    tries_again = False
+    tries_again = halves = False
 
     def __init__(
         self, *, rates: Function, fields: Function, size: float, seed: int, bound: float

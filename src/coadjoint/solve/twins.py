@@ -14,17 +14,20 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
+from coadjoint.methods import MAPPED
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.choices import MAPPED
-from coadjoint.solve.ensemble import Limits
+from coadjoint.solve.limits import Limits
 from coadjoint.solve.methods.maps import Maps, make_maps
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solve.stochastic import METHODS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
@@ -55,14 +58,19 @@ class NumpyStepper:
         functions = (*choice.kind.rates, "domain", "projection", "noise")
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
+        self._held, kinks = None, None
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
+            if module.has("KINKS"):
+                self._held = module.function("find_rates")
+                kinks = partial(self._find_kinks, module.function("find_kinks"))
         self._limits = Limits(
             domain=partial(self._evaluate, ("domain",)) if system.DOMAIN else None,
             strict=tuple(bound.strict for bound in system.DOMAIN),
             projection=self._project if "projection" in system.functions else None,
+            kinks=kinks,
         )
 
     @property
@@ -99,6 +107,8 @@ class NumpyStepper:
             module = KernelModule(self._system, self._choice.kind.files[2])
             maps = make_maps(module, self._choice.name)
             return Maps(maps, self._rates, run.size, branches=self._branches)
+        if self._choice.is_structured:
+            return Structured(self._choice.name, run.size, {"rates": self._rates})
         return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
@@ -110,14 +120,21 @@ class NumpyStepper:
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
         assert self._expansion is not None, self._choice.name
-        path: Array = self._expansion(
-            lanes.state, lanes.parameters, lanes.driving, lanes.slopes, order
-        )
+        path: Array = self._expansion(lanes.state, lanes.given, lanes.driving, lanes.slopes, order)
         return path
 
     def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
-        """The rates of all that is integrated."""
+        """The rates of all that is integrated, on the sides of the step where there are kinks."""
+        if self._held is not None:
+            rates: Array = self._held(state, lanes.given, self._drive(lanes, after))
+            return rates
         return self._evaluate(self._choice.kind.rates, lanes, after, state)
+
+    def _find_kinks(
+        self, find: Callable[..., Array], lanes: Lanes, after: Array, state: Array
+    ) -> Array:
+        """What the sides of kinks are those of."""
+        return find(state, lanes.parameters, self._drive(lanes, after))
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """What each Wiener process does to the state."""

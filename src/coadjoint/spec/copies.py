@@ -89,10 +89,13 @@ class _Places:
             keys=dict(positions.keys),
             values=dict(positions.values),
             characters=dict(positions.characters),
+            repeated=dict(positions.repeated),
         )
 
     def repeat(self, old: KeyPath, new: KeyPath) -> None:
         """Let a key, and all below it, stand where another one stands."""
+        if new != old:
+            self.all.repeated[new] = self.all.written(old)
         for table in (self.all.keys, self.all.values, self.all.characters):
             found: dict[KeyPath, Any] = {
                 (*new, *path[len(old) :]): value

@@ -56,13 +56,17 @@ class KernelModule(Kernel):
         function: Callable[..., Any] = self.value(name)
         return function
 
+    def has(self, name: str) -> bool:
+        """Whether the file has a name."""
+        return hasattr(self._module, name)
+
     def value(self, name: str) -> Any:
         """What a name of the file stands for.
 
         Raises:
             OutputError: It has no such name.
         """
-        if not hasattr(self._module, name):
+        if not self.has(name):
             raise self.explain_broken(f"has no function {name}")
         return getattr(self._module, name)
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.runge_kutta import end_where_rates_end, make_cubic
-from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step
+from coadjoint.solve.runge_kutta import end_where_rates_end
+from coadjoint.solve.steps import Attempt, Cubic, Lanes, find_fixed_step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,7 +36,7 @@ class Maps:
         branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
-    tries_again = False
+    tries_again = halves = False
 
     def __init__(
         self,
@@ -54,15 +54,16 @@ class Maps:
         end = lanes.state
         for move, part in self.maps:
             end = move(end, lanes.parameters, h if part == 1.0 else h * part)
-        path, coefficients = make_cubic(
-            self.rates, lanes, h, end, lambda: self.rates(lanes, np.zeros(h.shape), lanes.state)
+        start, none = lanes.state, np.zeros(h.shape)
+        path = Cubic(
+            h, start, end, lambda: self.rates(lanes, none, start), lambda: self.rates(lanes, h, end)
         )
         return Attempt(
             took=h,
             state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
-            path=path,
-            coefficients=coefficients,
+            path=path.follow,
+            coefficients=path.coefficients,
         )
 
 

@@ -39,6 +39,7 @@ class Positions:
         characters: For each string, the offset of every character of its value, and of its end.
         doubled: A key that is given twice, with the span of the second, or None.
         too_deep: Offset at which tables and arrays nest deeper than the limit, or None.
+        repeated: Of keys that are written out for each member, the one key in the text.
     """
 
     keys: dict[KeyPath, Span] = field(default_factory=dict)
@@ -46,6 +47,14 @@ class Positions:
     characters: dict[KeyPath, Sequence[int]] = field(default_factory=dict)
     doubled: tuple[KeyPath, Span] | None = None
     too_deep: int | None = None
+    repeated: dict[KeyPath, KeyPath] = field(default_factory=dict)
+
+    def written(self, path: KeyPath) -> KeyPath:
+        """A key as it stands in the text."""
+        for length in range(len(path), 0, -1):
+            if path[:length] in self.repeated:
+                return self.repeated[path[:length]] + path[length:]
+        return path
 
     def key(self, path: KeyPath) -> Span:
         """Span of a key, or of the nearest thing around it that is written out."""

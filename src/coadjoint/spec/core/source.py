@@ -110,7 +110,7 @@ class Source:
             parts: Further attributes.
         """
         span = self.positions.value(key) if at is None else at
-        line = self.line(span)
+        line, key = self.line(span), self.positions.written(key)
         column = span[0] - self.text.rfind("\n", 0, span[0])
         message = f"{self.path}:{line}:{column}: {write_key(key)}: {problem}"
         message += f"; expected {expected}." if expected else "." * (problem[-1] not in ".?")

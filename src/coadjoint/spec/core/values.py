@@ -145,8 +145,11 @@ def read_default(
     """The declared default, one number for each component; None if there is none."""
     spread = None if value is None else _spread(value, shape)
     if spread is None and value is not None:
-        problem = f"the default of {str(key[-2])!r} does not have its shape {list(shape)}"
-        expected = f"one number for all components, or {_shape_words(shape)}"
+        written = source.positions.written(key)
+        problem = f"the default of {str(written[-2])!r} does not have its shape {list(shape)}"
+        expected = "one number for all components, or " * bool(shape) + _shape_words(shape)
+        if written != key:
+            expected += "; or a list with one such entry for each member"
         raise source.fault(key, problem, _shape_text(value), expected)
     return spread
 

@@ -23,7 +23,7 @@ _FUNCTIONS = {
         "const V *restrict _state, V *restrict _rows)"
         for name, kind in {
             "rates": "LINKAGE",
-            **dict.fromkeys(("domain", "projection", "noise"), "static"),
+            **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
             **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan"), "INLINE"),
         }.items()
     },

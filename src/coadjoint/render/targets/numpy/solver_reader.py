@@ -47,6 +47,17 @@ _ROW = re.compile(r"(\w+) = (state|parameters)\[(\d+)\]")
 _KEPT = re.compile(r"(\w+) = np\.empty\(path\.shape\[1:\]\)")
 _ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
 _TERMS = "range(1, _k)"
+#: The functions of a system with kinks, without ``find_``.
+HELD = ("rates", "kinks")
+_HELD_READ = {
+    name: re.compile(rf"(\w+) = {name}\[(\d+)\]") for name in ("state", "parameters", "driving")
+}
+_HELD_ROWS = re.compile(r"_rows = np\.empty\(\(\d+, state\.shape\[1\]\)\)")
+_HELD_BODY = re.compile(
+    r"^(def find_\w+\(state, parameters, driving\):\n    \"\"\"[^\n]*\n"
+    r"    _rows = [^\n]*\n).*?^    return _rows$",
+    re.DOTALL | re.MULTILINE,
+)
 
 
 def read_expand(text: str, file: str, *, is_looped: bool = False) -> SolverBody:
@@ -97,6 +108,25 @@ def read_refusals(text: str) -> dict[str, str]:
     return {} if found is None else ast.literal_eval(found[1])
 
 
+def read_rows(text: str, function: str, file: str) -> SolverBody:
+    """What a function of a system with kinks does, which computes rows.
+
+    Args:
+        text: Of the file.
+        function: Its name.
+        file: Name of the file, for messages.
+
+    Raises:
+        CrossCheckError: It has a line that no template prints.
+    """
+    reading = _Reading(file, function)
+    found = reading.functions(text, _is_allowed).get(function)
+    if found is None or [each.arg for each in found.args.args] != _ARGUMENTS[:3]:
+        raise reading.refusal(f"there is no function {function} of {', '.join(_ARGUMENTS[:3])}")
+    reading.read_held(found.body)
+    return reading.body
+
+
 def read_tables(text: str, file: str) -> dict[str, tuple[float, ...]]:
     """What recurrences loop over, by name in small letters."""
     tables = dict[str, tuple[float, ...]]()
@@ -111,7 +141,8 @@ def read_tables(text: str, file: str) -> dict[str, tuple[float, ...]]:
 def rest(text: str, *, is_looped: bool) -> str:
     """The text without the lines of ``expand``, and without tables."""
     body = _LOOPED if is_looped else _BODY
-    return _TABLE.sub(r"\1 = ()", body.sub("", _MAPS.sub("", text), count=1))
+    text = _TABLE.sub(r"\1 = ()", body.sub("", _MAPS.sub("", text), count=1))
+    return _HELD_BODY.sub(r"\1", text)
 
 
 def _is_allowed(item: ast.stmt) -> bool:
@@ -120,11 +151,11 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
-            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS")
+            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS", "EXACT")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
             return name in ("REFUSALS", "SCHEDULES")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
-            return name.startswith(("TABLE_", "STAR_"))
+            return name in ("KINKS", "STRUCTURED") or name.startswith(("TABLE_", "STAR_"))
     return False
 
 
@@ -139,8 +170,8 @@ def find_function(function: ast.expr) -> str | None:
 class _Reading(Reader):
     """The function being read."""
 
-    def __init__(self, file: str) -> None:
-        super().__init__(file, "expand", find_function)
+    def __init__(self, file: str, function: str = "expand") -> None:
+        super().__init__(file, function, find_function)
         self.body = SolverBody()
         self._told: list[str] = []
 
@@ -185,6 +216,22 @@ class _Reading(Reader):
                 self.body.lines.append(self._assignment(line))
         if not made:
             raise self.refusal("makes no rows")
+
+    def read_held(self, lines: list[ast.stmt]) -> None:
+        """All lines of a function that computes rows."""
+        docs, made, *inside, returned = lines
+        told = isinstance(docs, ast.Expr) and _HELD_ROWS.fullmatch(ast.unparse(made))
+        if not told or ast.unparse(returned) != "return _rows":
+            raise self.refusal("does not return rows", returned)
+        for line in inside:
+            text = ast.unparse(line)
+            for array, form in _HELD_READ.items():
+                found = form.fullmatch(text)
+                if found and not self.body.lines and found[1] not in self.body.inputs:
+                    self.body.inputs[found[1]] = (array, int(found[2]))
+                    break
+            else:
+                self.body.lines.append(self._assignment(line))
 
     def read_scales(self, lines: list[ast.stmt]) -> None:
         """Lines of the parameters, and the scales that loops begin with."""

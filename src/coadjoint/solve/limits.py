@@ -1,0 +1,210 @@
+"""Limits: what bounds a motion, its kinks, and where within a step it comes to either.
+
+Comes in: functions of a kernel, and a step that was tried. Goes out: where the step leaves the
+domain or meets a kink, found by halving. These are the functions of the generated ``solver.c``,
+operation by operation.
+Read next: `coadjoint.solve.ensemble`, which ends steps there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.steps import Attempt, Lanes
+
+    Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+    #: Rows of a function at states, some time after lanes.
+    Function = Callable[[Lanes, Array, Array], Array]
+
+#: Halvings of a step that leaves the domain: its last state inside is known to 1e-12 of it. Those
+#: of one that may meet a kink, which is found as closely as times are known.
+HALVINGS, KINK_HALVINGS = 40, 64
+#: Halvings that look for the place of a step that is nearest to a kink.
+DIP_HALVINGS = 32
+#: The part of a step over which straight lines are drawn.
+NEAR = 2.0**-20
+#: The part of a step, or of the time, within which a kink follows another one briefly.
+BRIEF = 2.0**-30
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What bounds a motion, and where it has kinks.
+
+    Attributes:
+        domain: Rows that are positive in the domain; None where there is none.
+        strict: For each row, whether it may not be zero.
+        projection: The nearest states on the constraints; None where none are kept.
+        kinks: Rows whose signs are the sides of kinks; None where there are none.
+    """
+
+    domain: Function | None = None
+    strict: tuple[bool, ...] = ()
+    projection: Function | None = None
+    kinks: Function | None = None
+
+    def find_sides(self, lanes: Lanes) -> None:
+        """Set lanes on the sides on which they are: rates are those of these sides for a step."""
+        if self.kinks is not None:
+            lanes.sides = np.sign(self.kinks(lanes, np.zeros(lanes.time.shape), lanes.state))
+
+    def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Where states are in the domain, some time after that of the lanes."""
+        if self.domain is None:
+            return np.ones(after.shape, bool)
+        rows = self.domain(lanes, after, state)
+        least = np.where(self.strict, np.nextafter(0.0, 1.0), 0.0)[:, np.newaxis]
+        return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
+
+    def are_held(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Where states are in the domain, and beyond no kink from where their step began."""
+        inside = self.are_inside(lanes, after, state)
+        if self.kinks is None:
+            return inside
+        sides = np.sign(self.kinks(lanes, after, state))
+        return np.asarray(inside & ((sides == lanes.sides) | (sides == 0.0)).all(axis=0))
+
+    def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The nearest states on the constraints; where there is none, the state itself."""
+        if self.projection is None:
+            return state
+        nearest = self.projection(lanes, after, state)
+        return np.where(np.isfinite(nearest).all(axis=0), nearest, state)
+
+
+#: Nothing.
+NONE = Limits()
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of some members.
+
+    Attributes:
+        lanes: Where it begins.
+        attempt: Where it leads.
+        limits: What bounds the motion.
+        accepted: Whether its end is taken.
+    """
+
+    lanes: Lanes
+    attempt: Attempt
+    limits: Limits
+    accepted: Mask
+
+    def find_state(self, after: Array) -> Array:
+        """The state after a part of the step, on the constraints."""
+        return self.limits.project(self.lanes, after, self.attempt.path(after))
+
+    def find_dips(self) -> Array:
+        """When the step is found beyond a kink, or outside the domain, before its end.
+
+        A step may meet a kink and come back. Where it comes nearer and then goes away, straight
+        lines through both ends tell how near it may come, and halving finds the place.
+
+        Returns:
+            The length of the step where it is found nowhere, ``(N,)``.
+        """
+        took = self.attempt.took
+        outside = took.copy()
+        if self.limits.kinks is None:
+            return outside
+        near, half = took * NEAR, took * 0.5
+        for begin, end in ((np.zeros(took.shape), half), (half, took)):
+            places = (begin, begin + near, end - near, end)
+            gaps = [self._look(after, self.accepted, outside) for after in places]
+            for row in range(len(gaps[0])):
+                fall, rise = gaps[0][row] - gaps[1][row], gaps[3][row] - gaps[2][row]
+                place = (gaps[0][row] - gaps[3][row] + rise * (0.5 / NEAR)) / (fall + rise)
+                least = gaps[0][row] - fall * place
+                low = self.accepted & (outside == took) & (fall > 0.0) & (rise > 0.0)
+                low &= least < 0.0
+                if low.any():
+                    self._search(row, (begin, end), low, outside)
+        return outside
+
+    def _look(self, after: Array, open_: Mask, outside: Array) -> Array:
+        """How far it is from each kink after a part of it, positive on the side where it began.
+
+        An open lane that is on another side ends there, at the first such place.
+        """
+        state = self.find_state(after)
+        assert self.limits.kinks is not None
+        gaps = self.limits.kinks(self.lanes, after, state) * self.lanes.sides
+        gone = open_ & ~self.limits.are_held(self.lanes, after, state) & (after < outside)
+        outside[gone] = after[gone]
+        return np.asarray(gaps)
+
+    def _search(self, row: int, part: tuple[Array, Array], low: Mask, outside: Array) -> None:
+        """Look where a part of the step is nearest to a kink."""
+        (one, other), near = part, self.attempt.took * NEAR
+        nowhere = np.zeros(low.shape, bool)
+        for _ in range(DIP_HALVINGS):
+            middle = (one + other) * 0.5
+            here = self._look(middle, low, outside)[row]
+            falls = self._look(middle + near, nowhere, outside)[row] < here
+            one, other = np.where(falls, middle, one), np.where(falls, other, middle)
+
+    def find_brief(self) -> Array:
+        """The length within which a kink follows another one briefly, ``(N,)``."""
+        took, time = self.attempt.took, np.abs(self.lanes.time)
+        return np.where(took > time, took, time) * BRIEF
+
+    def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
+        """How far the step is in the domain and on its sides, and when it is not."""
+        for _ in range(HALVINGS if self.limits.kinks is None else KINK_HALVINGS):
+            middle = (inside + outside) * 0.5
+            good = self.limits.are_held(self.lanes, middle, self.find_state(middle))
+            inside = np.where(good, middle, inside)
+            outside = np.where(good, outside, middle)
+        return inside, outside
+
+    def cross(self, left: Mask, outside: Array, found: tuple[Array, Array]) -> Crossing:
+        """Where members go beyond a kink, instead of ending at the bound of the domain.
+
+        Args:
+            left: The members that do not come to the end of the step.
+            outside: When they are beyond.
+            found: The state and the time at which each comes to an end otherwise.
+        """
+        (state, time), lanes = found, self.lanes
+        if self.limits.kinks is None:
+            return Crossing(np.zeros(left.shape, bool), state, time, np.zeros((0, len(left)), bool))
+        beyond = self.find_state(outside)
+        met = left & self.limits.are_inside(lanes, outside, beyond)
+        after = lanes.time + outside
+        least = lanes.time + np.abs(lanes.time) * 2.0**-52
+        after = np.where(after > lanes.time, after, least)
+        sides = np.sign(self.limits.kinks(lanes, outside, beyond))
+        return Crossing(
+            met=met,
+            state=np.where(met, beyond, state),
+            time=np.where(met, after, time),
+            kinks=met & ~(sides == lanes.sides),
+        )
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where members go beyond a kink.
+
+    Attributes:
+        met: Which of them do.
+        state: Where they are then, and others as they were.
+        time: When.
+        kinks: Which kinks those are, ``(m, N)``.
+    """
+
+    met: Mask
+    state: Array
+    time: Array
+    kinks: Mask

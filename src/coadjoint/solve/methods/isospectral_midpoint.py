@@ -1,0 +1,54 @@
+"""The isospectral midpoint, for motions of matrices, in NumPy.
+
+A motion ``W' = [B, W]`` of matrices, B and W in an algebra of matrices that satisfy
+``A S + S A^* = 0``. With X in the middle a step goes from ``(1 - h B/2) X (1 + h B/2)`` to
+``(1 + h B/2) X (1 - h B/2)``, B that of X: K. Modin and M. Viviani, Foundations of Computational
+Mathematics 20 (2020) 889. It is a Poisson map on the dual of such an algebra and keeps the
+spectrum of W. In the coordinates of the state it is ``x + h J(X) xi`` where
+``X = x + h/2 J(X) xi + h^2/4 (B X B)``; the last product is a function of the kernel.
+Read next: `coadjoint.solve.methods.lie_poisson`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+class IsospectralMidpoint(LiePoisson):
+    """A step by Cayley's transform of one element of the algebra.
+
+    Args:
+        gradient: As of `LiePoisson`.
+        bracket: Likewise.
+        sandwich: The product ``B(vector) W(state) B(vector)`` in the coordinates of the state.
+        size: As of `LiePoisson`.
+        order: Likewise.
+    """
+
+    def __init__(
+        self,
+        *,
+        gradient: Gradient,
+        bracket: Bracket,
+        sandwich: Bracket,
+        size: float,
+        order: int = 2,
+    ) -> None:
+        super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
+        self.sandwich = sandwich
+
+    def sweep(self, arc: Arc, middle: Array, kept: None) -> Sweep:
+        """As `LiePoisson.sweep`."""
+        lanes, after, half = arc.lanes, arc.middle, 0.5 * arc.length
+        xi = self.gradient(lanes, after, middle)
+        rates = self.bracket(lanes, after, middle, xi)
+        both = self.sandwich(lanes, after, middle, xi)
+        return Sweep(arc.state + half * (rates + half * both), arc.length * rates)

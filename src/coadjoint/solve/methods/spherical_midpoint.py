@@ -1,0 +1,137 @@
+"""The spherical midpoint, for motions on products of spheres and tangent spheres, in NumPy.
+
+A step is ``W = w + h X(r (w + W)/|w + W|)`` in each factor, X the field of the motion and r the
+length of w: R. I. McLachlan, K. Modin and O. Verdier, Physical Review E 89 (2014) 061301, and
+Mathematics of Computation 86 (2017) 2325. On the dual of so(3) it is a Poisson map, keeps each
+``|w|`` and, where there is one factor and the energy is quadratic, the energy.
+A factor of the dual of se(3), momentum Pi and vector Gamma, is one of dual numbers
+``Gamma + e Pi`` with ``e^2 = 0``; lengths and quotients are those of dual numbers. It keeps
+``|Gamma|^2`` and ``Pi . Gamma``. It is a Poisson map as the limit of one: with ``e^2 = d^2`` in
+place of 0 the factor is two spheres, ``Gamma + d Pi`` and ``Gamma - d Pi``, each with a multiple of
+the bracket of so(3), so that the step is the one above.
+Read next: `coadjoint.solve.methods.isospectral_midpoint`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
+
+#: How far Newton's factor is from 1 at the most where its equation is solved.
+NEAR: Final = 2.0**-20
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A factor so(3) or se(3) of an algebra.
+
+    Attributes:
+        rows: Places of the vector on the sphere in the state: Pi, or Gamma of se(3).
+        tangent: Those of Pi of se(3), or ().
+    """
+
+    rows: tuple[int, ...]
+    tangent: tuple[int, ...] = ()
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Each row with that of the tangent; none where there is no tangent."""
+        return list(zip(self.rows, self.tangent, strict=False))
+
+
+class SphericalMidpoint(LiePoisson):
+    """A step through the middle of an arc of each sphere.
+
+    Args:
+        gradient: As of `LiePoisson`.
+        bracket: Likewise.
+        size: Likewise.
+        spheres: The factors; rows in none are moved by the midpoint.
+        order: As of `LiePoisson`.
+    """
+
+    def __init__(
+        self,
+        *,
+        gradient: Gradient,
+        bracket: Bracket,
+        size: float,
+        spheres: tuple[Sphere, ...],
+        order: int = 2,
+    ) -> None:
+        super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
+        self.spheres = spheres
+
+    def prepare(self, arc: Arc) -> list[_Scale]:
+        """As `LiePoisson.prepare`: of each sphere the quotient of lengths, 1 at first."""
+        return [_Scale(arc.state, each) for each in self.spheres]
+
+    def confirm(self, kept: list[_Scale]) -> Mask | bool:
+        """As `LiePoisson.confirm`: quotients are roots, and positive."""
+        return np.asarray(np.logical_and.reduce([each.is_root() for each in kept]))
+
+    def sweep(self, arc: Arc, middle: Array, kept: list[_Scale]) -> Sweep:
+        """As `LiePoisson.sweep`."""
+        xi = self.gradient(arc.lanes, arc.middle, middle)
+        rates = self.bracket(arc.lanes, arc.middle, middle, xi)
+        following = arc.state + 0.5 * arc.length * rates
+        for each in kept:
+            each.apply(following)
+        return Sweep(following, arc.length * rates)
+
+
+class _Scale:
+    """The quotient of the lengths of a vector and of the half of a sum, on its way to be solved.
+
+    It is the root s of ``s^2 |c|^2 = |w|^2`` in dual numbers; each sweep makes one step of
+    Newton's method for it, ``s (3 - s^2 |c|^2/|w|^2)/2``, which divides nothing.
+    """
+
+    def __init__(self, state: Array, sphere: Sphere) -> None:
+        self.sphere = sphere
+        square, mixed = _measure(state, sphere)
+        # half the inverse of the square; of a vector that is 0, anything will do
+        self.half = 0.5 / np.where(square > 0.0, square, 1.0)
+        self.slant = -4.0 * self.half * self.half * mixed
+        self.scale, self.slope = np.ones(square.shape), np.zeros(square.shape)
+        self.rest, self.empty = np.ones(square.shape), square == 0.0
+
+    def is_root(self) -> Mask:
+        """Where the quotient is solved: 0 and negative numbers are roots too."""
+        return np.asarray(self.empty | ((np.abs(self.rest - 1.0) < NEAR) & (self.scale > 0.0)))
+
+    def apply(self, state: Array) -> None:
+        """Improve the quotient and multiply rows of a state by it."""
+        square, mixed = _measure(state, self.sphere)
+        both = self.scale * self.scale
+        part = self.half * square
+        self.rest = rest = 1.5 - part * both
+        if self.sphere.tangent:
+            lean = (self.slant * square + 2.0 * self.half * mixed) * both
+            lean = lean + 2.0 * part * self.scale * self.slope
+            self.slope = self.slope * rest - self.scale * lean
+        self.scale = self.scale * rest
+        for row, tangent in self.sphere.pairs:
+            state[tangent] = self.scale * state[tangent] + self.slope * state[row]
+        for row in self.sphere.rows:
+            state[row] = self.scale * state[row]
+
+
+def _measure(state: Array, sphere: Sphere) -> tuple[Array, Array]:
+    """The square of a length and, of a tangent, the product with it."""
+    a, b, c = (state[row] for row in sphere.rows)
+    square = a * a + b * b + c * c
+    if not sphere.tangent:
+        return square, np.zeros(square.shape)
+    d, e, f = (state[row] for row in sphere.tangent)
+    return square, a * d + b * e + c * f

@@ -1,0 +1,63 @@
+"""Structured: methods that keep the structure of a motion, as members of a batch take their steps.
+
+Comes in: one of them by its name, and functions of the kernel. Goes out: a step of each lane, what
+rounding took of it, and how many sweeps it took.
+Read next: `coadjoint.solve.methods.lie_poisson`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coadjoint.methods import STRUCTURED
+from coadjoint.solve.steps import Attempt, Cubic, Lanes, Left, find_fixed_step
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.methods.lie_poisson import LiePoisson
+
+    Array = NDArray[np.float64]
+
+
+class Structured:
+    """A method that keeps structure, with steps of one length.
+
+    Args:
+        name: One of `STRUCTURED`.
+        size: The step.
+        functions: ``rates`` and what the method needs, by their names: of lanes, some time after
+            where these are, at a state, and what else they take.
+    """
+
+    tries_again = halves = False
+
+    def __init__(self, name: str, size: float, functions: Mapping[str, Callable[..., Array]]):
+        own = STRUCTURED[name]
+        make = import_module(f"coadjoint.solve.methods.{own.file}").make
+        self.rates, self.size = functions["rates"], size
+        self.method: LiePoisson = make(functions, size, own.order)
+
+    def try_step(self, lanes: Lanes) -> Attempt:
+        """As `coadjoint.solve.steps.Method.try_step`."""
+        h, start = find_fixed_step(self.size, lanes.end - lanes.time), lanes.state
+        low = np.zeros(start.shape) if lanes.low is None else lanes.low
+        found, low, solved, sweeps = self.method.advance(lanes, h, start, low)
+        end = np.where(solved, found, start)
+        none = np.zeros(h.shape)
+        path = Cubic(
+            h, start, end, lambda: self.rates(lanes, none, start), lambda: self.rates(lanes, h, end)
+        )
+        return Attempt(
+            took=np.where(solved, h, 0.0),
+            state=end,
+            accepted=solved,
+            path=path.follow,
+            coefficients=path.coefficients,
+            left=Left(low, sweeps, solved),
+        )

@@ -1,0 +1,1 @@
+"""Tests of the methods that keep the structure of a motion."""
