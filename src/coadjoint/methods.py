@@ -120,6 +120,15 @@ _MAPS: Final = (
         "Celledoni, R. I. McLachlan, B. Owren and G. R. W. Quispel, Journal of Physics A 46 (2013) "
         "025201)",
     ),
+    StructuredMethod(
+        name="exact_body",
+        file="maps",
+        order=10,
+        needs=("exact_body",),
+        keeps="all that the free motion of a body keeps, to rounding",
+        theorem="the exact flow of Euler's top by elliptic functions (E. Celledoni, F. Fasso, N. "
+        "Safstrom and A. Zanna, SIAM Journal on Scientific Computing 30 (2008) 2084)",
+    ),
 )
 
 _TABLE: Final = {each.name: each for each in _ENTRIES}

@@ -49,9 +49,9 @@ NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpo
 #: Those that keep structure and are compared for every system that has them; compositions of them
 #: take the same steps, of other lengths.
 STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
-#: Those that are a sequence of maps. Compilers make two of them, which have all the maps.
+#: Those that are a sequence of maps. Compilers make those that have all the maps.
 MAPS: Final = {name: Choice(name, each.order) for name, each in MAPPED.items()}
-COMPILED_MAPS: Final = ("splitting4", "kahan")
+COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:

@@ -14,15 +14,17 @@ from typing import Final
 from coadjoint.derive import Equations
 from coadjoint.derive.splittings import NoSplitting, find_splitting
 from coadjoint.lower.compositions import Schedule, schedule
+from coadjoint.lower.exact_body import lower_exact_body
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kahan import lower_kahan
 from coadjoint.lower.program import Program
 
-#: Methods that are compositions of flows, with their orders; Kahan's is one of a single map.
+#: Methods that are compositions of flows, with their orders.
 SPLITTINGS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6}
-KAHAN: Final = "kahan"
+#: Methods of a single map of their own names.
+SINGLE: Final = ("kahan", "exact_body")
 #: Every method that is a sequence of maps.
-COMPOSED: Final = (*SPLITTINGS, KAHAN)
+COMPOSED: Final = (*SPLITTINGS, *SINGLE)
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class Maps:
     """The maps of a system.
 
     Attributes:
-        programs: The flows, ``flow1`` and so on, and ``kahan``, as far as there are these.
+        programs: The flows, ``flow1`` and so on, ``kahan`` and ``exact_body``, as far as there are
+            such.
         refusals: Why there are none, by method.
     """
 
@@ -49,21 +52,24 @@ def lower_maps(equations: Equations, *, is_looped: bool) -> Maps:
         reason = "its rates are loops over a table"
         return Maps((), dict.fromkeys(COMPOSED, reason))
     refusals, programs = dict[str, str](), list[Program]()
-    splitting, kahan = find_splitting(equations), lower_kahan(equations)
+    splitting = find_splitting(equations)
     if isinstance(splitting, NoSplitting):
         refusals |= dict.fromkeys(SPLITTINGS, splitting.reason)
     else:
         programs += lower_flows(splitting)
-    if isinstance(kahan, str):
-        refusals[KAHAN] = kahan
-    else:
-        programs.append(kahan)
+    for name, found in zip(
+        SINGLE, (lower_kahan(equations), lower_exact_body(equations)), strict=True
+    ):
+        if isinstance(found, str):
+            refusals[name] = found
+        else:
+            programs.append(found)
     return Maps(tuple(programs), refusals)
 
 
 def list_maps(programs: Iterable[str]) -> list[str]:
     """The names that are those of maps."""
-    return [name for name in programs if name == KAHAN or name.startswith("flow")]
+    return [name for name in programs if name in SINGLE or name.startswith("flow")]
 
 
 def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
@@ -78,6 +84,4 @@ def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ..
     for method, order in SPLITTINGS.items() if flows else ():
         own: Schedule = schedule(len(flows), order) if len(flows) > 1 else ((0, 1.0),)
         found[method] = tuple((flows[part], time) for part, time in own)
-    if KAHAN in names:
-        found[KAHAN] = ((KAHAN, 1.0),)
-    return found
+    return found | {name: ((name, 1.0),) for name in SINGLE if name in names}

@@ -24,7 +24,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
-            **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan"), "INLINE"),
+            **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan", "exact_body"), "INLINE"),
         }.items()
     },
 }
