@@ -100,6 +100,12 @@ MUTANTS = (
         tests=("tests/crosscheck/test_solvers.py -k steps_of_numpy",),
     ),
     *of(
+        "methods/midpoint",
+        "Midpoint.sweep: rewrite 0.5 * rise -> rise",
+        "Midpoint.sweep: rewrite arc.low + _1 -> _1 - arc.low",
+        tests=("tests/solve/test_structured.py -k 'bits or quadratic'",),
+    ),
+    *of(
         "solve/steps",
         "Taylor._choose: rewrite 0.7 / _1 -> 0.9 / _1",
         "_evaluate_path: rewrite total * after + _1 -> total + _1",

@@ -40,6 +40,14 @@ RUNS = {
         "parameters": {"m": np.linspace(1, 2, 43)},
     },
     "rk4": {"state": BATCH[:, 0], "t": (0, 50), "method": "rk4", "step": 1e-3, "samples": 1},
+    "midpoint": {
+        "state": BATCH[:, :9],
+        "t": (0, 20),
+        "parameters": {"I": [3.0, 4.0, 5.0], "g": 1.0},
+        "method": "midpoint",
+        "step": 2e-3,
+        "samples": 3,
+    },
     "numpy": {"state": BATCH[:, :5], "t": (0, 5), "samples": 4, "target": "numpy"},
     "events": {
         "state": BATCH,

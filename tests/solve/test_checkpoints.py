@@ -77,6 +77,7 @@ def check_same_events(found, expected):
         ("taylor", "computing", 1, 2),
         ("dop853 in threads", "writing", 2, 3),
         ("rk4", "computing", 4, 1),
+        ("midpoint", "computing", 2, 2),
         ("numpy", "writing", 5, 1),
         ("events", "computing", 3, 2),
         ("one with events", "writing", 4, 1),

@@ -59,7 +59,7 @@ class Course:
         driven: Inputs there, ``(m, *batch)``; None if they are constant.
         stepwise: Why Python led the steps; empty where a solver made them all.
         seed: Of the noise; None without any.
-        keeps: What the method keeps of what each path of a motion with noise keeps, by its own
+        keeps: What the method keeps by itself, of a motion with noise on each path, by its own
             update; empty without noise.
         projection: Onto what states are moved, and when; empty where they are not.
         start: Where the trajectories began, if no sample has it.
@@ -90,9 +90,9 @@ class Course:
         return f"Python led the steps: {self.stepwise}" if self.stepwise else ""
 
     def tell_keeps(self) -> str:
-        """What the method keeps of what each path keeps; "" without noise."""
-        told = f"of what each path keeps, {self.method} keeps {self.keeps}"
-        return told if self.keeps else ""
+        """What the method keeps by itself; "" for nothing."""
+        whose = "of what each path keeps, " if self.seed is not None else ""
+        return f"{whose}{self.method} keeps {self.keeps}" if self.keeps else ""
 
     @property
     def status(self) -> str:

@@ -41,6 +41,7 @@ from coadjoint.solver_kinds import list_kinds
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.solve.choices import Choice
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
@@ -115,6 +116,11 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
     return {name: why for name in STRUCTURED if name not in known}
 
 
+def _tell_keeps(choice: Choice) -> str:
+    """What a method keeps by itself, of a motion with noise on each path; "" for nothing."""
+    return STRUCTURED[choice.name].keeps if choice.is_structured else KEEPS.get(choice.name, "")
+
+
 def find_series_obstacle(
     system: System, stepwise: str, rtol: float, members: int, *, is_auto: bool
 ) -> str:
@@ -172,7 +178,7 @@ def _make_course(
         method=request.choice.name,
         order=None if request.seed is not None else request.choice.order,
         seed=request.seed,
-        keeps=KEEPS.get(request.choice.name, ""),
+        keeps=_tell_keeps(request.choice),
         projection=describe_projection(system, request.choice.name),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import STRUCTURED
 from coadjoint.solve.choices import NOISY
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def check_no_noise(system: System, method: Any, seed: Any) -> None:
     Raises:
         KernelArgumentError: One is given.
     """
-    named = isinstance(method, str) and method.lower() in NOISY
+    named = isinstance(method, str) and method.lower() in set(NOISY).difference(STRUCTURED)
     if seed is not None or named:
         given = f"method is {method!r}" if named else f"seed is {seed!r}"
         raise KernelArgumentError(

@@ -63,12 +63,14 @@ class Arc:
         middle: Time from there to the middle of this one, ``(N,)``.
         length: How long it takes, ``(N,)``.
         state: Where it begins, ``(n, N)``.
+        low: What rounding took of that.
     """
 
     lanes: Lanes
     middle: Array
     length: Array
     state: Array
+    low: Array
 
 
 @dataclass
@@ -162,7 +164,8 @@ class LiePoisson:
         made = np.zeros(h.shape, np.uint64)
         for stage in self.stages:
             length = stage * h
-            found = self._search(Arc(lanes, after + 0.5 * length, length, state))
+            arc = Arc(lanes, after + 0.5 * length, length, state, low)
+            found = self._search(arc)
             state, low = add_low(state, low, found.rise)
             after, solved, made = after + length, solved & found.solved, made + found.made
         return state, low, solved, made

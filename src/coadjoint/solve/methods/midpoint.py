@@ -43,4 +43,4 @@ class Midpoint(LiePoisson):
     def sweep(self, arc: Arc, middle: Array, kept: None) -> Sweep:
         """As `LiePoisson.sweep`."""
         rise = arc.length * self.rates(arc.lanes, arc.middle, middle)
-        return Sweep(arc.state + 0.5 * rise, rise, False)
+        return Sweep(arc.state + (arc.low + 0.5 * rise), rise, False)
