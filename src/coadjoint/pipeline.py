@@ -98,7 +98,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     certificate = prove(spec, routes).require()
     check_programs(first, programs)
     progress("render")
-    maps = lower_maps(first, is_looped=programs["rhs"].table is not None)
+    maps = lower_maps(first, programs["rhs"])
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps)
     texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
     return Rendered(

@@ -129,7 +129,13 @@ def crosscheck(
     """
     chosen = available_targets() if targets is None else tuple(targets)
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
-    subject = Subject(programs, Replayed(reference), system, chosen, maps=tuple(maps))
+    subject = Subject(
+        programs=programs,
+        reference=Replayed(reference),
+        system=system,
+        targets=chosen,
+        maps=tuple(maps),
+    )
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {

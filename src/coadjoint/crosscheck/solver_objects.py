@@ -50,7 +50,7 @@ NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpo
 #: take the same steps, of other lengths.
 STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
 #: Those that are a sequence of maps. Compilers make those that have all the maps.
-MAPS: Final = {name: Choice(name, each.order) for name, each in MAPPED.items()}
+MAPS: Final = {name: Choice(name=name, order=each.order) for name, each in MAPPED.items()}
 COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")
 
 

@@ -17,6 +17,7 @@ from coadjoint.lower.compositions import Schedule, schedule
 from coadjoint.lower.exact_body import lower_exact_body
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kahan import lower_kahan
+from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 
 #: Methods that are compositions of flows, with their orders.
@@ -41,16 +42,17 @@ class Maps:
     refusals: Mapping[str, str]
 
 
-def lower_maps(equations: Equations, *, is_looped: bool) -> Maps:
+def lower_maps(equations: Equations, rates: Program) -> Maps:
     """The maps of a system.
 
     Args:
         equations: The emitted route.
-        is_looped: Whether its rates are loops over a table.
+        rates: Its rates as the kernel has them.
     """
-    if is_looped:
-        reason = "its rates are loops over a table"
-        return Maps((), dict.fromkeys(COMPOSED, reason))
+    if rates.table is not None:
+        return Maps((), dict.fromkeys(COMPOSED, "its rates are loops over a table"))
+    if "kinks" in hold_sides({"rates": rates}):
+        return Maps((), dict.fromkeys(COMPOSED, "its rates have kinks"))
     refusals, programs = dict[str, str](), list[Program]()
     splitting = find_splitting(equations)
     if isinstance(splitting, NoSplitting):

@@ -56,7 +56,11 @@ class Maps:
             end = move(end, lanes.parameters, h if part == 1.0 else h * part)
         start, none = lanes.state, np.zeros(h.shape)
         path = Cubic(
-            h, start, end, lambda: self.rates(lanes, none, start), lambda: self.rates(lanes, h, end)
+            h=h,
+            start=start,
+            end=end,
+            first=lambda: self.rates(lanes, none, start),
+            last=lambda: self.rates(lanes, h, end),
         )
         return Attempt(
             took=h,
