@@ -141,7 +141,7 @@ class KernelContext:
         turning: Names of the attitudes that the projection moves back to rotations.
         written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
-        maps: What explicit methods make a step of: `coadjoint.lower.maps`.
+        maps: What explicit methods make a step of: `coadjoint.lower.mapped`.
         refusals: Methods without such maps, each with the reason.
     """
 

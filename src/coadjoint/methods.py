@@ -88,7 +88,7 @@ _BLANES: Final = (
 _MAPS: Final = (
     StructuredMethod(
         name="splitting",
-        file="maps",
+        file="sequence",
         order=2,
         needs=("flow1",),
         keeps=_KEPT_BY_FLOWS,
@@ -96,7 +96,7 @@ _MAPS: Final = (
     ),
     StructuredMethod(
         name="splitting4",
-        file="maps",
+        file="sequence",
         order=4,
         needs=("flow1",),
         keeps=_KEPT_BY_FLOWS,
@@ -104,7 +104,7 @@ _MAPS: Final = (
     ),
     StructuredMethod(
         name="splitting6",
-        file="maps",
+        file="sequence",
         order=6,
         needs=("flow1",),
         keeps=_KEPT_BY_FLOWS,
@@ -112,7 +112,7 @@ _MAPS: Final = (
     ),
     StructuredMethod(
         name="kahan",
-        file="maps",
+        file="sequence",
         order=2,
         needs=("kahan",),
         keeps="nothing exactly; quadratic motions that are integrable keep modified integrals",
@@ -122,7 +122,7 @@ _MAPS: Final = (
     ),
     StructuredMethod(
         name="exact_body",
-        file="maps",
+        file="sequence",
         order=10,
         needs=("exact_body",),
         keeps="all that the free motion of a body keeps, to rounding",

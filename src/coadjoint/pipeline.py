@@ -27,7 +27,7 @@ from coadjoint.lower.check import check_programs, check_sizes
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.maps import lower_maps
+from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.declaration import family_context, kernel_context

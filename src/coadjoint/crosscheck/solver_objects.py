@@ -23,13 +23,13 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
-from coadjoint.lower.maps import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_schedules
 from coadjoint.methods import MAPPED, list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Record
 from coadjoint.solve.limits import Limits
-from coadjoint.solve.methods.maps import Maps
+from coadjoint.solve.methods.sequence import Maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor

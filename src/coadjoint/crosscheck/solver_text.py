@@ -18,7 +18,7 @@ from itertools import zip_longest
 
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.derive.setting import STEP
-from coadjoint.lower.maps import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_schedules
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates

@@ -50,7 +50,7 @@ from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.maps import list_maps
+from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs

@@ -22,7 +22,7 @@ from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
 from coadjoint.lower.families import Loops
-from coadjoint.lower.maps import Maps
+from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.integrals import is_conserved

@@ -19,7 +19,7 @@ from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.maps import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,

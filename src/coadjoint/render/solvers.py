@@ -19,7 +19,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
-from coadjoint.lower.maps import list_maps
+from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,

@@ -19,7 +19,7 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.limits import Limits
-from coadjoint.solve.methods.maps import Maps, make_maps
+from coadjoint.solve.methods.sequence import Maps, make_maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor

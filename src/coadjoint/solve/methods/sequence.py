@@ -3,7 +3,7 @@
 Comes in: the maps of the generated ``solver.py`` with the part of the step that each takes. Goes
 out: where a step of each lane leads. The path within a step is the cubic with the states and the
 rates of both ends, as that of the classical method.
-Read next: `coadjoint.lower.maps`, which says what the maps are.
+Read next: `coadjoint.lower.mapped`, which says what the maps are.
 """
 
 from __future__ import annotations
