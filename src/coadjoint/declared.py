@@ -146,6 +146,8 @@ class KernelContext:
         turning: Names of the attitudes that the projection moves back to rotations.
         written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
+        maps: What explicit methods make a step of: `coadjoint.lower.mapped`.
+        refusals: Methods without such maps, each with the reason.
     """
 
     name: str
@@ -166,3 +168,5 @@ class KernelContext:
     written: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()
     is_bound: bool = False
+    maps: tuple[Program, ...] = ()
+    refusals: tuple[tuple[str, str], ...] = ()

@@ -185,9 +185,70 @@ _ENTRIES: Final = (
     ),
 )
 
+_POISSON: Final = (
+    "R. I. McLachlan, SIAM Journal on Scientific Computing 16 (1995) 151; E. Hairer, C. Lubich and "
+    "G. Wanner, Geometric Numerical Integration (2006), IX"
+)
+_KEPT_BY_FLOWS: Final = (
+    "the Poisson tensor, all Casimirs and leaves, to rounding; the energy within a bound"
+)
+_BLANES: Final = (
+    "with the parts of S. Blanes and P. C. Moan, Journal of Computational and Applied Mathematics "
+    "142 (2002) 313"
+)
+
+_MAPS: Final = (
+    StructuredMethod(
+        name="splitting",
+        file="sequence",
+        order=2,
+        needs=("flow1",),
+        keeps=_KEPT_BY_FLOWS,
+        theorem=f"a symmetric product of flows of parts of the energy, a Poisson map ({_POISSON})",
+    ),
+    StructuredMethod(
+        name="splitting4",
+        file="sequence",
+        order=4,
+        needs=("flow1",),
+        keeps=_KEPT_BY_FLOWS,
+        theorem=f"a product of flows of parts of the energy {_BLANES}, a Poisson map ({_POISSON})",
+    ),
+    StructuredMethod(
+        name="splitting6",
+        file="sequence",
+        order=6,
+        needs=("flow1",),
+        keeps=_KEPT_BY_FLOWS,
+        theorem=f"a product of flows of parts of the energy {_BLANES}, a Poisson map ({_POISSON})",
+    ),
+    StructuredMethod(
+        name="kahan",
+        file="sequence",
+        order=2,
+        needs=("kahan",),
+        keeps="nothing exactly; quadratic motions that are integrable keep modified integrals",
+        theorem="(1 - h/2 f'(x)) d = h f(x), symmetric and birational, and no Poisson map (E. "
+        "Celledoni, R. I. McLachlan, B. Owren and G. R. W. Quispel, Journal of Physics A 46 (2013) "
+        "025201)",
+    ),
+    StructuredMethod(
+        name="exact_body",
+        file="sequence",
+        order=10,
+        needs=("exact_body",),
+        keeps="all that the free motion of a body keeps, to rounding",
+        theorem="the exact flow of Euler's top by elliptic functions (E. Celledoni, F. Fasso, N. "
+        "Safstrom and A. Zanna, SIAM Journal on Scientific Computing 30 (2008) 2084)",
+    ),
+)
+
 _TABLE: Final = {each.name: each for each in _ENTRIES}
 #: Every method that keeps structure, by name.
 STRUCTURED: Final = MappingProxyType(_TABLE)
+_MAPPED: Final = {each.name: each for each in _MAPS}
+#: Those whose steps are a sequence of maps: explicit, or with one linear equation.
+MAPPED: Final = MappingProxyType(_MAPPED)
 
 
 def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:

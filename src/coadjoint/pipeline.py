@@ -27,6 +27,7 @@ from coadjoint.lower.check import check_programs, check_sizes
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
 from coadjoint.lower.lowering import lower
+from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.declaration import family_context, kernel_context
@@ -66,13 +67,14 @@ class RenderedFamily:
 
 @dataclass(frozen=True)
 class Rendered:
-    """The emitted route, what is proved of it, its functions, and its generated files by name."""
+    """The emitted route, what is proved of it, its functions, its files by name, and its maps."""
 
     equations: Equations
     certificate: Certificate
     programs: dict[str, Program]
     texts: dict[str, str]
     family: RenderedFamily | None = None
+    maps: tuple[Program, ...] = ()
 
     @property
     def pair_operations(self) -> int:
@@ -96,9 +98,12 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     certificate = prove(spec, routes).require()
     check_programs(first, programs)
     progress("render")
-    context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED))
+    maps = lower_maps(first, programs["rhs"])
+    context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps)
     texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
-    return Rendered(equations=first, certificate=certificate, programs=programs, texts=texts)
+    return Rendered(
+        equations=first, certificate=certificate, programs=programs, texts=texts, maps=maps.programs
+    )
 
 
 def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:
@@ -134,4 +139,5 @@ def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Repor
             given = (own.windows, own.declared, own.family, own.context)
             return crosscheck_family(*given, rendered.texts, own.printed, system)
         reference = Reference(rendered.equations)
-        return crosscheck(rendered.programs, rendered.texts, reference, system)
+        maps = rendered.maps
+        return crosscheck(rendered.programs, rendered.texts, reference, system, maps=maps)

@@ -108,6 +108,7 @@ def crosscheck(
     targets: Sequence[str] | None = None,
     oracle_points: int = ORACLE_POINTS,
     bit_points: int = BIT_POINTS,
+    maps: Sequence[Program] = (),
 ) -> Report:
     """Run rungs 3, 4 and 5.
 
@@ -120,6 +121,7 @@ def crosscheck(
         targets: What to compare; by default all, or those that need no compiler without one.
         oracle_points: Points against 50 digits, shared out among the functions.
         bit_points: Points of bitwise comparison for each function.
+        maps: What explicit methods make a step of.
 
     Raises:
         CompilerError: The compiler does not work, or fails on this kernel.
@@ -127,7 +129,13 @@ def crosscheck(
     """
     chosen = available_targets() if targets is None else tuple(targets)
     _require(chosen and programs, system.name, "there is no function, or no target", 3)
-    subject = Subject(programs, Replayed(reference), system, chosen)
+    subject = Subject(
+        programs=programs,
+        reference=Replayed(reference),
+        system=system,
+        targets=chosen,
+        maps=tuple(maps),
+    )
     share = max(1, oracle_points // len(programs))
     with working_folder() as folder, compilers() as pool:  # compilers work at the same time
         compiling = {
@@ -137,7 +145,7 @@ def crosscheck(
                 folder,
                 chosen,
                 kind,
-                hold_sides(select_programs(programs.values(), kind)),
+                hold_sides(select_programs(programs.values(), kind, maps)),
             )
             for kind in list_kinds(programs)
         }

@@ -61,15 +61,30 @@ def rk4(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, 
 
 def _draw_cubic(rates: Rates, ends: tuple[Row, Row], h: Any, after: Any, number: Number) -> Row:
     """The cubic with the states and rates of both ends of a step, after a part of it."""
-    two, one = number(Fraction(2)), number(Fraction(1))
+    one = number(Fraction(1))
     part, state = after / h, list[Any]()
     slopes = rates(ends[0], number(Fraction(0))), rates(ends[1], h)
     for a, b, first, final in zip(*ends, *slopes, strict=True):
         chord = minus(b, a)
         start = minus(h * first, chord)
-        both = h * minus(final, first) + two * start
+        both = h * minus(final, first) + number(Fraction(2)) * start
         state.append(a + part * (chord + minus(one, part) * minus(start, part * both)))
     return state
+
+
+def composed(
+    maps: Sequence[tuple[Callable[[Row, Any], Row], Any]],
+    rates: Rates,
+    x: Row,
+    h: Any,
+    after: Any,
+    number: Number,
+) -> tuple[Row, Row]:
+    """A sequence of maps, each for its part of the step; between its ends the cubic of `rk4`."""
+    end = x
+    for move, part in maps:
+        end = move(end, h if part is None else h * part)
+    return _draw_cubic(rates, (x, end), h, after, number), end
 
 
 def heun(rates: Rates, x: Row, h: Any, after: Any, number: Number) -> tuple[Row, Row]:

@@ -34,9 +34,10 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import NOISY, ORDER, STRUCTURED, Advance
+from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, STRUCTURED, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.mapped import list_schedules
 from coadjoint.lower.program import run
 from coadjoint.methods import list_structured
 from coadjoint.render.solvers import SolverText
@@ -81,7 +82,8 @@ class Solvers:
     @property
     def functions(self) -> tuple[str, ...]:
         """The names of its functions, ``kinks`` among them where the rates have some."""
-        return (*self.subject.programs, *(["kinks"] if self.text.kinks else []))
+        maps = (each.name for each in self.subject.maps)
+        return (*self.subject.programs, *maps, *(["kinks"] if self.text.kinks else []))
 
     @property
     def is_noisy(self) -> bool:
@@ -201,7 +203,7 @@ def _exact_step(
         return _exact_taylor(solvers, point, after, length)
     program, h, part = solvers.subject.programs["rhs"], exact(length), exact(after)
     reference, programs = solvers.subject.reference.evaluate, solvers.subject.programs
-    step: Any = getattr(methods, method)
+    step: Any = methods.composed if method in MAPS else getattr(methods, method)
     bounding = step
     if method == "midpoint" and not solvers.is_noisy:
         step = bounding = methods.structured_midpoint
@@ -229,11 +231,28 @@ def _exact_step(
 
         return at
 
+    def maps(number: Any, apply: Any, parameters: Any) -> list[tuple[Any, Any]]:
+        """The maps of the method; that they are those of the equations was proved by elements."""
+        known = {each.name: each for each in solvers.subject.maps}
+
+        def move(name: str, x: methods.Row, h: Any) -> methods.Row:
+            names = dict(zip(known[name].state, [*x, h], strict=True))
+            return run(known[name], names | parameters, number, apply)
+
+        return [
+            (partial(move, name), None if time == 1.0 else number(Fraction(time)))
+            for name, time in list_schedules(known)[method]
+        ]
+
     state, given = split(program, point)
     begin = [exact(value) for value in state.values()]
     bounded = {name: tuple(map(exact, values)) for name, values in given.items()}
     by_equations = rates(reference, exact, call, bounded)
     by_program = rates(by_printed, exact, call, bounded)
+    if method in MAPS:
+        step = bounding = partial(
+            step, maps(exact, call, {name: each[0] for name, each in bounded.items()})
+        )
     values = step(by_equations, begin, h, part, exact)
     sizes = bounding(by_program, begin, h, part, exact)
     within, end = (
@@ -243,6 +262,9 @@ def _exact_step(
     if method not in solvers.depths:
         zeros = {name: (Levels(0),) * len(values) for name, values in given.items()}
         counted = rates(by_printed, level_of, _raise_level, zeros)
+        if method in MAPS:
+            levels = {name: each[0] for name, each in zeros.items()}
+            bounding = partial(methods.composed, maps(level_of, _raise_level, levels))
         depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
         solvers.depths[method] = max(each.count for each in depth)
     return ExactStep(within, end, solvers.depths[method])

@@ -23,11 +23,13 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
-from coadjoint.methods import list_structured
+from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.methods import MAPPED, list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Record
 from coadjoint.solve.limits import Limits
+from coadjoint.solve.methods.sequence import Maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
@@ -47,6 +49,9 @@ NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpo
 #: Those that keep structure and are compared for every system that has them; compositions of them
 #: take the same steps, of other lengths.
 STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
+#: Those that are a sequence of maps. Compilers make those that have all the maps.
+MAPS: Final = {name: Choice(name=name, order=each.order) for name, each in MAPPED.items()}
+COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
@@ -54,7 +59,9 @@ def list_choices(functions: Collection[str]) -> dict[str, Choice]:
     if "noise" in functions:
         return CHOICES | NOISY
     own = {each.name for each in list_structured(functions)}
-    return CHOICES | {name: each for name, each in STRUCTURED.items() if name in own}
+    own |= list_schedules(list_maps(functions)).keys()
+    others = STRUCTURED | MAPS
+    return CHOICES | {name: each for name, each in others.items() if name in own}
 
 
 class Advance(Protocol):
@@ -81,7 +88,7 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 3
-    every = CHOICES | NOISY | STRUCTURED
+    every = CHOICES | NOISY | STRUCTURED | MAPS
     compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
@@ -153,6 +160,10 @@ class NumpySolver:
             return DormandPrince8(rates, rtol, atol, size, branches=self.branches)
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
+        if name in MAPS:
+            parts = self.module["SCHEDULES"][name]
+            maps = [(self.module[f"find_{each}"], part) for each, part in parts]
+            return Maps(maps, rates, size, branches=self.branches)
         if name in self.module.get("STRUCTURED", ()):
             return Structured(name, size, {"rates": rates})
         return METHODS[name](

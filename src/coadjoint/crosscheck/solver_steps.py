@@ -17,7 +17,7 @@ Read next: `coadjoint.crosscheck.solvers`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import ORDER, list_choices
+from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, ORDER, list_choices
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -226,7 +226,14 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> tuple[float, float]
 # -- rung 5 ---------------------------------------------------------------------------------------
 
 
-def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
+def _list_compiled(solvers: Solvers) -> list[str]:
+    """The methods that are compared in C as well."""
+    return [name for name, targets in solvers.advance.items() if "c" in targets]
+
+
+def check_bits(
+    solvers: Solvers, batch: Batch, size: float, methods: Iterable[str] | None = None
+) -> dict[str, int]:
     """Rung 5: NumPy and exact C take the same steps, bit for bit.
 
     Returns:
@@ -235,7 +242,10 @@ def check_bits(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
     Raises:
         CrossCheckError: Two differ in a bit.
     """
-    choices = list_choices(solvers.functions)
+    known = list_choices(solvers.functions)
+    choices = {
+        name: known[name] for name in (_list_compiled(solvers) if methods is None else methods)
+    }
     equal = dict.fromkeys(choices, 0)
     samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
     for method, given, fixed, keeps in _runs(batch, size):
@@ -290,6 +300,10 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
         yield "midpoint", given, size * 0.15, True
+        for method in COMPILED_MAPS:
+            yield method, given, size * 0.3125, True
+    for method in COMPILED_MAPS:
+        yield method, batch, size * 0.15, False
     yield "taylor", batch, size * 0.75, True
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
@@ -297,7 +311,9 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
     yield "dop853", batch, size * 0.15, False
 
 
-def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int]:
+def check_together(
+    solvers: Solvers, batch: Batch, size: float, methods: Iterable[str] | None = None
+) -> dict[str, int]:
     """Rung 5 with functions beyond sqrt: steps of NumPy and of exact C are within the bound.
 
     Returns:
@@ -307,7 +323,7 @@ def check_together(solvers: Solvers, batch: Batch, size: float) -> dict[str, int
         CrossCheckError: Two are further apart.
     """
     few = _take_few(solvers, batch)
-    together = dict.fromkeys(list_choices(solvers.functions), 0)
+    together = dict.fromkeys(_list_compiled(solvers) if methods is None else methods, 0)
     for method in together:
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)

@@ -17,15 +17,24 @@ from dataclasses import dataclass, fields
 from itertools import zip_longest
 
 from coadjoint.crosscheck.parse_back import as_printed
-from coadjoint.lower.program import Node, Program
+from coadjoint.derive.setting import STEP
+from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
-from coadjoint.render.kernels import TEMPLATES, Row, arrange_sides, name_solver
+from coadjoint.render.kernels import (
+    TEMPLATES,
+    Row,
+    arrange_sides,
+    elementary_functions,
+    name_solver,
+)
 from coadjoint.render.solvers import (
     FunctionText,
     Line,
     SolverText,
     arrange_function,
+    arrange_map,
     describe_noise,
     describe_structured,
 )
@@ -79,6 +88,9 @@ def check_solver_texts(texts: SolverTexts) -> int:
         if not loops or function not in c_reader.LOOPED:
             body = c_reader.read_function(texts.files[c], function, c)
             compared += _check_body(body, _expected(texts, function), c, function)
+    for name in list_maps(texts.programs):
+        body = numpy_reader.read_map(texts.files[numpy], name, numpy)
+        compared += _check_body(body, _expected_map(texts, name), numpy, f"find_{name}")
     body = numpy_reader.read_expand(texts.files[numpy], numpy, is_looped=loops is not None)
     compared += _check_body(body, _expected(texts, numpy), numpy, "expand")
     for name, program in texts.programs.items():
@@ -96,15 +108,19 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
     solver, program = texts.recurrences, texts.programs["rates"]
     driven = (*program.inputs, *program.time)
     rows = {"parameters": program.parameters, "state": program.state, "driving": driven}
-    rows["fixed"] = tuple(line.name for line in solver.fixed)
+    rows["fixed"] = tuple(line.name for line in (*solver.fixed, *solver.shared))
     if function == "find_fixed":
-        return _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
+        reads = solver.fixed_reads | solver.shared_reads
+        return _body(rows, ("parameters",), reads, (*solver.fixed, *solver.shared))
     name = function.removeprefix("find_")
     if name in texts.programs:
         found = arrange_function(name, texts.programs[name])
-        rows["state"] = texts.programs[name].state
-        arrays = ("state", "parameters", "driving", *(["fixed"] if name == "rates" else []))
-        return _body(rows, arrays, found.reads, found.lines)
+        shares = name == "rates" or list_maps([name])
+        if not list_maps([name]):
+            rows["state"] = texts.programs[name].state
+        arrays = ("state", "parameters", "driving", *(["fixed"] if shares else []))
+        begin = [Line(STEP, Symbol("_after"))] if list_maps([name]) else []
+        return _body(rows, arrays, found.reads, (*begin, *found.lines))
     if solver.loops:
         body = _body(rows, ("parameters",), solver.fixed_reads, solver.fixed)
         body.scales = list(solver.loops.scales)
@@ -116,6 +132,14 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
     body = _body(rows, arrays, reads, lines)
     body.kept, body.orders = list(solver.kept), list(_orders(solver))
     return body
+
+
+def _expected_map(texts: SolverTexts, name: str) -> SolverBody:
+    """What a map is to do in NumPy."""
+    program = texts.programs["rates"]
+    rows = {"parameters": program.parameters, "state": program.state}
+    found = arrange_map(texts.programs[name])
+    return _body(rows, ("state", "parameters"), found.reads, found.lines)
 
 
 def _expect_rows(program: Program) -> SolverBody:
@@ -247,6 +271,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         reads=frozenset(),
         fixed_reads=frozenset(),
         branches=solver.branches,
+        shared=solver.shared,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
     templates = {file: TEMPLATES[file] for file in texts.kind.files}
@@ -266,6 +291,12 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
+            "maps": dict.fromkeys(list_maps(texts.programs), nothing),
+            "schedules": list_schedules(list_maps(texts.programs)),
+            "exact_maps": not elementary_functions(
+                texts.programs[name] for name in list_maps(texts.programs)
+            ),
+            "refusals": numpy_reader.read_refusals(texts.files[texts.kind.files[2]]),
             "strict": texts.strict,
             "dop853": {field.name: [] for field in fields(Tableau)},
         },

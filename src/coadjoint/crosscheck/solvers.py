@@ -27,6 +27,8 @@ from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_poin
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
     CHOICES,
+    COMPILED_MAPS,
+    MAPS,
     Advance,
     Function,
     NumpySolver,
@@ -48,7 +50,9 @@ from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
+from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
@@ -89,7 +93,8 @@ def start_compiling(
     functions: Collection[str] = (),
 ) -> Compiling:
     """Have the objects of some targets compiled in a private folder."""
-    others = (name for name in list_choices(functions) if name not in CHOICES)
+    spared = {*CHOICES, *MAPS}.difference(COMPILED_MAPS)
+    others = (name for name in list_choices(functions) if name not in spared)
     objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
@@ -114,7 +119,7 @@ def check_solvers(
         CrossCheckError: A rung failed.
     """
     functions = _list_functions(subject, kind)
-    programs = select_programs(subject.programs.values(), kind)
+    programs = select_programs(subject.programs.values(), kind, subject.maps)
     subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
     text = arrange(programs)
     printed = SolverTexts(
@@ -129,7 +134,7 @@ def check_solvers(
     lines = check_solver_texts(printed)
     module = load_numpy(texts[kind.files[2]])
     numpy = NumpySolver(module, functions, _list_strict(subject))
-    advance = _load(subject.system.name, numpy, compiling, kind)
+    advance = _load(subject.system.name, numpy, list_choices(programs), compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
@@ -137,10 +142,10 @@ def check_solvers(
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
     equal, together = dict[str, int](), dict[str, int]()
     if compiling:
-        if all(ELEMENTARY[name].is_exact for name, _ in text.functions):
-            equal = check_bits(solvers, batch, size)
-        else:
-            together = check_together(solvers, batch, size)
+        methods = _list_equal(programs, [each for each in advance if "c" in advance[each]])
+        others = [each for each in advance if "c" in advance[each] and each not in methods]
+        equal = check_bits(solvers, batch, size, methods) if methods else equal
+        together = check_together(solvers, batch, size, others) if others else together
     return SolverFigures(
         coefficients=coefficients,
         lines=lines,
@@ -151,16 +156,33 @@ def check_solvers(
     )
 
 
+def _list_equal(programs: Mapping[str, Program], methods: Iterable[str]) -> list[str]:
+    """The methods whose bits are promised: nothing that they call depends on a library."""
+    maps = {name: programs[name] for name in list_maps(programs)}
+    others = [each for name, each in programs.items() if name not in maps]
+    return [
+        each
+        for each in methods
+        if all(
+            ELEMENTARY[function].is_exact
+            for function in list_called([*others, *(maps.values() if each in MAPS else ())])
+        )
+    ]
+
+
 def _list_strict(subject: Subject) -> tuple[bool, ...]:
     """Whether each row of the domain may not be zero."""
     return tuple(bound.strict for bound in getattr(subject.system, "DOMAIN", ()))
 
 
 def _load(
-    system: str, numpy: NumpySolver, compiling: Compiling, kind: SolverKind
+    system: str,
+    numpy: NumpySolver,
+    methods: Iterable[str],
+    compiling: Compiling,
+    kind: SolverKind,
 ) -> dict[str, dict[str, Advance]]:
     """What advances members, by method and target."""
-    methods = list_choices([*numpy.functions, *(["kinks"] if "KINKS" in numpy.module else [])])
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
         advance[method][target] = load_solver(made.result(), system, kind)

@@ -8,7 +8,7 @@ Read next: `coadjoint.crosscheck.hard`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import Any, Final
@@ -28,6 +28,7 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.program import LEVELS, Program, run
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
+from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Largest k of + - * / sqrt, and of kernels that call other functions (measured: 2.8 and 7.1).
 K_ARITHMETIC: Final = 4.0
@@ -86,12 +87,19 @@ class Subject:
         reference: Its equations.
         system: The loaded system.
         targets: The targets to evaluate.
+        maps: What explicit methods of its solvers make a step of.
     """
 
     programs: Mapping[str, Program]
     reference: Reference
     system: Any
     targets: tuple[str, ...]
+    maps: tuple[Program, ...] = field(default=(), kw_only=True)
+
+    def names_of(self, kind: SolverKind) -> list[str]:
+        """The names of all that solvers of a kind have: functions, and maps of the state alone."""
+        maps = [each.name for each in self.maps] if kind == SOLVER else []
+        return [*self.programs, *maps]
 
     @cached_property
     def work(self) -> dict[str, int]:

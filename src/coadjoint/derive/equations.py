@@ -25,7 +25,7 @@ from coadjoint.derive.mechanics.projection import back_then_onto, nearest_state
 from coadjoint.derive.mechanics.solver import definitions_under, solver_names
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
-from coadjoint.derive.setting import Setting, vector_names
+from coadjoint.derive.setting import STEP, Setting, vector_names
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
 
@@ -215,7 +215,7 @@ class Equations:
         """Names whose values depend on the member: state, inputs, time, and what rests on them."""
         names = {*self.setting.state, *self.setting.velocities, *self.setting.driving}
         names |= {name for each in self.spec.reconstruction for name in each.components}
-        names |= self.guesses.union(vector_names(len(self.setting.state)))
+        names |= self.guesses.union(vector_names(len(self.setting.state)), [STEP])
         for name, value in self.exact.definitions:
             if self.setting.field.reach(value) & names:
                 names.add(name)

@@ -7,7 +7,7 @@ Read next: `coadjoint.spec.routes`, where routes are registered; `coadjoint.deri
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import cast
 
@@ -34,10 +34,16 @@ def load_route(name: str) -> Callable[[Setting], Equations]:
     return cast(Callable[[Setting], Equations], module.derive)
 
 
-def make_setting(spec: Spec) -> Setting:
-    """The Setting of a Spec, with the symbols of all its routes: they live in one field."""
+def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Setting:
+    """The Setting of a Spec, with the symbols of all its routes: they live in one field.
+
+    Args:
+        spec: What was declared.
+        symbols: Names beyond those.
+        room: How many functions are to be called beyond those of the formulas.
+    """
     modules = [import_module(f"{_FOLDER}.{ROUTES[name].module}") for name in spec.routes]
     # routes that share their variables share the function that names them, too
     makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
     names = [name for make in (kinematics.symbols, *makers, *_ALWAYS) for name in make(spec)]
-    return settings.make_setting(spec, tuple(dict.fromkeys(names)))
+    return settings.make_setting(spec, tuple(dict.fromkeys([*names, *symbols])), room)

@@ -40,15 +40,18 @@ _ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
     name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
 }
 
+#: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
+#: is projected to, and in claims about that.
+BALL = 4
+
+#: The time that a flow takes, a symbol of the fields in which flows are derived. The flow is one of
+#: the member: `coadjoint.derive.flows`.
+STEP = "_h"
+
 
 def vector_names(count: int) -> tuple[str, ...]:
     """What components of a vector are called that stands below a state."""
     return tuple(f"_h{n + 1}" for n in range(count))
-
-
-#: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
-#: is projected to, and in claims about that.
-BALL = 4
 
 
 @dataclass(frozen=True)
@@ -318,12 +321,13 @@ def once(build: Callable[[Shared], Built]) -> Callable[[Shared], Built]:
     return look_up
 
 
-def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
+def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Setting:
     """The Setting of a Spec: symbols for all its components, room for all its function calls.
 
     Args:
         spec: What was declared.
         symbols: Names that the routes need beyond those of the spec.
+        room: How many functions are to be called beyond those of the formulas.
     """
     quantities: list[Declared] = [*spec.state, *spec.defined, *spec.parameters, *spec.driving]
     names = [*list_components(quantities)]
@@ -340,8 +344,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = ()) -> Setting:
     if calls_of(spec, "velocity"):  # a Legendre transform that is not linear, with numbers as well
         more += 4
     rolls_as_ball = spec.rolling and spec.rolling.contact and spec.rolling.contact.radius
-    room = _count_room(spec) * (1 + more) + BALL * bool(rolls_as_ball)
-    room += _count_numbers(spec)
+    room += _count_room(spec) * (1 + more) + BALL * bool(rolls_as_ball) + _count_numbers(spec)
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
         parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)

@@ -179,6 +179,13 @@ def _scale(equations: Equations, plain: Program) -> Program:
     return min(plain, scaled, key=cost)
 
 
+def lower_rows(
+    equations: Equations, name: str, lines: Sequence[tuple[str, Element]], state: tuple[str, ...]
+) -> Program:
+    """One Program from labelled elements, in names of its first argument and of definitions."""
+    return _program(equations, name, lines, (len(lines),), state)
+
+
 def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
     """A Program in which what vanishes everywhere is written as zero, where a row may hide it."""
     program = _program(rows.of, name, rows.lines, rows.shape, rows.state)

@@ -22,6 +22,7 @@ from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
 from coadjoint.lower.families import Loops
+from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.integrals import is_conserved
@@ -33,7 +34,10 @@ from coadjoint.spec.model import Reconstructed
 
 
 def kernel_context(
-    equations: Equations, programs: Mapping[str, Program], supported: int = 0
+    equations: Equations,
+    programs: Mapping[str, Program],
+    supported: int = 0,
+    maps: Maps | None = None,
 ) -> KernelContext:
     """What the generated files of a system say; of a spec's free text, nothing.
 
@@ -41,6 +45,7 @@ def kernel_context(
         equations: The emitted route.
         programs: Its functions.
         supported: How many claims are numerically supported and not proved.
+        maps: What explicit methods make a step of.
     """
     spec = equations.spec
     first, *others = spec.routes
@@ -64,6 +69,8 @@ def kernel_context(
         domain=tuple(bound for bound, _ in bounds(equations)),
         turning=tuple(v.name for v in spec.turning),
         is_bound=bool(equations.exact.residuals),
+        maps=() if maps is None else maps.programs,
+        refusals=() if maps is None else tuple(maps.refusals.items()),
     )
 
 

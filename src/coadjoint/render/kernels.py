@@ -19,6 +19,7 @@ from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.mapped import list_maps, list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -34,6 +35,7 @@ from coadjoint.render.printers import WIDTH, Printer
 from coadjoint.render.solvers import (
     arrange,
     arrange_function,
+    arrange_map,
     describe_noise,
     describe_structured,
     select_programs,
@@ -210,7 +212,8 @@ def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, 
 
 def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
-    solved, table = hold_sides(select_programs(context.programs, kind)), dop853()
+    solved = hold_sides(select_programs(context.programs, kind, context.maps))
+    table = dop853()
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
@@ -219,6 +222,10 @@ def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
         "loops": solver.loops and tell_loops(solver.loops),
         **arrange_sides(solved),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
+        "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
+        "schedules": list_schedules(list_maps(solved)),
+        "exact_maps": not elementary_functions(solved[name] for name in list_maps(solved)),
+        "refusals": dict(context.refusals) if kind == SOLVER else {},
         "strict": [bound.strict for bound in context.domain],
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
     }

@@ -19,6 +19,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
+from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.orbits import find_spheres, stays_on_orbits
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
@@ -138,6 +139,8 @@ class SolverText:
         fixed_reads: Names that ``fixed`` reads.
         branches: Whether the rates call functions of what moves that have branch points or jumps,
             as sqrt and log. A motion may be analytic there.
+        shared: What maps need of the parameters alone, which follows what is `fixed`.
+        shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
         kinks: What the sides are those of, which are the last parameters; None for no sides.
     """
@@ -153,6 +156,8 @@ class SolverText:
     reads: frozenset[str]
     fixed_reads: frozenset[str]
     branches: bool
+    shared: tuple[Line, ...] = ()
+    shared_reads: frozenset[str] = frozenset()
     loops: LoopText | None = None
     kinks: Program | None = None
 
@@ -212,6 +217,8 @@ def _arrange(
     )
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
+    maps = [programs[name] for name in list_maps(programs)]
+    shared = [Line(s.name, s.value) for each in maps for s in each.statements_at("parameters")]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
     branches = any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls)
     values = (value for program in programs.values() for value in program.values())
@@ -229,6 +236,8 @@ def _arrange(
         reads=_reads(lines),
         fixed_reads=_reads(fixed),
         branches=branches,
+        shared=tuple(shared),
+        shared_reads=_reads(shared),
         kinks=programs.get("kinks"),
     )
 
@@ -246,14 +255,17 @@ class FunctionText:
     reads: frozenset[str]
 
 
-def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> dict[str, Program]:
-    """The rates, what bounds the motion and its noise, by their names in the texts of solvers.
+def select_programs(
+    programs: Iterable[Program], kind: SolverKind = SOLVER, maps: Iterable[Program] = ()
+) -> dict[str, Program]:
+    """The rates, what bounds the motion, noise and maps, by their names in the texts of solvers.
 
     Where a motion stays on coadjoint orbits, also what acts on a state there.
 
     Args:
         programs: The functions of the kernel.
         kind: What is integrated. What is reconstructed has no bounds, and a projection leaves it.
+        maps: What explicit methods make a step of, which is of the state alone.
     """
     known = {program.name: program for program in programs}
     rates = reduce(join, (known[name] for name in kind.rates))
@@ -267,7 +279,21 @@ def select_programs(programs: Iterable[Program], kind: SolverKind = SOLVER) -> d
             for name, program in bounds.items()
         },
         **{name: known[name] for name in ACTION if action},
+        **{each.name: _with_own_names(each) for each in maps if kind == SOLVER},
     }
+
+
+def _with_own_names(program: Program) -> Program:
+    """A map with names of its own for what depends on parameters alone, which all maps share."""
+    names = {
+        each.name: f"_{program.name}{each.name}" for each in program.statements_at("parameters")
+    }
+    statements = tuple(
+        replace(each, name=names.get(each.name, each.name), value=rename(each.value, names))
+        for each in program.statements
+    )
+    outputs = tuple(replace(each, value=rename(each.value, names)) for each in program.outputs)
+    return replace(program, statements=statements, outputs=outputs)
 
 
 def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
@@ -320,15 +346,23 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     """The lines of a Program, whose rows go to ``_rows``.
 
     Args:
-        name: Its name in a solver. Of the rates, what depends on parameters alone is left out.
+        name: Its name in a solver. Of rates and maps, what depends on parameters alone is left out.
         program: What to arrange.
     """
     if program.table is not None:  # the template has the loops
         return FunctionText((), frozenset())
-    statements = program.statements_at("member") if name == "rates" else program.statements
+    shares = name == "rates" or list_maps([name])
+    statements = program.statements_at("member") if shares else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
     return FunctionText(tuple(lines), _reads(lines))
+
+
+def arrange_map(program: Program) -> FunctionText:
+    """The lines of a map with what it needs of the parameters, as the twin in NumPy has them."""
+    shared = [Line(each.name, each.value) for each in program.statements_at("parameters")]
+    lines = (*shared, *arrange_function(program.name, program).lines)
+    return FunctionText(lines, _reads(lines))
 
 
 def _count(function: FunctionText) -> int:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from coadjoint.build.compiler import Source
-from coadjoint.methods import STRUCTURED
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Methods that are generated.
@@ -24,7 +24,7 @@ class Choice:
     """A method of integration.
 
     Attributes:
-        name: One of `GENERATED`, `NOISY` or `STRUCTURED`.
+        name: One of `GENERATED`, `NOISY`, `STRUCTURED` or `MAPPED`.
         order: Of the method.
         few: Whether it is for members that fill no more than half of the longest vectors.
         kind: What it integrates.
@@ -49,7 +49,7 @@ class Choice:
         """Of the polynomials that are recorded of its steps."""
         if self.is_noisy:
             return 1
-        fixed = dict.fromkeys(STRUCTURED, 3) | {"dop853": 7, "rk4": 3}
+        fixed = dict.fromkeys((*STRUCTURED, *MAPPED), 3) | {"dop853": 7, "rk4": 3}
         return fixed.get(self.name, self.order)
 
     @property

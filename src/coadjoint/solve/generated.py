@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import STRUCTURED
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
-from coadjoint.solve.comparison import count_rows, list_kinks
+from coadjoint.solve.comparison import count_rows, has_same_bits, list_kinks
 from coadjoint.solve.constraints import describe_projection
 from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
@@ -69,6 +69,21 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     if target == "python":
         return "they are written for the targets c, c-fast and numpy"
     return ""
+
+
+def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
+    """Why methods that are a sequence of maps do not apply, as clauses, as far as they do not.
+
+    Args:
+        system: The System.
+        reconstruct: As `System.simulate` takes it.
+    """
+    if is_asked(reconstruct):
+        reason = "it moves the state alone, and what is reconstructed is asked for"
+        return dict.fromkeys(MAPPED, reason)
+    if isinstance(system, FamilySystem):
+        return dict.fromkeys(MAPPED, "its solvers are loops over equal members, without it")
+    return system._solvers.refusals
 
 
 def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
@@ -335,13 +350,13 @@ def _make_checkpoint(
     """The checkpoint of a run, which stands where it was broken off; None if none was asked for."""
     if request.checkpoint is None:
         return None
-    has_same_bits = request.target != "c-fast" and not system.elementary
+    same_bits = request.target != "c-fast" and has_same_bits(system, request.method)
     checkpoint = Checkpoint(
         path=request.checkpoint,
         system=system,
         request=request,
         run=run,
-        build="" if has_same_bits else stepper.key,
+        build="" if same_bits else stepper.key,
         recording=recording,
         signal=signal,
     )

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import STRUCTURED
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
 from coadjoint.solve.choices import GENERATED, Choice
 from coadjoint.solve.costs import choose_order
@@ -40,7 +40,8 @@ SCIPY = "scipy:"
 #: Tolerances where none are given.
 RTOL, ATOL = 1e-10, 1e-12
 #: Orders of the generated methods whose order is fixed.
-_ORDER = {"dop853": 8, "rk4": 4, "heun": 2} | {n: each.order for n, each in STRUCTURED.items()}
+_FIXED_STEP = {**STRUCTURED, **MAPPED}
+_ORDER = {"dop853": 8, "rk4": 4, "heun": 2} | {n: each.order for n, each in _FIXED_STEP.items()}
 
 
 @dataclass(frozen=True)
@@ -358,7 +359,7 @@ def _normal(method: Any) -> str:
 
 def _generated() -> tuple[str, ...]:
     """The methods that are generated, those that keep structure the last ones."""
-    return (*GENERATED, *STRUCTURED)
+    return (*GENERATED, *_FIXED_STEP)
 
 
 def _scipy() -> tuple[str, ...]:
@@ -387,7 +388,7 @@ def _check_step(name: str, step: float | None, *, tolerances: bool) -> None:
     Raises:
         KernelArgumentError: It is missing, or does not go with the method.
     """
-    if step is None and (name == "rk4" or name in STRUCTURED):
+    if step is None and (name == "rk4" or name in _FIXED_STEP):
         raise KernelArgumentError(
             f"method {name!r} has no estimate of its error; expected step=, the length of its "
             "steps.",

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 ROUNDING = 2.0**-48
 
 
-def _check_end(
+def end_where_rates_end(
     rates: Callable[[Lanes, Array, Array], Array], lanes: Lanes, h: Array, state: Array
 ) -> Array:
     """A state at which the rates are not finite is none: the motion ends before it."""
@@ -75,11 +75,10 @@ class RungeKutta4:
         total = total + 2.0 * k
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
-
         path = Cubic(h, x, end, lambda: first, lambda: self.rates(lanes, h, end))
         return Attempt(
             took=h,
-            state=_check_end(self.rates, lanes, h, end) if self.branches else end,
+            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=np.ones(h.shape, bool),
             path=path.follow,
             coefficients=path.coefficients,
@@ -121,7 +120,7 @@ class DormandPrince8:
         h = find_step(lanes, self.size, lanes.step, most)
         k, x = self._find_stages(lanes, h)
         if self.branches:
-            x = _check_end(self.rates, lanes, h, x)
+            x = end_where_rates_end(self.rates, lanes, h, x)
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
             accepted = self._control(lanes, h, most, k, x)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import STRUCTURED
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve import generated
 from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
@@ -106,7 +106,7 @@ def simulate(
             raise _explain_obstacle(system, name, obstacle)
     else:
         check_no_noise(system, method, seed)
-        obstacles = dict.fromkeys((*GENERATED, *STRUCTURED), obstacle) if obstacle else {}
+        obstacles = dict.fromkeys((*GENERATED, *STRUCTURED, *MAPPED), obstacle) if obstacle else {}
         if is_structured(method) and not obstacle:
             obstacles |= generated.find_structure_obstacles(system, find_kind(reconstruct))
         without = (
@@ -117,6 +117,8 @@ def simulate(
             )
         )
         obstacles |= {"taylor": without} if without else {}
+        if not obstacle and not is_auto(method):
+            obstacles |= generated.find_missing_maps(system, reconstruct)
         name = choose_method(system, method, step, obstacles, tolerances=tolerances)
         within = "the path within steps is asked for" if recorded else obstacle or system.stepwise
         within = within or stepwise

@@ -9,11 +9,13 @@ Read next: `coadjoint.solve.march`, which shares an ensemble among threads.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Final, Protocol
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library, tell_processor
 from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.calls import CStepper
@@ -23,6 +25,7 @@ from coadjoint.solve.ensemble import Ensemble, Record
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.ready import make_pack
 from coadjoint.solve.twins import NumpyStepper
+from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
     from coadjoint.solve.choices import Choice
@@ -85,6 +88,16 @@ class Solvers:
         if kind not in self._there:
             self._there[kind] = all((self.system.folder / file).is_file() for file in kind.files)
         return self._there[kind]
+
+    @cached_property
+    def refusals(self) -> dict[str, str]:
+        """Why methods that are a sequence of maps do not apply, as far as they do not."""
+        module = KernelModule(self.system, SOLVER.files[2])
+        known, found = (
+            module.value(name) if module.has(name) else {} for name in ("REFUSALS", "SCHEDULES")
+        )
+        missing = "its folder was generated without them: run `coadjoint regenerate`"
+        return {name: known.get(name, missing) for name in MAPPED if name not in found}
 
     def find_costs(self, kind: SolverKind) -> Costs:
         """What steps of a kind of solvers cost."""

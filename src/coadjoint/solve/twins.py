@@ -14,11 +14,12 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
-from coadjoint.methods import ACTION
+from coadjoint.methods import ACTION, MAPPED
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.limits import Limits
+from coadjoint.solve.methods.sequence import Maps, make_maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
@@ -104,6 +105,10 @@ class NumpyStepper:
             )
         if self._choice.name == "rk4":
             return RungeKutta4(self._rates, run.size, branches=self._branches)
+        if self._choice.name in MAPPED:
+            module = KernelModule(self._system, self._choice.kind.files[2])
+            maps = make_maps(module, self._choice.name)
+            return Maps(maps, self._rates, run.size, branches=self._branches)
         if self._choice.is_structured:
             gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}

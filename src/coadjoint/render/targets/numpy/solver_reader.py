@@ -23,6 +23,13 @@ _LOOPED = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 _TABLE = re.compile(r"^((?:TABLE|STAR)_\w+) = \(\n(.*?)^\)$", re.DOTALL | re.MULTILINE)
+_MAP_ARGUMENTS = ["state", "parameters", "_h"]
+#: The lines of the functions of maps, and the table of what does not apply.
+_MAPS = re.compile(
+    r'(?<=parameters are \(k,\) or \(k, N\)\."""\n).*?(?=    return _rows$)',
+    re.DOTALL | re.MULTILINE,
+)
+_REFUSALS = re.compile(r"^REFUSALS = (\{.*?^\})$", re.DOTALL | re.MULTILINE)
 _INDEX = re.compile(r"\d+|_k|_m|_k \+ 1|_k - _m")
 #: Lines that are the same in all systems; those about the path say what a row of the state is.
 _FIXED = (
@@ -36,6 +43,7 @@ _READ = {
     "state": re.compile(r"(\w+) = path\[(\d+)\]"),
     "driving": re.compile(r"\(?(\w+)\[0\], \1\[1\]\)? = \(driving\[(\d+)\], slopes\[\2\]\)"),
 }
+_ROW = re.compile(r"(\w+) = (state|parameters)\[(\d+)\]")
 _KEPT = re.compile(r"(\w+) = np\.empty\(path\.shape\[1:\]\)")
 _ZEROS = re.compile(r"(\w+) = np\.zeros\(\(order \+ 1, state\.shape\[1\]\)\)")
 _TERMS = "range(1, _k)"
@@ -75,6 +83,31 @@ def read_expand(text: str, file: str, *, is_looped: bool = False) -> SolverBody:
     return reading.body
 
 
+def read_map(text: str, name: str, file: str) -> SolverBody:
+    """What the function of a map does.
+
+    Args:
+        text: Of the file.
+        name: Of the map.
+        file: Its name, for messages.
+
+    Raises:
+        CrossCheckError: There is no such function, or it has a line that no template prints.
+    """
+    reading = _Reading(file)
+    function = reading.functions(text, _is_allowed).get(f"find_{name}")
+    if function is None or [each.arg for each in function.args.args] != _MAP_ARGUMENTS:
+        raise reading.refusal(f"there is no function find_{name} of {', '.join(_MAP_ARGUMENTS)}")
+    reading.read_map(function.body)
+    return reading.body
+
+
+def read_refusals(text: str) -> dict[str, str]:
+    """Why some methods do not apply, by their names."""
+    found = _REFUSALS.search(text)
+    return {} if found is None else ast.literal_eval(found[1])
+
+
 def read_rows(text: str, function: str, file: str) -> SolverBody:
     """What a function of a system with kinks does, which computes rows.
 
@@ -108,7 +141,8 @@ def read_tables(text: str, file: str) -> dict[str, tuple[float, ...]]:
 def rest(text: str, *, is_looped: bool) -> str:
     """The text without the lines of ``expand``, and without tables."""
     body = _LOOPED if is_looped else _BODY
-    return _HELD_BODY.sub(r"\1", _TABLE.sub(r"\1 = ()", body.sub("", text, count=1)))
+    text = _TABLE.sub(r"\1 = ()", body.sub("", _MAPS.sub("", text), count=1))
+    return _HELD_BODY.sub(r"\1", text)
 
 
 def _is_allowed(item: ast.stmt) -> bool:
@@ -117,7 +151,9 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
-            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS")
+            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS", "EXACT")
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
+            return name in ("REFUSALS", "SCHEDULES")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
             return name in ("KINKS", "STRUCTURED", "SPHERES") or name.startswith(
                 ("TABLE_", "STAR_")
@@ -164,6 +200,24 @@ class _Reading(Reader):
                 self.body.orders += self._read_orders(body)
             case _:
                 raise self.refusal("is no loop over orders", last)
+
+    def read_map(self, lines: list[ast.stmt]) -> None:
+        """All lines of the function of a map."""
+        docs, *inside, returned = lines
+        if not isinstance(docs, ast.Expr) or ast.unparse(returned) != "return _rows":
+            raise self.refusal("does not return the rows", returned)
+        made = False
+        for line in inside:
+            text = ast.unparse(line)
+            found = _ROW.fullmatch(text)
+            if text == "_rows = np.empty(state.shape)":
+                made = True
+            elif found and not self.body.lines:
+                self.body.inputs[found[1]] = (found[2], int(found[3]))
+            else:
+                self.body.lines.append(self._assignment(line))
+        if not made:
+            raise self.refusal("makes no rows")
 
     def read_held(self, lines: list[ast.stmt]) -> None:
         """All lines of a function that computes rows."""
