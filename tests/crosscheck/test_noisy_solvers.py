@@ -45,7 +45,7 @@ def made(monkeypatch):
     def make(method, folder=None, spoil=lambda texts: texts):
         system, files = plain.subject(SWING), plain.texts_of(SWING, spoil).files
         functions = _list_functions(system, SOLVER)
-        numpy = NumpySolver(*load_numpy(files["solver.py"]), functions)
+        numpy = NumpySolver(load_numpy(files["solver.py"]), functions)
         advance = {method: {"numpy": numpy.advance(method)}}
         if folder:
             path = compile_solver(files, folder, method, "exact")

@@ -300,7 +300,7 @@ def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exa
     system, files = subject(context), texts_of(context, spoil).files
     functions = _list_functions(system, SOLVER)
     strict = tuple(bound.strict for bound in context.domain)
-    numpy = NumpySolver(*load_numpy(files["solver.py"]), functions, strict)
+    numpy = NumpySolver(load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for method in methods if folder else ():
         path = compile_solver(files, folder, method, build)
