@@ -15,7 +15,7 @@ from coadjoint.methods import Sphere
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
-from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint
+from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint, _Scale
 from tests.solve.methods.algebras import (
     ALGEBRAS,
     Motion,
@@ -104,6 +104,18 @@ def test_similar_steps_are_no_poisson_maps(name: str) -> None:
     assert find_defect(motion, naive, x) > 1e-6
 
 
+def follow(motion: Motion, x: Any, end: float) -> Any:
+    """The motion itself, by many steps of the classical method of Runge and Kutta."""
+    count = 800
+    h = np.longdouble(end) / count
+    for _ in range(count):
+        one = motion.rates(x)
+        two = motion.rates(x + h / 2 * one)
+        three = motion.rates(x + h / 2 * two)
+        x = x + h / 6 * (one + 2 * two + 2 * three + motion.rates(x + h * three))
+    return x
+
+
 @pytest.mark.parametrize("order", COMPOSITIONS)
 @pytest.mark.parametrize(
     ("kind", "name"),
@@ -123,6 +135,8 @@ def test_order(kind: str, name: str, order: int) -> None:
         ends.append(end)
     measured = np.log2(float(abs(ends[0] - ends[1]).max() / abs(ends[1] - ends[2]).max()))
     assert measured == pytest.approx(order, abs=0.1)
+    gaps = [float(abs(end - follow(motion, x, 0.8)).max()) for end in ends]
+    assert gaps[2] < 0.3 * gaps[1] < 0.1 * gaps[0] + 1e-12
 
 
 def test_compositions_satisfy_the_conditions_of_their_order() -> None:
@@ -263,6 +277,18 @@ def test_a_step_that_is_not_solved_is_none() -> None:
             method, size = make_method(kind, "so(3)", motion), np.full(2, 0.1)
             _, _, solved, _ = method.advance(lanes, size, x, 0 * x)
         assert solved.tolist() == [True, False], kind
+
+
+def test_false_roots_of_a_quotient_are_refused() -> None:
+    """Zero and minus the quotient satisfy its equation, and none of them is one."""
+    sphere = Sphere((0, 1, 2))
+    start = np.array([[0.6], [0.0], [0.8]])
+    for scale, good in ((1.0, True), (0.0, False), (-1.0, False)):
+        quotient = _Scale(start, sphere)
+        quotient.scale = np.array([scale])
+        quotient.apply(start.copy())
+        assert quotient.is_root().tolist() == [good], scale
+    assert _Scale(0 * start, sphere).is_root().tolist() == [True]
 
 
 def test_lanes_do_not_move_each_other() -> None:

@@ -208,7 +208,7 @@ def render(written: Written) -> str:
 def _write_function(name: str, rows: list[str]) -> str:
     lines = [f"    rows[{i}] = {row};" for i, row in enumerate(rows)]
     return "\n".join([
-        f"static void find_{name}(const Block *block, V after, const V *x, V *restrict rows)",
+        f"INLINE void find_{name}(const Block *block, V after, const V *x, V *restrict rows)",
         "{",
         "    const V *v = x + STATE;",
         *lines,
