@@ -118,7 +118,7 @@ def our_competitors(name: str, states: Any) -> list[Competitor]:
     for method, tolerances in TOLERANCES.items():
         for tolerance in tolerances:
             order = choose_order(tolerance) if method == "taylor" else 8
-            stepper = load(system, Choice(method, order), "c-fast")
+            stepper = load(system, Choice(name=method, order=order), "c-fast")
 
             def call(stepper: Stepper = stepper, tolerance: float = tolerance) -> Any:
                 return propagate(stepper, name, states, tolerance)
@@ -160,7 +160,9 @@ def peer_competitors(name: str, states: Any) -> list[Competitor]:
 def reference_of(name: str, states: Any) -> tuple[Any, str]:
     """Exact final states, as far as we know them, and what a second integrator says of them."""
     end, parameters = SYSTEMS[name]
-    ours = propagate(load(load_system(name), Choice("taylor", 30), "c-fast"), name, states, 1e-18)
+    ours = propagate(
+        load(load_system(name), Choice(name="taylor", order=30), "c-fast"), name, states, 1e-18
+    )
     if not peers.has("heyoka"):
         return ours, "our own at 1e-18; heyoka is not installed and does not check it"
     peer = peers.Heyoka(name, parameters, 1e-18).propagate(states, end)

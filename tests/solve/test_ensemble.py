@@ -14,7 +14,11 @@ from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
-CHOICES = [Choice("taylor", 9), Choice("dop853", 8), Choice("rk4", 4)]
+CHOICES = [
+    Choice(name="taylor", order=9),
+    Choice(name="dop853", order=8),
+    Choice(name="rk4", order=4),
+]
 MEMBERS = 21
 SAMPLES = np.linspace(0, 3, 31)
 
@@ -159,7 +163,7 @@ class Rounds:
 def test_every_round_takes_all_members_on_whatever_the_load(threads, monkeypatch):
     """Each slice makes one call before a checkpoint, though its thread may begin late or early."""
     monkeypatch.setattr(NumpyStepper, "first_work", 7)
-    choice, checkpoint = Choice("rk4", 4), Rounds()
+    choice, checkpoint = Choice(name="rk4", order=4), Rounds()
     run = begin(choice)
     march(stepper(choice, "numpy"), run, 0.0, threads, checkpoint=checkpoint)
     for count, steps in enumerate(checkpoint.steps, 1):

@@ -241,7 +241,7 @@ def test_wrong_steps_are_not_taken(tmp_path, method):
         (tmp_path / file).write_text(text.replace(*wrong[method]) if file == "solver.c" else text)
     system = load_folder(tmp_path)
     with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
-        load_steps(system, Choice(method, {"rk4": 4}.get(method, 8)), "c")
+        load_steps(system, Choice(name=method, order={"rk4": 4}.get(method, 8)), "c")
 
 
 @pytest.mark.parametrize(("method", "size"), [("taylor", 5), ("taylor", 8), ("dop853", 5)])
@@ -348,7 +348,7 @@ def test_steps_that_leave_attitudes_are_not_taken(tops, tmp_path, method, order)
     for file, text in (tops | {"solver.c": spoiled}).items():
         (tmp_path / file).write_text(text)
     with pytest.raises(CrossCheckError, match="a wrong solver was compiled"):
-        load_steps(load_folder(tmp_path), Choice(method, order), "c")
+        load_steps(load_folder(tmp_path), Choice(name=method, order=order), "c")
 
 
 FIELDS = [[0, 0, k] for k in range(6)]

@@ -57,7 +57,7 @@ def test_solvers_of_every_system_compile_as_users_have_them(system, tmp_path, mo
     loaded = load_folder(ROOT / "generated" / system)
     for kind in list_kinds(loaded.functions):
         for name, order in (("taylor", 12), ("dop853", 8), ("rk4", 4)):
-            assert solvers.load(loaded, Choice(name, order, kind=kind), "c")
+            assert solvers.load(loaded, Choice(name=name, order=order, kind=kind), "c")
 
 
 @pytest.mark.parametrize(
@@ -275,9 +275,9 @@ def test_elementary_functions_agree_but_for_roundings(tmp_path):
 @pytest.mark.parametrize(
     ("choice", "old", "new"),
     [
-        (Choice("taylor", 5), "1.0 / 3,", "1.0 / 4,"),
-        (Choice("rk4", 4), "half = h * 0.5", "half = h * 0.25"),
-        (Choice("dop853", 8), "rest = 1.0 - part", "rest = 2.0 - part"),
+        (Choice(name="taylor", order=5), "1.0 / 3,", "1.0 / 4,"),
+        (Choice(name="rk4", order=4), "half = h * 0.5", "half = h * 0.25"),
+        (Choice(name="dop853", order=8), "rest = 1.0 - part", "rest = 2.0 - part"),
     ],
     ids=lambda value: str(value),
 )

@@ -27,7 +27,11 @@ FORMULAS = {
 }
 MEMBERS = 13
 G = np.linspace(0.5, 4.0, MEMBERS)
-CHOICES = [Choice("taylor", 9), Choice("dop853", 8), Choice("rk4", 4)]
+CHOICES = [
+    Choice(name="taylor", order=9),
+    Choice(name="dop853", order=8),
+    Choice(name="rk4", order=4),
+]
 
 
 @cache

@@ -64,7 +64,11 @@ POINTS: Final = 24
 #: have, and no multiple of them; and more than pairs need to be taken in blocks.
 SIZES: Final = (7, 17, MEMBERS, 64)
 #: Methods whose steps are compared with those of their twins.
-METHODS: Final = (Choice("rk4", 4), Choice("dop853", 8), Choice("taylor", ORDER))
+METHODS: Final = (
+    Choice(name="rk4", order=4),
+    Choice(name="dop853", order=8),
+    Choice(name="taylor", order=ORDER),
+)
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
 

@@ -241,7 +241,7 @@ def check_series(
         CrossCheckError: One is another number, or no point has a series.
     """
     state, parameters = names
-    source, choice = np.random.default_rng(len(state)), Choice("taylor", ORDER)
+    source, choice = np.random.default_rng(len(state)), Choice(name="taylor", order=ORDER)
     steppers = {
         target: load(system, choice, target)
         if target == "c"

@@ -40,15 +40,15 @@ from coadjoint.solver_kinds import SOLVER, SolverKind
 ORDER: Final = 7
 #: Each method as it is chosen for users.
 CHOICES: Final = {
-    "taylor": Choice("taylor", ORDER),
-    "dop853": Choice("dop853", 8),
-    "rk4": Choice("rk4", 4),
+    "taylor": Choice(name="taylor", order=ORDER),
+    "dop853": Choice(name="dop853", order=8),
+    "rk4": Choice(name="rk4", order=4),
 }
 #: Those of systems with noise, in addition.
-NOISY: Final = {name: Choice(name, 2, is_noisy=True) for name in ("heun", "midpoint")}
+NOISY: Final = {name: Choice(name=name, order=2, is_noisy=True) for name in ("heun", "midpoint")}
 #: Those that keep structure and are compared for every system that has them; compositions of them
 #: take the same steps, of other lengths.
-STRUCTURED: Final = {"midpoint": Choice("midpoint", 2)}
+STRUCTURED: Final = {"midpoint": Choice(name="midpoint", order=2)}
 #: Those that are a sequence of maps. Compilers make those that have all the maps.
 MAPS: Final = {name: Choice(name=name, order=each.order) for name, each in MAPPED.items()}
 COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")

@@ -97,7 +97,7 @@ class Request:
         """The generated method."""
         order = _ORDER.get(self.method) or choose_order(self.rtol)
         kind = find_kind(self.reconstruct)
-        return Choice(self.method, order, kind=kind, is_noisy=self.seed is not None)
+        return Choice(name=self.method, order=order, kind=kind, is_noisy=self.seed is not None)
 
 
 def check_state(system: System, state: Any) -> Array:

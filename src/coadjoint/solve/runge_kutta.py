@@ -75,7 +75,9 @@ class RungeKutta4:
         total = total + 2.0 * k
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
-        path = Cubic(h, x, end, lambda: first, lambda: self.rates(lanes, h, end))
+        path = Cubic(
+            h=h, start=x, end=end, first=lambda: first, last=lambda: self.rates(lanes, h, end)
+        )
         return Attempt(
             took=h,
             state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,

@@ -149,7 +149,7 @@ class LiePoisson:
         made = np.zeros(h.shape, np.uint64)
         for stage in self.stages:
             length = stage * h
-            arc = Arc(lanes, after + 0.5 * length, length, state, low)
+            arc = Arc(lanes=lanes, middle=after + 0.5 * length, length=length, state=state, low=low)
             found = self._search(arc)
             state, low = add_low(state, low, found.rise)
             after, solved, made = after + length, solved & found.solved, made + found.made

@@ -51,7 +51,11 @@ class Structured:
         end = np.where(solved, found, start)
         none = np.zeros(h.shape)
         path = Cubic(
-            h, start, end, lambda: self.rates(lanes, none, start), lambda: self.rates(lanes, h, end)
+            h=h,
+            start=start,
+            end=end,
+            first=lambda: self.rates(lanes, none, start),
+            last=lambda: self.rates(lanes, h, end),
         )
         return Attempt(
             took=np.where(solved, h, 0.0),
