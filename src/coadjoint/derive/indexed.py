@@ -78,6 +78,7 @@ def derive_family(equations: Equations) -> Family:
         small=small,
         turned=reader.turned,
         residuals=reader.residuals,
+        time=reader.time,
     )
 
 
@@ -120,6 +121,12 @@ class _Reader:
         """Components of the parameters that all members share."""
         known = {each.name: each for each in self.equations.spec.parameters}
         return tuple(c for name in self.declared.shared for c in known[name].components)
+
+    @property
+    def time(self) -> tuple[sympy.Symbol, ...]:
+        """The symbol of the time, if the spec declares it."""
+        time = self.equations.spec.time
+        return () if time is None else (sympy.Symbol(time.name),)
 
     @cached_property
     def components(self) -> dict[str, tuple[str, ...]]:
@@ -209,7 +216,7 @@ class _Reader:
 
     def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
         """An expression in generic symbols."""
-        left = value.free_symbols - set(new) - set(map(sympy.Symbol, self.shared))
+        left = value.free_symbols - {*new, *map(sympy.Symbol, self.shared), *self.time}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
             raise DerivationError(
