@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from coadjoint import pipeline
-from coadjoint.errors import KernelArgumentError
+from coadjoint.crosscheck import families as ladder
+from coadjoint.crosscheck.families import crosscheck_family
+from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.solve.family_steps import FamilyTwin
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import DRIVEN, write_driven
+from tests.families import DRIVEN, VORTICES, write_driven
 
 TIMES = np.linspace(0.0, 10.0, 6)
 RUNS = [("rk4", 0.01, 1e-9), ("dop853", None, 1e-9), ("auto", None, 1e-9)]
@@ -109,3 +111,36 @@ def test_a_run_with_events_and_between_samples(driven):
     assert len(times) > 2
     np.testing.assert_allclose(find_motion(times), 0.05, atol=1e-7)
     np.testing.assert_allclose(motion.at(TIMES)["q"][2], find_motion(TIMES), atol=1e-7)
+
+
+MOVING = "(2 + cos(t))*log((x[i] - x[j])^2 + (y[i] - y[j])^2)"
+#: How a text loses the time of a trajectory.
+SPOILED = [
+    ("kernel.c", "_run.timed = time_stride && !_single", "_run.timed = time_stride && 0"),
+    ("kernel.py", "time.reshape(1, -1)", "0.0 * time.reshape(1, -1)"),
+    ("kernel_python.py", "time = [time]", "time = [0.5 * time]"),
+]
+
+
+def test_the_ladder_passes_for_pairs_at_a_time():
+    """Sums over partners have a factor that depends on time: 50 digits, then bits."""
+    old = "log((x[i] - x[j])^2 + (y[i] - y[j])^2)"
+    text = VORTICES.replace("[hamiltonian]", '[time]\nname = "t"\n[hamiltonian]')
+    text = text.split("[claims]")[0].replace(old, MOVING)
+    assert MOVING in text
+    report = pipeline.verify(pipeline.render(read_spec_text(text, "moving.toml")))
+    assert set(report.rungs.values()) == {"passed"}
+    assert all(each.points > 20 for each in report.figures["rhs"].values())
+
+
+@pytest.mark.parametrize(("file", "old", "new"), SPOILED)
+def test_the_ladder_sees_a_time_that_is_lost(monkeypatch, file, old, new):
+    """Also where the template itself loses it."""
+    rendered = pipeline.render(read_spec_text(DRIVEN, "driven.toml"))
+    own, texts = rendered.family, dict(rendered.texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    monkeypatch.setattr(ladder, "POINTS", 2)
+    given = (own.windows, own.declared, own.family, own.context, texts, texts)
+    with load_texts(texts) as system, pytest.raises(CrossCheckError):
+        crosscheck_family(*given, system)

@@ -57,11 +57,8 @@ def derive_family(equations: Equations) -> Family:
     rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
-    named |= {
-        s
-        for rate in (*rates, *(r for e in reader.ends.values() for r in e))
-        for s in rate.free_symbols
-    }
+    every = (*rates, *(rate for end in reader.ends.values() for rate in end))
+    named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
     return Family(
         index=declared.index,
