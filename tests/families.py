@@ -136,6 +136,42 @@ J = "sum(i, R[i, 3, 1]*Pi[i, 1] + R[i, 3, 2]*Pi[i, 2] + R[i, 3, 3]*Pi[i, 3])"
 casimirs = ["det(R[i])"]
 conserved = ["energy", "J"]
 """
+DRIVEN = """
+title = "Oscillators in a row, driven alike"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { default = 1 }
+c = { default = 0.5 }
+F = { default = 0.3 }
+w = { default = 2 }
+[time]
+name = "t"
+[hamiltonian]
+h = "sum(i, p[i]^2/2 + k*q[i]^2/2 - F*cos(w*t)*q[i]) + sum(i, c*(q[i+1] - q[i])^2/2)"
+[observables]
+P = "sum(i, p[i])"
+"""
+
+
+def write_driven(n):
+    """So many of these oscillators."""
+    terms = [f"p_{k}^2/2 + k*q_{k}^2/2 - F*cos(w*t)*q_{k}" for k in range(n)]
+    terms += [f"c*(q_{k + 1} - q_{k})^2/2" for k in range(n - 1)]
+    return "\n".join(
+        [
+            'title = "O"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]\nk = { default = 1 }\nc = { default = 0.5 }",
+            'F = { default = 0.3 }\nw = { default = 2 }\n[time]\nname = "t"',
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
 
 
 def write_drag(n):

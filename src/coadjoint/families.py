@@ -100,6 +100,7 @@ class Family:
             1 for a ring, in which members may be each other's neighbours more than once.
         turned: The state of member i with its attitudes moved back to rotations; empty without any.
         residuals: What is zero where they are rotations.
+        time: The symbol of the time, which all members share, if the equations name it.
     """
 
     index: Index
@@ -116,3 +117,4 @@ class Family:
     small: int
     turned: tuple[Tree, ...] = ()
     residuals: tuple[Tree, ...] = ()
+    time: tuple[Symbol, ...] = ()

@@ -9,9 +9,9 @@ from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import CHAIN, RING, VORTICES
+from tests.families import CHAIN, DRIVEN, RING, VORTICES
 
-TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES}
+TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "driven": DRIVEN}
 #: A text, what stands in it, and what spoils it.
 SPOILED = [
     ("ring", "kernel.c", "before(_run.i, 1, _run.size)", "before(_run.i, 2, _run.size)"),
@@ -42,6 +42,16 @@ SPOILED = [
     ("vortices", "kernel.c", "_parts[0][_s][_l] += _value0", "_parts[0][_s][_l] += _value1"),
     ("vortices", "kernel.c", "_term0[_l] += _value2", "_term0[_l] += _value0"),
     ("vortices", "kernel.c", "_run.out + 1 * _run.size + _j", "_run.out + 0 * _run.size + _j"),
+    ("driven", "kernel.c", "_run.time + _run.n * _run.timed", "_run.time + _run.n"),
+    ("driven", "kernel.c", "double t = _run.timed ?", "double t = _shared ?"),
+    (
+        "driven",
+        "kernel.c",
+        "_run.time + _run.n * _run.timed",
+        "_run.parameters + (0) * _run.row + _run.n * _run.own",
+    ),
+    ("driven", "kernel.py", "t = time[0]", "t = parameters[0]"),
+    ("driven", "kernel_python.py", "t = time[0]", "t = state[0]"),
     ("vortices", "kernel.c", "(_turned ? _value2 : _value0)", "(_turned ? _value0 : _value2)"),
 ]
 

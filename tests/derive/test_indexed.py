@@ -16,6 +16,7 @@ from tests.families import (
     BEADS,
     CHAIN,
     DRAG,
+    DRIVEN,
     NECKLACE,
     RING,
     SPRINGS,
@@ -31,6 +32,7 @@ from tests.families import (
     write_beads,
     write_chain,
     write_drag,
+    write_driven,
     write_necklace,
     write_ring,
     write_springs,
@@ -48,6 +50,7 @@ SYSTEMS = {
     "tops": (TOPS, write_tops, (2, 3)),
     "drag": (DRAG, write_drag, (2, 3)),
     "springs": (SPRINGS, write_springs, (2, 3, 5)),
+    "driven": (DRIVEN, write_driven, (2, 3, 5)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 

@@ -15,6 +15,7 @@ from tests.families import (
     BEADS,
     CHAIN,
     DRAG,
+    DRIVEN,
     NECKLACE,
     PEAKONS,
     RING,
@@ -112,6 +113,23 @@ def test_forces_of_members_are_part_of_what_is_proved():
     changes = (*ring, (CLAIM + ", ", "conserved = ["), ("[observables]", wrong))
     with pytest.raises(ClaimError, match="refuted"):
         prove(read(CHAIN, *changes)).require()
+
+
+def test_time_changes_the_energy_of_all_members():
+    """The energy is not claimed to be kept; what an equal force adds to all momenta is known."""
+    claims = prove(read(DRIVEN)).require().claims
+    energy = [claim for claim in claims if claim.statement.startswith("the energy")]
+    said = "the energy changes by its explicit dependence on time: dh/dt = dh/dt|explicit"
+    assert [claim.statement for claim in energy] == [f"{said}, for every N >= 2"]
+    free = (" + k*q[i]^2/2", ""), ("k = { default = 1 }\n", "")
+    J = "sum(i, p[i] - F*sin(w*t)/w)"
+    kept = prove(read(f'{DRIVEN}[claims]\nconserved = ["{J}"]', *free)).require().claims
+    assert any(c.statement == f"{J} is conserved, for every N >= 2" for c in kept)
+    with pytest.raises(ClaimError):
+        prove(read(f'{DRIVEN}[claims]\nconserved = ["energy"]')).require()
+    wrong = J.replace("sin", "cos")
+    with pytest.raises(ClaimError):
+        prove(read(f'{DRIVEN}[claims]\nconserved = ["{wrong}"]', *free)).require()
 
 
 def test_routes_of_members_are_compared_and_friction_has_a_power():

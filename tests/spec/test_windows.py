@@ -156,6 +156,7 @@ MISFITS = [
         "Rayleigh's function has a sum over pairs",
     ),
     (("[dissipation]\nR =", "[forces]\nv ="), "a force has a sum over members"),
+    (("[hamiltonian]", "[time]\n[hamiltonian]"), "there are tables [time] and [lagrangian]"),
 ]
 
 

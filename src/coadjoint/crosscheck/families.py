@@ -84,6 +84,7 @@ class _Window:
         parameters: Likewise.
         totals: Names of the rows of the function ``observables``.
         residuals: Those of the function ``constraint_residual``.
+        time: Of the time, if there is one.
     """
 
     reference: Reference
@@ -92,6 +93,7 @@ class _Window:
     parameters: tuple[str, ...]
     totals: tuple[str, ...]
     residuals: tuple[str, ...]
+    time: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
@@ -128,13 +130,17 @@ class _Window:
                 )
                 for name in same
             ),
+            time=tuple(map(str, family.time)),
         )
 
-    def evaluate(self, function: str, state: Array, parameters: Array) -> list[Any]:
+    def evaluate(
+        self, function: str, state: Array, parameters: Array, time: float | None
+    ) -> list[Any]:
         """A function at a point to 50 digits, its rows in the order of a family."""
         own = self.reference.state
         inputs = dict(zip(self.parameters, parameters.tolist(), strict=True))
         inputs |= zip(self.state, state.tolist(), strict=False)
+        inputs |= dict.fromkeys(self.time, time)
         if function == "jacobian_vector":
             place = {name: n for n, name in enumerate(own, 1)}
             vector = state[len(self.state) :].tolist()
@@ -193,7 +199,7 @@ def crosscheck_family(
             _check_window(window, name, each, system, chosen, figures[name])
         sized = system.resize({system.index.name: window.size})
         names, made = (window.state, window.parameters), {"c", "numpy"} & set(chosen)
-        if made:
+        if made and not family.time:
             check_series(window.reference, names, sized, sorted(made))
     for each in loops.values():
         if each.partners is not None and "numpy" in chosen:
@@ -205,7 +211,7 @@ def crosscheck_family(
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if BUILDS[each].needs_compiler):
-        for choice in METHODS:
+        for choice in () if family.time else METHODS:
             compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):
@@ -255,17 +261,19 @@ def _check_window(
     largest = _threshold(loops, window.size)
     states = list(_points(source, rows, POINTS))
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
+    times = source.normal(size=POINTS).tolist() if window.time else [None] * POINTS
     exact = {
         n: value
         for n in range(POINTS)
-        for value in _evaluate(window, name, states[n], parameters[n])
+        for value in _evaluate(window, name, states[n], parameters[n], times[n])
     }
     if not exact:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
         k = ulp = 0.0
         for n, expected in exact.items():
-            computed = sized.evaluate(name, states[n], parameters[n], target=target)
+            given = states[n], parameters[n]
+            computed = sized.evaluate(name, *given, time=times[n], target=target)
             for row, (value, bounded) in enumerate(zip(np.ravel(computed), expected, strict=True)):
                 error = error_in_envelopes(float(value), bounded)
                 k, ulp = max(k, error), max(ulp, error_in_ulp(float(value), bounded))
@@ -281,10 +289,12 @@ def _check_window(
         figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(exact))
 
 
-def _evaluate(window: _Window, name: str, state: Array, parameters: Array) -> list[list[Any]]:
+def _evaluate(
+    window: _Window, name: str, state: Array, parameters: Array, time: float | None
+) -> list[list[Any]]:
     """The exact rows at a point; none where the equations have no value."""
     try:
-        return [window.evaluate(name, state, parameters)]
+        return [window.evaluate(name, state, parameters, time)]
     except OutsideDomain:
         return []
 
@@ -305,10 +315,11 @@ def _compare_targets(
             state = source.normal(size=(sized.rows(name).size, *batch))
             for shape in dict.fromkeys(((), batch)):
                 parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
-                one = sized.evaluate(name, state, parameters, target="numpy")
+                time = source.normal(size=shape) if sized.TIME else None
+                one = sized.evaluate(name, state, parameters, time=time, target="numpy")
                 one = np.reshape(one, (-1, *batch))  # the energy has no rows
                 for target in equal:
-                    other = sized.evaluate(name, state, parameters, target=target)
+                    other = sized.evaluate(name, state, parameters, time=time, target=target)
                     exact = target in BUILDS[target].exact and not calls
                     different = _find_differences(one, np.reshape(other, one.shape), exact=exact)
                     if different.any():

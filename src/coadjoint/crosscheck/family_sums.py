@@ -44,8 +44,11 @@ def check_blocks(system: Any, loops: Loops) -> float:
     sized, source = system.resize({system.index.name: MEMBERS}), np.random.default_rng(MEMBERS)
     state = source.normal(size=loops.blocks * MEMBERS)
     parameters = source.uniform(0.5, 2.0, sized.PARAMETERS.size)
-    arrays = {"state": state, "parameters": parameters}
-    found = np.reshape(sized.evaluate(loops.name, state, parameters, target="numpy"), (-1, MEMBERS))
+    time = source.normal(size=1) if sized.TIME else None
+    arrays = {"state": state, "parameters": parameters, "time": time}
+    now = None if time is None else time[0]
+    values = sized.evaluate(loops.name, state, parameters, time=now, target="numpy")
+    found = np.reshape(values, (-1, MEMBERS))
     expected = np.stack([_find_rates(loops, arrays, i) for i in range(MEMBERS)], axis=1)
     has_values = np.isfinite(expected).all(axis=0)
     if not has_values.any():

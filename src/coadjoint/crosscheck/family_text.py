@@ -31,6 +31,7 @@ _SIZES = (1, 2, 3, 5)
 _C_PLACE = re.compile(
     r"_run\.(state|parameters) \+ \((.*)\) \* _run\.(stride|row) \+ _run\.n( \* _run\.own)?"
 )
+_C_TIME = "_run.time + _run.n * _run.timed"
 
 #: Lines of a tile that add terms to sums, and say where sums are.
 _C_ADDS = re.compile(r"_parts|_term\d+\[_l\] \+=|double \*const _term\d+ =")
@@ -89,7 +90,8 @@ def check_family_text(
             lines[name] += _check_pairs(loops, texts["kernel.c"])
     shared, indexed = context.shared, context.indexed
     rows = (sum(len(each.components) for each in group) for group in (shared, indexed))
-    lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], *rows), texts)
+    if not context.time:
+        lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], *rows), texts)
     return lines
 
 
@@ -166,7 +168,7 @@ def _check_place(read: Read, found: _Text, is_periodic: bool, file: str, name: s
             row = read.rows + read.blocks * size + (0 if read.shift is None else member % size)
             if array != read.array or _evaluate(text, {"i": i, "j": j, "size": size}) != row:
                 raise failure(f"{file}: {name} reads {read.name} at {array}[{text}]", name)
-    step = ""
+    step = "_run.timed" if read.array == "time" else ""
     if read.array == "parameters":
         step = "_shared" if read.shift is None or read.of_partner else "_indexed"
     elif read.of_partner:
@@ -245,6 +247,9 @@ def _read_c_lane(line: str, read: _Text, part: str, name: str) -> bool:
 def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
     """One statement of C: a place, a value, a statement or a result; others belong to the loop."""
     if place := re.fullmatch(r"const double \*const _at_(\w+) = (.*)", line):
+        if place[2] == _C_TIME:
+            read.places[place[1]] = ("time", "0")
+            return
         where = _C_PLACE.fullmatch(place[2])
         if (
             not where
@@ -254,7 +259,7 @@ def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
             raise failure(f"kernel.c: {part}: {line!r} is no place", name)
         row = where[2].replace("_run.", "").replace("_j", "j")
         read.places[place[1]] = (where[1], row)
-    elif step := re.fullmatch(r"const double (\w+) = (\w+) \? _at_\1\[_l\] : _one_\1", line):
+    elif step := re.fullmatch(r"const double (\w+) = ([\w.]+) \? _at_\1\[_l\] : _one_\1", line):
         read.steps[step[1]] = step[2]
     elif value := re.fullmatch(r"const double (\w+) = _at_(\w+)\[_l\]", line):
         if value[1] != value[2]:

@@ -57,11 +57,8 @@ def derive_family(equations: Equations) -> Family:
     rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
-    named |= {
-        s
-        for rate in (*rates, *(r for e in reader.ends.values() for r in e))
-        for s in rate.free_symbols
-    }
+    every = (*rates, *(rate for end in reader.ends.values() for rate in end))
+    named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
     return Family(
         index=declared.index,
@@ -78,6 +75,7 @@ def derive_family(equations: Equations) -> Family:
         small=small,
         turned=reader.turned,
         residuals=reader.residuals,
+        time=reader.time,
     )
 
 
@@ -120,6 +118,12 @@ class _Reader:
         """Components of the parameters that all members share."""
         known = {each.name: each for each in self.equations.spec.parameters}
         return tuple(c for name in self.declared.shared for c in known[name].components)
+
+    @property
+    def time(self) -> tuple[sympy.Symbol, ...]:
+        """The symbol of the time, if the spec declares it."""
+        time = self.equations.spec.time
+        return () if time is None else (sympy.Symbol(time.name),)
 
     @cached_property
     def components(self) -> dict[str, tuple[str, ...]]:
@@ -209,7 +213,7 @@ class _Reader:
 
     def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
         """An expression in generic symbols."""
-        left = value.free_symbols - set(new) - set(map(sympy.Symbol, self.shared))
+        left = value.free_symbols - {*new, *map(sympy.Symbol, self.shared), *self.time}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
             raise DerivationError(

@@ -52,7 +52,7 @@ class Read:
 
     Attributes:
         name: In texts.
-        array: ``state`` or ``parameters``.
+        array: ``state``, ``parameters`` or ``time``.
         rows: Rows before it that do not depend on N.
         blocks: Rows before it for each member.
         shift: How far behind member i the member is that it belongs to; None if all members share
@@ -208,6 +208,9 @@ class _Lowering:
         for n, symbol in enumerate(family.shared):
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="parameters", rows=n, blocks=0, shift=None)
+        for symbol in family.time:
+            name = naming.find(symbol.name)
+            self._reads[symbol] = Read(name=name, array="time", rows=0, blocks=0, shift=None)
         for (component, shift), symbol in family.neighbours.items():
             name = naming.find(f"{component.name}_{'p' if shift > 0 else 'm'}{abs(shift)}")
             self._reads[symbol] = replace(rows[component], name=name, shift=shift)
@@ -318,7 +321,7 @@ class _Lowering:
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
             of_pair: Whether both members of a pair have them: those of member j follow.
         """
-        own, shared = self.family.states, self.family.shared
+        own, shared = self.family.states, (*self.family.shared, *self.family.time)
         is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
         ways = (leave,) if is_long else (factor_whole, factor, leave)
         forms = ([form(tree, own, shared) for tree in trees] for form in ways)

@@ -59,6 +59,8 @@ class _Symbols:
         """The symbol that stands in the row of a name."""
         family = self._family
         count = len(family.states)
+        if read.array == "time":
+            return family.time[read.rows]
         if read.array == "parameters":
             if read.shift is None:
                 return family.shared[read.rows]

@@ -129,6 +129,7 @@ def family_context(
         loops=loops,
         supported=supported,
         unit_of_time=spec.units.time,
+        time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
     )
 
 

@@ -153,6 +153,8 @@ def _c_place(read: Read, is_periodic: bool) -> str:
             if is_periodic:
                 member = f"{word}(_run.i, {abs(read.shift)}, _run.size)"
         row = _row(read, member).replace("size", "_run.size").replace("_run._run.", "_run.")
+    if read.array == "time":
+        return "_run.time + _run.n * _run.timed"
     if read.array == "state":
         return f"_run.state + ({row}) * _run.stride + _run.n"
     return f"_run.parameters + ({row}) * _run.row + _run.n * _run.own"
@@ -160,6 +162,8 @@ def _c_place(read: Read, is_periodic: bool) -> str:
 
 def _c_step(read: Read) -> str:
     """What says in C whether lanes have values of their own."""
+    if read.array == "time":
+        return "_run.timed"
     if read.array == "state":
         return "_batch" if read.of_partner else ""
     return "_shared" if read.shift is None or read.of_partner else "_indexed"
@@ -267,6 +271,7 @@ class FamilyContext:
         repeating: Names of the quantities of which they repeat.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
+        time: The time, if the functions take it: then there are no solvers in C, and no series.
     """
 
     name: str
@@ -285,6 +290,7 @@ class FamilyContext:
     repeating: tuple[str, ...] = ()
     supported: int = 0
     unit_of_time: str = "s"
+    time: tuple[Quantity, ...] = ()
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
@@ -307,6 +313,7 @@ def render_family(context: FamilyContext) -> dict[str, str]:
         return {
             file: _render_file(context, template, target, identity)
             for file, (template, target) in FAMILY_FILES.items()
+            if not (context.time and file.startswith("solver."))
         }
 
     return identify(render)
@@ -325,6 +332,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "lanes": LANES,
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
+        "time": ", time" if context.time else "",
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
         "state": rows_of(context.state),
@@ -341,6 +349,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "SHARED": list(map(declaration, context.shared)),
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
+            **({"TIME": list(map(declaration, context.time))} if context.time else {}),
         },
         "shapes": [
             f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
@@ -352,6 +361,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
+            *(["time=TIME"] * bool(context.time)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],

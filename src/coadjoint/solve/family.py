@@ -66,6 +66,7 @@ class FamilySystem(System):
         unit_of_time: str = "s",
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
         repeating: Sequence[str] = (),
+        time: Quantities | None = None,
     ) -> None:
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
@@ -88,6 +89,7 @@ class FamilySystem(System):
             },
             elementary,
             identity,
+            time=time,
             unit_of_time=unit_of_time,
         )
 
@@ -152,6 +154,7 @@ class FamilySystem(System):
             unit_of_time=self.unit_of_time,
             defaults=self._defaults,
             repeating=self._repeating,
+            time=self.TIME,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
@@ -181,7 +184,8 @@ class FamilySystem(System):
     def __repr__(self) -> str:
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
-        return f"<System {self.name}: {members}; state {state}; parameters {parameters or 'none'}>"
+        told = f"{members}; state {state}; parameters {parameters or 'none'}"
+        return f"<System {self.name}: {told}{'; time ' * bool(self.TIME)}{', '.join(self.TIME)}>"
 
 
 def lacks_size(system: System) -> bool:

@@ -330,6 +330,8 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
         members: How many trajectories there are.
         is_auto: Whether it does not apply either where ``dop853`` is faster.
     """
+    if system.TIME:
+        return "its equations name the time, of which series of equal members know nothing"
     if not (system.folder / "solver.py").is_file():
         return "its folder was generated without series: run `coadjoint regenerate`"
     own, pairs = system.count_series(order, members)
@@ -352,8 +354,8 @@ def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwi
 
 
 def _find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """The same, of a system that has none yet."""
-    if target in FLAGS:
+    """The same, of a system that has none yet; with the time the twin leads all steps."""
+    if target in FLAGS and not system.TIME:
         try:
             return load(system, choice, target)
         except (CompilerError, CrossCheckError) as error:

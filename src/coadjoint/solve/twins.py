@@ -160,9 +160,10 @@ class NumpyStepper:
         """Rows of functions of the kernel, one below the other, some time after the lanes."""
         driving, inputs = np.ascontiguousarray(self._drive(lanes, after)), self._system.INPUTS.size
         parameters = np.ascontiguousarray(lanes.parameters)  # as kernels in C read them
-        named = dict(self._system.fixed) | ({"inputs": driving[:inputs]} if inputs else {})
+        named = {"inputs": driving[:inputs]} if inputs else {}
         if self._system.TIME:
             named["time"] = driving[inputs:]
+        named |= self._system.fixed
         rows = []
         for name in functions:
             own = np.ascontiguousarray(state[: self._sizes[name]])

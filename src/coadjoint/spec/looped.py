@@ -29,6 +29,7 @@ TABLES = (
     "poisson",
     "variables",
     "parameters",
+    "time",
     "definitions",
     "lagrangian",
     "hamiltonian",
@@ -57,6 +58,10 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     for name, part in file.variables.items():
         if part.index is None:
             yield f"the variable {name} has no index"
+    if file.time is not None:
+        for table in ("lagrangian", "lax"):
+            if getattr(file, table) is not None:
+                yield f"there are tables [time] and [{table}]"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:
