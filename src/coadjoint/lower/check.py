@@ -135,7 +135,7 @@ def _find_differing_residues(equations: Equations, program: Program) -> Iterator
     source, reference = random.Random(1), Reference(equations, implicit=False)  # noqa: S311
     names, reached = program.names, 0
     for prime in islice(primes(), TRIES):
-        number, call = partial(residue, prime=prime), partial(_call, prime=prime)
+        number, call = partial(residue, prime=prime), partial(call_residue, prime=prime)
         inputs = {name: Residue(source.randrange(1, prime), prime) for name in names}
         try:
             computed = run(program, inputs, number, call)
@@ -157,7 +157,7 @@ def _find_differing_residues(equations: Equations, program: Program) -> Iterator
     )
 
 
-def _call(function: str, *arguments: Residue, prime: int) -> Residue:
+def call_residue(function: str, *arguments: Residue, prime: int) -> Residue:
     """A number that an elementary function has at an argument: any, but always the same.
 
     Lowering knows no relation between values of functions, so it may not need any.

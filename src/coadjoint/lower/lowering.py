@@ -182,8 +182,11 @@ def _scale(equations: Equations, plain: Program) -> Program:
 def lower_rows(
     equations: Equations, name: str, lines: Sequence[tuple[str, Element]], state: tuple[str, ...]
 ) -> Program:
-    """One Program from labelled elements, in names of its first argument and of definitions."""
-    return _program(equations, name, lines, (len(lines),), state)
+    """One Program from labelled elements, in names of its first argument and of definitions.
+
+    Definitions stand: products of angles, multiplied out, have no end.
+    """
+    return _program(equations, name, lines, (len(lines),), state, is_short=True)
 
 
 def _clear_hidden_zeros(equations: Equations, name: str, rows: Rows) -> Program:
@@ -233,10 +236,12 @@ def _program(
     closed: frozenset[str] = frozenset(),
     solve: Solve | None = None,
     nested: int = 0,
+    *,
+    is_short: bool = False,
 ) -> Program:
     """One Program from labelled elements of names, the state being the first of them."""
     asked = outputs if solve is None else entries_of(solve, outputs)
-    shorter = [(label, _shorten(equations, element)) for label, element in asked]
+    shorter = [(n, each if is_short else _shorten(equations, each)) for n, each in asked]
     definitions, parts = inline_single_uses(equations, shorter, closed)
     lowering = Lowering(
         equations, [element for _, element in (*definitions, *parts)], scales, nested
