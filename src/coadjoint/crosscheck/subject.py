@@ -7,7 +7,7 @@ Read next: `coadjoint.crosscheck.hard`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
@@ -148,7 +148,10 @@ class Subject:
     @cached_property
     def inside(self) -> Array:
         """Points of the domain, each name of the widest function in a row; perhaps none."""
-        names = self._widest.names
+        return self.find_inside(self._widest.names)
+
+    def find_inside(self, names: Sequence[str]) -> Array:
+        """The same with rows for some names."""
         of = self.reference.of if isinstance(self.reference, Replayed) else self.reference
         if not isinstance(of, Derived):
             return np.empty((len(names), 0))

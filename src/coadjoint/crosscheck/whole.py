@@ -59,7 +59,7 @@ class WholeSubject(Subject):
     @property
     def inside(self) -> Array:
         """As `Subject.inside`."""
-        return self.base.inside
+        return self.base.find_inside(self._widest.names)
 
     def evaluate(self, function: str, batch: Batch, target: str) -> Array:
         """As `Subject.evaluate`, of a function of the kernel."""

@@ -134,6 +134,8 @@ def _find_values(equations: Equations) -> dict[str, Element]:
     setting, found = equations.setting, dict[str, Element]()
     field, known = setting.field, {*setting.state, *setting.parameters}
     for definition, names in frame_components(setting.spec):
+        if not {variable.name for variable in setting.spec.state} <= setting.values.keys():
+            break  # equations of a projection or a flow know components alone
         parts = entries(interpret(definition.tree, setting.values, field))
         regular = all(
             field.reach(part) <= known

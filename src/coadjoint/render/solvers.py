@@ -284,10 +284,8 @@ def select_programs(
 
 
 def _with_own_names(program: Program) -> Program:
-    """A map with names of its own for what depends on parameters alone, which all maps share."""
-    names = {
-        each.name: f"_{program.name}{each.name}" for each in program.statements_at("parameters")
-    }
+    """A map with names of its own, since the rates and all maps share what parameters give."""
+    names = {each.name: f"_{program.name}{each.name}" for each in program.statements}
     statements = tuple(
         replace(each, name=names.get(each.name, each.name), value=rename(each.value, names))
         for each in program.statements
