@@ -261,7 +261,8 @@ def test_points_lie_where_the_equations_have_values(tmp_path):
     reference = pipeline.Reference(found.equations)
 
     def report(system):
-        return crosscheck(found.programs, found.texts, reference, system, ("numpy",), 600)
+        maps, targets = found.maps, ("numpy",)
+        return crosscheck(found.programs, found.texts, reference, system, targets, 600, maps=maps)
 
     figures = report(load_folder(tmp_path)).figures["observables"]["numpy"]
     assert figures.points > 60

@@ -165,13 +165,14 @@ class NumpySolver:
             maps = [(self.module[f"find_{each}"], part) for each, part in parts]
             return Maps(maps, rates, size, branches=self.branches)
         if name in self.module.get("STRUCTURED", ()):
-            return Structured(name, size, {"rates": rates})
+            return Structured(name, size, {"rates": rates}, branches=self.branches)
         return METHODS[name](
             rates=rates,
             fields=self._fields,
             size=size,
             seed=ensemble.seed,
             bound=ensemble.bound,
+            branches=self.branches,
         )
 
     def advance(self, name: str) -> Advance:

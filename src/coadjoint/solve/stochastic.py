@@ -20,6 +20,7 @@ import numpy as np
 
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.solve.normals import draw_normals
+from coadjoint.solve.runge_kutta import end_where_rates_end
 from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step, larger
 
 if TYPE_CHECKING:
@@ -51,15 +52,23 @@ class _Noisy:
         size: The step.
         seed: Of the noise.
         bound: The largest size of a normal number.
+        branches: Whether the drift has branch points: it has to be finite after each step.
     """
 
     tries_again = halves = False
 
     def __init__(
-        self, *, rates: Function, fields: Function, size: float, seed: int, bound: float
+        self,
+        *,
+        rates: Function,
+        fields: Function,
+        size: float,
+        seed: int,
+        bound: float,
+        branches: bool = False,
     ) -> None:
         self.rates, self.fields, self.size = rates, fields, size
-        self.seed, self.bound = seed, bound
+        self.seed, self.bound, self.branches = seed, bound, branches
 
     def find_noise(self, lanes: Lanes, h: Array, process: int) -> Array:
         """The increment of a Wiener process over the length of the step."""
@@ -89,7 +98,7 @@ class _Noisy:
         start = lanes.state
         return Attempt(
             took=np.where(accepted, h, 0.0),
-            state=end,
+            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=accepted,
             path=lambda after: np.asarray(start + after / h * (end - start)),
             coefficients=lambda: np.stack([start, (end - start) / h], axis=1),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.methods import STRUCTURED
+from coadjoint.solve.runge_kutta import end_where_rates_end
 from coadjoint.solve.steps import Attempt, Cubic, Lanes, Left, find_fixed_step
 
 if TYPE_CHECKING:
@@ -33,14 +34,17 @@ class Structured:
         size: The step.
         functions: ``rates`` and what the method needs, by their names: of lanes, some time after
             where these are, at a state, and what else they take.
+        branches: Whether the rates have branch points: they have to be finite after each step.
     """
 
     tries_again = halves = False
 
-    def __init__(self, name: str, size: float, functions: Mapping[str, Any]):
+    def __init__(
+        self, name: str, size: float, functions: Mapping[str, Any], *, branches: bool = False
+    ) -> None:
         own = STRUCTURED[name]
         make = import_module(f"coadjoint.solve.methods.{own.file}").make
-        self.rates, self.size = functions["rates"], size
+        self.rates, self.size, self.branches = functions["rates"], size, branches
         self.method: LiePoisson = make(functions, size, own.order)
 
     def try_step(self, lanes: Lanes) -> Attempt:
@@ -59,7 +63,7 @@ class Structured:
         )
         return Attempt(
             took=np.where(solved, h, 0.0),
-            state=end,
+            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=solved,
             path=path.follow,
             coefficients=path.coefficients,
