@@ -839,6 +839,46 @@ class Restricted(Motion):
         """The energy at a point."""
         return self.whole.energy(self.complete(point))
 
+    def tensor(self, point):
+        """The matrix of brackets of the state, where the section has one: Dirac's.
+
+        The rows of x are made orthogonal to what vanishes on the section, by elimination.
+        """
+        full, names = self.complete(point), self.whole.state
+        tensor, own = self.whole.tensor(full), set(self.state)
+        normals = [
+            self.whole.gradient(
+                lambda p, t=tree, k=k, n=n: p[n] - self.whole.at(t, p)[k], full, names
+            )
+            for name, tree in self.section.items()
+            for k, n in enumerate(self.components[name])
+        ]
+
+        def paired(one, two):
+            return dot(one, [dot(row, two) for row in tensor])
+
+        rows = [[mpf(n == x) for n in names] for x in names if x in own]
+        while normals:
+            pairs = [(a, b) for a in range(len(normals)) for b in range(a)]
+            sizes = {pair: abs(paired(normals[pair[0]], normals[pair[1]])) for pair in pairs}
+            most = max(sizes, key=sizes.get, default=None)
+            if most is None or sizes[most] < mpf(10) ** -15:
+                break
+            (a, b), rest = most, [n for k, n in enumerate(normals) if k not in most]
+            one, two = normals[a], normals[b]
+            size = paired(one, two)
+
+            def reduced(row, one=one, two=two, size=size):
+                to_one, to_two = paired(one, row) / size, paired(two, row) / size
+                return [
+                    x - to_one * v + to_two * u for x, u, v in zip(row, one, two, strict=True)
+                ]
+
+            normals, rows = [reduced(n) for n in rest], [reduced(row) for row in rows]
+        if any(abs(paired(normal, row)) > mpf(10) ** -15 for normal in normals for row in rows):
+            return super().tensor(point)
+        return [[paired(one, two) for two in rows] for one in rows]
+
 
 class Newton(Motion):
     """Mass times acceleration is force."""

@@ -16,6 +16,7 @@ def test_figures_of_a_shipped_system(run):
     assert record["rungs"] == {"3": "passed", "4": "passed", "5": "passed"}
     assert set(record["figures"]) == {
         *("rhs", "jacobian", "parameter_jacobian", "energy", "observables", "poisson_tensor"),
+        *("energy_gradient", "bracket_vector"),
     }
     assert set(record["figures"]["rhs"]) == {"numpy", "c", "c-fast", "python"}
     assert 0 < max(figures["k"] for figures in record["figures"]["rhs"].values()) <= 4
@@ -27,9 +28,9 @@ def test_the_table_names_functions_targets_and_rungs(run):
     """The table has a line for each function and target."""
     result = run("crosscheck", "rigid_body", "--points", "17")
     assert result.exit_code == 0, result.stderr
-    assert result.stdout.count("c-fast") == 7  # six functions, and the Taylor method
+    assert result.stdout.count("c-fast") == 9  # eight functions, and the Taylor method
     assert "rung 5: passed" in result.stdout
-    assert result.stdout.count("same bits at") == 12  # C and Python, each with NumPy
+    assert result.stdout.count("same bits at") == 16  # C and Python, each with NumPy
 
 
 def test_a_spoiled_kernel_is_caught(run, folder, monkeypatch):

@@ -14,6 +14,9 @@ from tests.kernels import COMPILER
 #: Of the second flow in a step of order 4, cut by its last digits.
 LENGTH = str(schedule(3, 4)[1][1])[:12]
 
+#: The second momentum after the first flow, with a wrong sign.
+TURN = tuple(f"_rows[1] = Pi2 {sign} _flow1_t4 * _flow1_tan1 + _flow1_t5;" for sign in "-+")
+
 
 @cache
 def rendered():
@@ -45,7 +48,7 @@ def test_every_method_is_compared():
     ("file", "good", "bad"),
     [
         # a sign, a factor and a row of a flow, a name of another flow
-        ("solver.c", "_rows[1] = Pi2 - _t4 * _tan1 + _t5;", "_rows[1] = Pi2 + _t4 * _tan1 + _t5;"),
+        ("solver.c", *TURN),
         ("solver.c", "const V _flow2_p1 = 0.5 / I2;", "const V _flow2_p1 = 0.25 / I2;"),
         ("solver.py", "    _rows[0] = Pi1\n", "    _rows[0] = Pi2\n"),
         ("solver.c", "find_flow2(blocks + b", "find_flow3(blocks + b"),
@@ -53,7 +56,7 @@ def test_every_method_is_compared():
         ("solver.c", f"h[b] * {LENGTH}", f"h[b] * {LENGTH}1"),
         ("solver.py", '        ("flow2", 0.5),\n', ""),
         # a sign in the solve, and a wrong start of the elliptic functions
-        ("solver.py", "_rows[2] = Pi3 + _d3", "_rows[2] = Pi3 - _d3"),
+        ("solver.py", "_rows[2] = Pi3 + _kahan_d3", "_rows[2] = Pi3 - _kahan_d3"),
         ("solver.c", "0.015625 * _h", "0.015626 * _h"),
     ],
 )

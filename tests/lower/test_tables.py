@@ -225,7 +225,7 @@ def test_the_ladder_holds_loops(tmp_path):
     assert report.passed
     assert report.lines["jacobian_vector"]
     assert report.solvers["solver"].coefficients
-    assert set(report.solvers["solver"].equal) == {"taylor", "dop853", "rk4"}
+    assert set(report.solvers["solver"].equal) == {"taylor", "dop853", "rk4", "midpoint"}
 
 
 # -- what is caught -------------------------------------------------------------------------------

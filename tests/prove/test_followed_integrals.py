@@ -6,7 +6,7 @@ import pytest
 from coadjoint.errors import SpecError
 from coadjoint.pipeline import render
 from coadjoint.prove import Verdict
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from tests.kernels import COMPILER
 from tests.specs import prove_claims, spec
 

@@ -156,7 +156,7 @@ def test_no_step_ends_beyond_a_branch_point(tank, options):
 def test_without_a_look_at_the_end_they_go_beyond(tank, monkeypatch, options):
     """Spoiled: a step may end where the rates are not finite, with a depth below zero."""
     monkeypatch.setattr(
-        "coadjoint.solve.runge_kutta._check_end", lambda rates, lanes, h, state: state
+        "coadjoint.solve.runge_kutta.end_where_rates_end", lambda rates, lanes, h, state: state
     )
     found, _ = empty(tank, target="numpy", **options)
     assert (found.course.last < 0).any()

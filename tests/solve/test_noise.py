@@ -15,7 +15,7 @@ from coadjoint.solve.events import Event
 from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
 from coadjoint.solve.steps import Lanes
 from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
-from coadjoint.solve.system import load_texts
+from coadjoint.solve.folders import load_texts
 from coadjoint.systems import rigid_body
 from coadjoint.systems import stochastic_rigid_body as body
 from tests.kernels import COMPILER
@@ -403,7 +403,7 @@ def test_the_advice_about_samples_helps():
     assert body.simulate(START, (0, 1), step=0.25, seed=1, samples=5).status == "OK"
 
 
-@pytest.mark.parametrize("options", [{"seed": 1}, {"method": "midpoint", "step": 0.1}])
+@pytest.mark.parametrize("options", [{"seed": 1}, {"method": "heun", "step": 0.1}])
 def test_a_system_without_noise_refuses_seeds_and_methods_of_noise(options):
     """They would do nothing."""
     with pytest.raises(KernelArgumentError, match="rigid_body has none"):

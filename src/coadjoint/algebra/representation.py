@@ -84,10 +84,15 @@ class Representation:
         Args:
             convert: As in `LieAlgebra.over`.
             algebra: The converted algebra, where it is at hand already.
+
+        Raises:
+            AlgebraError: It is another one, and the matrices do not represent it.
         """
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
-        acting = algebra or self.algebra.over(convert)
-        return take_image(self, algebra=acting, matrices=matrices)
+        image = self.algebra.over(convert)
+        if algebra is not None and algebra.constants != image.constants:
+            return Representation(algebra, self.name, self.dimension, matrices)
+        return take_image(self, algebra=algebra or image, matrices=matrices)
 
     def dual(self, name: str = "") -> Representation:
         """The contragredient action on W*: ``rho*(xi) = -rho(xi)^T``."""

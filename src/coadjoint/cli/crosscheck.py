@@ -55,6 +55,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.derive import derive
     from coadjoint.derive.reference import Reference
     from coadjoint.lower.lowering import lower
+    from coadjoint.lower.mapped import lower_maps
     from coadjoint.render.targets import TARGETS
     from coadjoint.sandbox_child import report_progress
     from coadjoint.solve.folders import load_folder
@@ -75,6 +76,7 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         Reference(equations),
         load_folder(folder),
         bit_points=argument["points"],
+        maps=lower_maps(equations, programs["rhs"]).programs,
     )
     return report.as_record()
 

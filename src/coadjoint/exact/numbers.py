@@ -66,7 +66,7 @@ class Numbers:
 
     >>> root = Written("sqrt(3)", lambda own: own.call("sqrt", own.number(Fraction(3))))
     >>> numbers = Numbers([root])
-    >>> str(numbers.text_symbols(1 / numbers.domain.from_sympy(sympy.sqrt(3))))
+    >>> str(numbers.text_symbols(numbers.domain.from_sympy(1 / sympy.sqrt(3))))
     'sqrt(3)/3'
     """
 

@@ -11,7 +11,8 @@ from coadjoint.build.compiler import CompilerWarning
 from coadjoint.declared import KernelContext, Quantity
 from coadjoint.render.kernels import render_system
 from coadjoint.solve import kernels
-from coadjoint.solve.system import System, load_folder
+from coadjoint.solve.folders import load_folder
+from coadjoint.solve.system import System
 from tests.programs import program
 
 METHODS = ("gauss4", "gauss6", "gauss8")

@@ -5,7 +5,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import MAPPED
-from coadjoint.solve.system import load_folder
+from coadjoint.solve.folders import load_folder
 from tests import specs
 from tests.kernels import COMPILER
 
