@@ -870,9 +870,7 @@ class Restricted(Motion):
 
             def reduced(row, one=one, two=two, size=size):
                 to_one, to_two = paired(one, row) / size, paired(two, row) / size
-                return [
-                    x - to_one * v + to_two * u for x, u, v in zip(row, one, two, strict=True)
-                ]
+                return [x - to_one * v + to_two * u for x, u, v in zip(row, one, two, strict=True)]
 
             normals, rows = [reduced(n) for n in rest], [reduced(row) for row in rows]
         if any(abs(paired(normal, row)) > mpf(10) ** -15 for normal in normals for row in rows):

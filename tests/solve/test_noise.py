@@ -12,10 +12,10 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.pipeline import render
 from coadjoint.solve import stochastic
 from coadjoint.solve.events import Event
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
 from coadjoint.solve.steps import Lanes
 from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
-from coadjoint.solve.folders import load_texts
 from coadjoint.systems import rigid_body
 from coadjoint.systems import stochastic_rigid_body as body
 from tests.kernels import COMPILER

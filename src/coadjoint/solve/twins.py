@@ -113,9 +113,7 @@ class NumpyStepper:
             gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
             functions |= {"gradient": gradient, "bracket": self._bracket}
-            return Structured(
-                self._choice.name, run.size, functions, branches=self._branches
-            )
+            return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
             fields=self._fields,
