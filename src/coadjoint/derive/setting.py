@@ -19,31 +19,19 @@ from typing import Any, Protocol, TypeVar, cast
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
 from coadjoint.derive.interpret import Value, entries, interpret
-from coadjoint.elementary import ELEMENTARY
+from coadjoint.derive.room import count_calls, count_room
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region, dense
-from coadjoint.exact.numbers import room_for
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
 from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
-from coadjoint.spec.tables import list_formulas
 
 Built = TypeVar("Built")
 #: What has a name in formulas.
 Declared = Variable | Parameter | Input | Time
-#: The functions for which the field needs room; the others are sums and products.
-#: Functions of which elements are adjoined to the field, and how many each.
-_ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
-    name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
-}
-
-#: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
-#: is projected to, and in claims about that.
-BALL = 4
-
 #: The time that a flow takes, a symbol of the fields in which flows are derived. The flow is one of
 #: the member: `coadjoint.derive.flows`.
 STEP = "_h"
@@ -334,17 +322,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Sett
     names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
     positive += [name for each in spec.domain if (name := _positive_name(each)) in names]
-    # a route, and what a transformation makes of a formula, may call its functions with other
-    # arguments than the spec does
-    more = len(spec.routes) * bool(symbols) + len(spec.transformations)
-    # functions of velocities are functions of momenta, too, where these are the state
-    more += bool(spec.having_role("momentum") and spec.having_role("velocity"))
-    if spec.in_frame and calls_of(spec, "parameter"):  # with numbers in their place, twice
-        more += 2
-    if calls_of(spec, "velocity"):  # a Legendre transform that is not linear, with numbers as well
-        more += 4
-    rolls_as_ball = spec.rolling and spec.rolling.contact and spec.rolling.contact.radius
-    room += _count_room(spec) * (1 + more) + BALL * bool(rolls_as_ball) + _count_numbers(spec)
+    room += count_room(spec, bool(symbols))
     field = Field([*names, *symbols], room, positive)
     field.region = Region(
         parameters=frozenset(list_components(spec.parameters)), defaults=_defaults(quantities)
@@ -399,7 +377,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     What a formula depends on in these shows much sooner there than among all the symbols.
     """
     names = list_components(spec.having_role(role))
-    field = Field(names, _count_room(spec))
+    field = Field(names, count_calls(spec))
     values: dict[str, Value] = {name: field[name] for name in names}
     quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
     for quantity in quantities:
@@ -408,37 +386,6 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
             values.setdefault(name, field.number(number))
         values[quantity.name] = assemble(quantity, values)
     return Setting(spec, field, values)
-
-
-def _list_calls(spec: Spec) -> list[tree.Call]:
-    """The calls of elementary functions in the formulas of a spec."""
-    nodes = (node for formula in list_formulas(spec) for node in tree.walk(formula.tree))
-    return [node for node in nodes if isinstance(node, tree.Call) and node.function in _ADJOINED]
-
-
-def _count_room(spec: Spec) -> int:
-    """How many functions may be adjoined for those that the formulas of a spec call."""
-    return sum(_ADJOINED[call.function] for call in _list_calls(spec))
-
-
-def _count_numbers(spec: Spec) -> int:
-    """The same for irrational numbers in algebras and their actions."""
-    algebras = [symmetry.algebra for symmetry in spec.symmetries]
-    algebras += [spec.algebra] if spec.algebra is not None else []
-    rows: list[Mapping[Any, Any]] = [row for a in algebras for row in a.constants.values()]
-    rows += [matrix for a in algebras for matrix in (*a.matrices, *a.elements)]
-    actions = (variable.representation for variable in spec.variables)
-    rows += [matrix for action in actions if action is not None for matrix in action.matrices]
-    values = (x for row in rows for x in row.values() if not isinstance(x, int | Fraction))
-    return max((room_for(x) for x in values), default=0)
-
-
-def calls_of(spec: Spec, role: str) -> bool:
-    """Whether an elementary function is taken of parameters, or of variables of some role."""
-    quantities = spec.parameters if role == "parameter" else spec.having_role(role)
-    names = {n for each in quantities for n in (each.name, *each.components)}
-    inside = (part for call in _list_calls(spec) for part in tree.walk(call))
-    return any(isinstance(part, tree.Name) and part.name in names for part in inside)
 
 
 def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:

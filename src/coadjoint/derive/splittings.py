@@ -35,7 +35,7 @@ from coadjoint.derive.flows import Flow, Flows, NoFlowError, list_symbols
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
-from coadjoint.exact.element import BudgetSpent
+from coadjoint.exact.denominators import BudgetSpent
 from coadjoint.poisson.structure import PoissonStructure
 
 #: Parts of which every order is tried.

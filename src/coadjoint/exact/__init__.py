@@ -10,7 +10,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from coadjoint.exact.element import BudgetSpent, Element
+    from coadjoint.exact.denominators import BudgetSpent
+    from coadjoint.exact.element import Element
     from coadjoint.exact.field import Field
     from coadjoint.exact.region import Condition, Region
     from coadjoint.exact.text import element_text
@@ -19,7 +20,7 @@ __all__ = ["BudgetSpent", "Condition", "Element", "Field", "Region", "element_te
 
 #: Module of each name.
 _HOMES = {
-    "BudgetSpent": "element",
+    "BudgetSpent": "denominators",
     "Condition": "region",
     "Element": "element",
     "Field": "field",

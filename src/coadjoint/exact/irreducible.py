@@ -17,7 +17,8 @@ from typing import Any
 
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.element import Element, numerator, remove_factor, split_by_powers
+from coadjoint.exact.denominators import remove_factor
+from coadjoint.exact.element import Element, numerator, split_by_powers
 from coadjoint.exact.factors import common_divisor, in_own_symbols, rational_root, to_fraction
 from coadjoint.exact.field import Field
 

@@ -20,8 +20,9 @@ from sympy.polys.domains import QQ
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement, PolyRing
 
+from coadjoint.exact.denominators import Factors
 from coadjoint.exact.dense import total
-from coadjoint.exact.element import Element, Factors, Quotient
+from coadjoint.exact.element import Element, Quotient
 from coadjoint.exact.factors import to_fraction
 from coadjoint.exact.residues import residue
 

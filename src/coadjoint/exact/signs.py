@@ -17,7 +17,8 @@ from typing import Any
 from sympy.polys.rings import PolyElement
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.exact.element import Element, remove_factor
+from coadjoint.exact.denominators import remove_factor
+from coadjoint.exact.element import Element
 from coadjoint.exact.factors import factors_of
 from coadjoint.exact.field import Field
 from coadjoint.exact.region import Condition

@@ -19,8 +19,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, reduce
 
 from coadjoint.exact import Element
+from coadjoint.exact.denominators import remove_factor
 from coadjoint.exact.dense import determinant
-from coadjoint.exact.element import numerator, remove_factor
+from coadjoint.exact.element import numerator
 from coadjoint.exact.factors import common_divisor
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.prove.motion import Motion

@@ -3,7 +3,7 @@
 Integrals, measures, Casimirs and growth vectors are searched for, though they are not claimed.
 Such a search may take very long, and must not keep a user from a proved kernel; so it ends after
 a given amount of work, and the certificate says that it did. Work is counted and not timed
-(`coadjoint.exact.element.Factors.budget`), so that a certificate is the same on every machine.
+(`coadjoint.exact.denominators.Factors.budget`), so that a certificate is the same on every machine.
 Comes in: the statements of a search, not yet computed. Goes out: those that it reached, decided.
 Read next: `coadjoint.prove.claims`, which runs the searches.
 """
