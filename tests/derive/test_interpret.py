@@ -44,6 +44,9 @@ def value(text, definitions=()):
         ("rows(A[2], A[1])*a", (x["A21"] * x["a1"] + x["A22"] * x["a2"],
                                 x["A11"] * x["a1"] + x["A12"] * x["a2"])),
         ("det(rows(A[1], A[2])) - det(A)", FIELD.zero),
+        ("cross(b, vector(a1, a2, 0))[3]", x["b1"] * x["a2"] - x["b2"] * x["a1"]),
+        ("2*(A*a)[2]", 2 * (x["A21"] * x["a1"] + x["A22"] * x["a2"])),
+        ("outer(a, b)[2, 3]", x["a2"] * x["b3"]),
         ("A[1, 2] - dot(A[1], a)", x["A12"] - x["A11"] * x["a1"] - x["A12"] * x["a2"]),
     ],
 )  # fmt: skip

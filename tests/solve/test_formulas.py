@@ -39,6 +39,7 @@ def hat(a):
         ("dot(v, hat(w)*v + diag(A))", lambda v, w, a, s: v @ (hat(w) @ v + np.diag(a))),
         ("trace(diag(v)*outer(v, w))", lambda v, w, a, s: np.trace(np.diag(v) @ np.outer(v, w))),
         ("A[1, 2]*s", lambda v, w, a, s: a[0, 1] * s),
+        ("cross(v, w)[3] + (A*A)[2, 1]", lambda v, w, a, s: np.cross(v, w)[2] + (a @ a)[1, 0]),
         ("dot(A[3], vector(1, s, v1))", lambda v, w, a, s: a[2] @ [1, s, v[0]]),
         ("det(rows(v, w, vector(1, 2, 3)))", lambda v, w, a, s: np.linalg.det([v, w, [1, 2, 3]])),
         ("trace(commutator(A, hat(v))*A)", lambda v, w, a, s: np.trace(

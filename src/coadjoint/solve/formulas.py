@@ -168,6 +168,9 @@ def _value(node: tree.Node, below: list[Array], values: Mapping[str, Array]) -> 
         case tree.Index(name=name, indices=indices):
             entry: Array = values[name][tuple(index - 1 for index in indices)]
             return entry
+        case tree.Component(indices=indices):
+            part: Array = below[0][tuple(index - 1 for index in indices)]
+            return part
         case tree.Negate():
             return -below[0]
         case tree.Power(exponent=exponent):

@@ -40,6 +40,7 @@ from coadjoint.spec.core.tokens import (
 from coadjoint.spec.core.tree import (
     Binary,
     Call,
+    Component,
     Entry,
     Index,
     Member,
@@ -194,8 +195,8 @@ class _Reader:
                 self._take()
                 with self._nest(token):
                     inner = self._climb(0)
-                self._close(token, ")")
-                return inner
+                closing = self._close(token, ")")
+                return self._component_of(inner, token.start, closing.end)
         raise self._unexpected()
 
     def _number(self, token: Token) -> Node:
@@ -245,9 +246,10 @@ class _Reader:
                 self._take()
                 arguments.append(self._climb(0))
         closing = self._close(opening, ")")
-        return self._count(
+        called = self._count(
             Call(function=name.text, arguments=tuple(arguments), start=name.start, end=closing.end)
         )
+        return self._component_of(called, name.start, closing.end)
 
     def _sum(self, name: Token, opening: Token) -> Node:
         """A sum over the members that an index counts, over their pairs, or over some of these."""
@@ -283,11 +285,32 @@ class _Reader:
         while self.next.kind == "," and (self.indexed or len(subscripts) < MOST_SUBSCRIPTS):
             self._take()
             subscripts.append(self._place(opening))
+        closing = self._end_subscripts(opening, name.text)
+        return self._count(_make_entry(name.text, subscripts, name.start, closing.end))
+
+    def _component_of(self, whole: Node, start: int, end: int) -> Node:
+        """What stands in parentheses or comes of a function, or a component of it."""
+        if self.next.kind != "[":
+            return whole
+        opening, text = self._take(), self.text[start:end]
+        indices = [self._subscript(opening)]
+        while self.next.kind == "," and len(indices) < MOST_SUBSCRIPTS:
+            self._take()
+            indices.append(self._subscript(opening))
+        closing = self._end_subscripts(opening, text)
+        return self._count(
+            Component(
+                name=text, operand=whole, indices=tuple(indices), start=start, end=closing.end
+            )
+        )
+
+    def _end_subscripts(self, opening: Token, name: str) -> Token:
+        """The bracket that closes subscripts, behind which there is no other one."""
         closing = self._close(opening, "]")
         if self.next.kind == "[":
             start, end = self.next.start, self.next.end
-            raise self._fault("two subscripts in a row", start, end, f"{name.text}[1, 2]")
-        return self._count(_make_entry(name.text, subscripts, name.start, closing.end))
+            raise self._fault("two subscripts in a row", start, end, f"{name}[1, 2]")
+        return closing
 
     def _place(self, opening: Token) -> Node:
         """A subscript: an integer or, where members are counted, what can be worked out."""
@@ -355,7 +378,7 @@ class _Reader:
         if token.kind == ")" and ends:
             return self._fault("')' closes nothing", *where, "a '(' before it")
         if ends:
-            hint = "Only names have subscripts." if token.kind == "[" else ""
+            hint = "Numbers have no subscripts." if token.kind == "[" else ""
             problem = f"{token.text!r} is misplaced"
             return self._fault(problem, *where, "an operator or the end", hint)
         problem = f"{token.text!r} is misplaced" if token.kind else "the expression ends too early"

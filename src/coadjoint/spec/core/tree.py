@@ -56,7 +56,13 @@ class Index(Node):
 
 @dataclass(frozen=True)
 class Component(Node):
-    """A component of an expression that a name stands for: ``u[1]`` for ``u = "A*b"``."""
+    """A component of an expression: ``cross(a, b)[1]``, or ``u[1]`` for ``u = "A*b"``.
+
+    Attributes:
+        name: What messages call the expression.
+        operand: The expression.
+        indices: Counted from 1.
+    """
 
     name: str
     operand: Node
