@@ -100,7 +100,7 @@ def magnetic(
         a, b = places(momenta, (first, second))
         entries[n + a, n + b] = value
     structure = PoissonStructure(field, names, antisymmetric(field, 2 * n, entries), "magnetic")
-    if two_form:  # none is closed
+    if two_form:  # where there is none, zero is closed
         _check_closed(structure, coordinates, momenta, scale)
     return structure
 
