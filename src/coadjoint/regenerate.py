@@ -23,7 +23,7 @@ from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.build.cache import cache_folder, replace_file
 from coadjoint.build.compiler import compiler_version
-from coadjoint.errors import CoadjointError, DriftError, OutputError, SpecError
+from coadjoint.errors import CoadjointError, DriftError, OutputError, SpecError, system_error
 from coadjoint.files import read_object, read_regular
 from coadjoint.fingerprint import digest, engine_fingerprint, template_hashes
 from coadjoint.render.compare import compare_tree, is_intact
@@ -293,7 +293,7 @@ def _refuse_early(output: Path, pending: Sequence[_Source], keep: set[str] | Non
     try:
         make_plan(output, dict.fromkeys(names, SYSTEM_FILES), keep)
     except OSError as error:
-        raise OutputError(
+        raise system_error(error) or OutputError(
             f"{output}: cannot be read: {error.strerror or error}. Check permissions, or choose "
             "another folder with --output.",
             path=str(output),

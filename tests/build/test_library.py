@@ -1,10 +1,13 @@
 """The library: right ids, keys of all that matters, objects that are whole and of no use."""
 
+import errno
 import hashlib
+import os
 import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -156,3 +159,17 @@ def test_builders_at_one_time_do_not_disturb_one_another(cache):
     assert answers == ["[-1.5, 2.25, -1.0]"] * 6
     assert not list((cache / "work").iterdir())
     assert fetch(library.find_key(find_compiler(), SOURCES, "exact", one_function("rhs")))
+
+
+@pytest.mark.parametrize(
+    ("number", "said"), [(errno.EMFILE, "ulimit -n"), (errno.ENOENT, "Run `coadjoint regenerate`")]
+)
+def test_a_source_that_cannot_be_opened_says_what_helps(number, said, tmp_path, monkeypatch):
+    """A limit of the session has its remedy; anything else is a folder to generate again."""
+
+    def refuse(self):
+        raise OSError(number, os.strerror(number), str(self))
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    with pytest.raises(OutputError, match=said):
+        load_library(tmp_path, "body", "0", "exact", lambda _: None)

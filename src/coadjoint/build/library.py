@@ -217,7 +217,7 @@ def _sources(folder: Path, kind: Source) -> dict[str, bytes]:
     try:
         return {file: (folder / file).read_bytes() for file in kind.files}
     except OSError as error:
-        raise OutputError(
+        raise system_error(error) or OutputError(
             f"{error.filename} cannot be read: {error.strerror}; expected the C {kind.stem} of a "
             "generated system. Run `coadjoint regenerate`.",
             path=str(error.filename),
