@@ -90,6 +90,8 @@ class Field(Rationals):
         self._factors.is_hidden_zero = self._is_hidden_zero
         self.adjoined: dict[str, Adjoined] = {}
         self.has_called = False
+        #: Those of arguments without functions, by function and arguments.
+        self._called: dict[tuple[str, tuple[Element, ...]], str] = {}
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
@@ -131,11 +133,8 @@ class Field(Rationals):
         entry, first = ELEMENTARY[function], arguments[0]
         if entry.parity and first and first.parts[0].numer.LC < 0:
             return self.call(function, -first) * entry.parity
-        for known in self.adjoined.values():
-            if known.function == function and all(
-                self.is_zero(a - b) for a, b in zip(known.arguments, arguments, strict=True)
-            ):
-                return self[known.generator]
+        if (called := self._find_called(function, arguments)) is not None:
+            return self[called]
         if (value := known_value(self, function, *arguments)) is not None:
             return value
         if len(self._free) < 1 + bool(entry.partner):
@@ -150,6 +149,23 @@ class Field(Rationals):
             self._slopes_of(self.adjoined[str(result)])
         return result
 
+    def _find_called(self, function: str, arguments: tuple[Element, ...]) -> str | None:
+        """The generator of a function of these arguments, if one was adjoined.
+
+        Arguments without functions are equal or not by their normal form, and have their places:
+        looking at each function that is known would take quadratic time.
+        """
+        plain = all(map(self.is_function_free, arguments))
+        if plain and (function, arguments) in self._called:
+            return self._called[function, arguments]
+        for known in self.adjoined.values():
+            told = plain and (function, known.arguments) in self._called
+            if known.function != function or told:
+                continue
+            if all(self.is_zero(a - b) for a, b in zip(known.arguments, arguments, strict=True)):
+                return known.generator
+        return None
+
     @property
     def room(self) -> int:
         """How many generators are left for functions; sines and cosines take two."""
@@ -158,6 +174,8 @@ class Field(Rationals):
     def _adjoin(self, function: str, arguments: tuple[Element, ...], partner: str = "") -> Element:
         generator = self._free.pop(0)
         self.adjoined[generator] = Adjoined(generator, function, arguments, partner)
+        if all(map(self.is_function_free, arguments)):
+            self._called[function, arguments] = generator
         return self[generator]
 
     @property

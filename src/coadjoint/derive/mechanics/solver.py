@@ -148,6 +148,8 @@ class _Elimination:
     def __init__(self, field: Field, solve: Solve, decided: Decided) -> None:
         self.field, self.solve, self.decided = field, solve, decided
         self.lines: list[Definition] = []
+        #: The name of each value, up to its sign, by the value.
+        self._named: dict[Element, Element] = {}
         self._size = range(len(solve.block))
         self._w: dict[tuple[int, int], Element] = {}
         self._u: dict[tuple[int, int], Element] = {}
@@ -208,12 +210,10 @@ class _Elimination:
         value = self.decided.value(value)
         if _is_leaf(self.field, value):
             return self._define(name, value)
-        for known, other in self.lines:
-            if value in (other, -other):
-                same = self.field[known] if value == other else -self.field[known]
-                self._define(name, same)
-                return same
-        return self._define(name, value)
+        if (same := self._named.get(value)) is None:
+            return self._define(name, value)
+        self._define(name, same)
+        return same
 
     def _rest(self, i: int, j: int) -> Element:
         """``a_ij`` without what the columns before take: ``a_ij - w_ik u_kj``."""
@@ -225,6 +225,8 @@ class _Elimination:
         """Write a line, and return what later lines read: a number, or the name."""
         value = self.decided.define(name, value)
         self.lines.append((name, value))
+        self._named.setdefault(value, self.field[name])
+        self._named.setdefault(-value, -self.field[name])
         return self.decided.numbers.get(name, self.field[name])
 
 
