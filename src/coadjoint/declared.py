@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from coadjoint.lower.program import Program
+    from coadjoint.methods import JudgedMethod
 
 
 @dataclass(frozen=True)
@@ -148,6 +149,7 @@ class KernelContext:
         is_bound: Whether there are constraints.
         maps: What explicit methods make a step of: `coadjoint.lower.mapped`.
         refusals: Methods without such maps, each with the reason.
+        methods: Methods that keep structure and apply, with what each keeps.
     """
 
     name: str
@@ -170,3 +172,4 @@ class KernelContext:
     is_bound: bool = False
     maps: tuple[Program, ...] = ()
     refusals: tuple[tuple[str, str], ...] = ()
+    methods: tuple[JudgedMethod, ...] = ()

@@ -94,6 +94,7 @@ def read_certificate(path: Path) -> dict[str, Any]:
     for key, needed in (
         ("claims", ("statement", "verdict", "method")),
         ("findings", ("statement", "method")),
+        ("methods", ("name", "decides", "cost")),
     ):
         if not _is_list_of(certificate.get(key), dict) or not all(
             isinstance(entry.get(part), str) for entry in certificate[key] for part in needed

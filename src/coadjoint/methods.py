@@ -60,6 +60,36 @@ class StructuredMethod:
         return self.name.upper()
 
 
+@dataclass(frozen=True)
+class JudgedMethod:
+    """What is proved of a method that keeps structure, for one system.
+
+    Attributes:
+        name: Of the method.
+        order: By what power of the step an error falls.
+        exactly: Integrals of this system that it keeps to the rounding of each step, by name.
+        nearly: The other integrals; a step changes them by an error of its order.
+        is_poisson: Whether its step is a Poisson map of this system.
+        decides: The fact that decides: why it keeps these; of one that does not apply, why not.
+        cost: What a step costs, in words; "" of one that does not apply.
+        rank: Its place in the order in which ``"auto"`` takes methods, from 1; 0 for not at all.
+    """
+
+    name: str
+    order: int
+    exactly: tuple[str, ...] = ()
+    nearly: tuple[str, ...] = ()
+    is_poisson: bool = False
+    decides: str = ""
+    cost: str = ""
+    rank: int = 0
+
+    @property
+    def applies(self) -> bool:
+        """Whether the system has it."""
+        return bool(self.cost)
+
+
 _QUADRATIC: Final = (
     "E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), theorem IV.2.1"
 )

@@ -31,6 +31,7 @@ from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.declaration import family_context, kernel_context
+from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
 from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
@@ -99,8 +100,10 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     check_programs(first, programs)
     progress("render")
     maps = lower_maps(first, programs["rhs"])
-    context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps)
-    texts = {**render_system(context), "certificate.json": certificate_json(spec, certificate)}
+    facts, methods = judge_methods(first, certificate, programs, maps)
+    context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps, methods)
+    record = certificate_json(spec, certificate, facts.as_record(), methods)
+    texts = {**render_system(context), "certificate.json": record}
     return Rendered(
         equations=first, certificate=certificate, programs=programs, texts=texts, maps=maps.programs
     )

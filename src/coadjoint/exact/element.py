@@ -115,6 +115,11 @@ class Element:
             self._sorted = tuple(sorted(parts, key=Quotient.order) if several else parts)
         return self._sorted
 
+    @property
+    def is_polynomial(self) -> bool:
+        """Whether there are no denominators, so that equal elements have equal hashes."""
+        return not any(quotient.powers for quotient in self._parts.values())
+
     def combine(self) -> Element:
         """The same element as a single quotient, or zero."""
         if len(self._parts) < 2:

@@ -90,8 +90,9 @@ class Field(Rationals):
         self._factors.is_hidden_zero = self._is_hidden_zero
         self.adjoined: dict[str, Adjoined] = {}
         self.has_called = False
-        #: Those of arguments without functions, by function and arguments.
+        #: Those of polynomials without functions, by function and arguments.
         self._called: dict[tuple[str, tuple[Element, ...]], str] = {}
+        self._plain: set[str] = set()
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
@@ -152,19 +153,22 @@ class Field(Rationals):
     def _find_called(self, function: str, arguments: tuple[Element, ...]) -> str | None:
         """The generator of a function of these arguments, if one was adjoined.
 
-        Arguments without functions are equal or not by their normal form, and have their places:
-        looking at each function that is known would take quadratic time.
+        Polynomials without functions are equal or not as they stand, and have their places: looking
+        at each function that is known would take quadratic time.
         """
-        plain = all(map(self.is_function_free, arguments))
+        plain = all(map(self._is_plain, arguments))
         if plain and (function, arguments) in self._called:
             return self._called[function, arguments]
-        for known in self.adjoined.values():
-            told = plain and (function, known.arguments) in self._called
-            if known.function != function or told:
+        for name, known in self.adjoined.items():
+            if known.function != function or (plain and name in self._plain):
                 continue
             if all(self.is_zero(a - b) for a, b in zip(known.arguments, arguments, strict=True)):
-                return known.generator
+                return name
         return None
+
+    def _is_plain(self, element: Element) -> bool:
+        """Whether an element is a polynomial without functions."""
+        return element.is_polynomial and self.is_function_free(element)
 
     @property
     def room(self) -> int:
@@ -174,8 +178,9 @@ class Field(Rationals):
     def _adjoin(self, function: str, arguments: tuple[Element, ...], partner: str = "") -> Element:
         generator = self._free.pop(0)
         self.adjoined[generator] = Adjoined(generator, function, arguments, partner)
-        if all(map(self.is_function_free, arguments)):
+        if all(map(self._is_plain, arguments)):
             self._called[function, arguments] = generator
+            self._plain.add(generator)
         return self[generator]
 
     @property

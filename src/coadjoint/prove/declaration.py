@@ -8,7 +8,7 @@ Read next: `coadjoint.render.kernels`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from coadjoint.families import Family
 from coadjoint.lower.families import Loops
 from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
+from coadjoint.methods import JudgedMethod
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.render.families import FamilyContext
@@ -38,6 +39,7 @@ def kernel_context(
     programs: Mapping[str, Program],
     supported: int = 0,
     maps: Maps | None = None,
+    methods: Iterable[JudgedMethod] = (),
 ) -> KernelContext:
     """What the generated files of a system say; of a spec's free text, nothing.
 
@@ -46,6 +48,7 @@ def kernel_context(
         programs: Its functions.
         supported: How many claims are numerically supported and not proved.
         maps: What explicit methods make a step of.
+        methods: Methods that keep structure, as they are judged.
     """
     spec = equations.spec
     first, *others = spec.routes
@@ -71,6 +74,7 @@ def kernel_context(
         is_bound=bool(equations.exact.residuals),
         maps=() if maps is None else maps.programs,
         refusals=() if maps is None else tuple(maps.refusals.items()),
+        methods=tuple(each for each in methods if each.applies),
     )
 
 

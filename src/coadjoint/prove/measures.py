@@ -55,13 +55,17 @@ SEARCHED = (
 )
 
 
+def volume_statement(motion: Motion) -> str:
+    """What a certificate says of a motion that keeps volume in the state."""
+    return f"an invariant measure: {_form(motion)}{motion.at_all_times}"
+
+
 def about_measure(motion: Motion) -> Iterator[Examined]:
     """Whether a measure is invariant: first with a density of the positions alone."""
     by_numbers = bool(motion.matrices)  # which is much shorter where accelerations are solved for
     divergence = None if by_numbers else motion.divergence
     if divergence is not None and divergence == 0:
-        statement = f"an invariant measure: {_form(motion)}{motion.at_all_times}"
-        yield statement, "measure", lambda: [divergence]
+        yield volume_statement(motion), "measure", lambda: [divergence]
         return
     examined = _of_bracket(motion)
     if examined is not None:

@@ -8,18 +8,33 @@ Read next: `coadjoint.files`, which reads it without trust.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint.derive.setting import Declared
+from coadjoint.methods import JudgedMethod
 from coadjoint.prove.certificate import Certificate
 from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
 
-def certificate_json(spec: Spec, certificate: Certificate) -> str:
-    """The certificate with the spec's free text, for programs and documents."""
+def certificate_json(
+    spec: Spec,
+    certificate: Certificate,
+    facts: Mapping[str, object] = MappingProxyType({}),
+    methods: Iterable[JudgedMethod] = (),
+) -> str:
+    """The certificate with the spec's free text, for programs and documents.
+
+    Args:
+        spec: What was declared.
+        certificate: What is proved of it.
+        facts: What decides which methods of integration apply, as JSON values.
+        methods: Methods that keep structure, as they are judged.
+    """
     quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     record: dict[str, Any] = {
         "title": spec.title,
@@ -34,6 +49,10 @@ def certificate_json(spec: Spec, certificate: Certificate) -> str:
         "claims": certificate.as_record()["claims"],
         "findings": certificate.as_record()["findings"],
     }
+    if facts:
+        record["structure"] = dict(facts)
+    if judged := list(methods):
+        record["methods"] = [asdict(each) for each in judged]
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
     if spec.observables:  # claims name them

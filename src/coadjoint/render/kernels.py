@@ -30,6 +30,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.tableau import dop853
+from coadjoint.methods import JudgedMethod
 from coadjoint.render.environment import render_templates
 from coadjoint.render.printers import WIDTH, Printer
 from coadjoint.render.solvers import (
@@ -195,6 +196,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
                 for table, quantities in _tables(context).items()
             },
             "domain": list(map(declaration, context.domain)),
+            "methods": list(map(declaration, context.methods)),
         },
     )
     for kind in list_kinds([program.name for program in context.programs]):
@@ -270,6 +272,7 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     tables = ["__file__", "STATE", "PARAMETERS", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"]
     domain = ["DOMAIN"] * bool(context.domain)
     present = [f"{name}={name.upper()}" for name in _optional(context)]
+    present += ["methods=METHODS"] * bool(context.methods)
     if context.unit_of_time != "s":
         present.append(f"unit_of_time={quote(context.unit_of_time)}")
     if context.written is not None:
@@ -422,7 +425,7 @@ def _shapes(programs: Sequence[Program]) -> list[str]:
     return [f"{quote(program.name)}: {tuple_text(map(str, program.shape))}" for program in programs]
 
 
-def declaration(record: Quantity | Bound) -> list[str]:
+def declaration(record: Quantity | Bound | JudgedMethod) -> list[str]:
     """The arguments of a record as a generated package writes it; usual values are left out.
 
     >>> declaration(Bound("height", "condition", True, ("h",)))

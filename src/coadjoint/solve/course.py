@@ -62,6 +62,7 @@ class Course:
         keeps: What the method keeps by itself, of a motion with noise on each path, by its own
             update; empty without noise.
         projection: Onto what states are moved, and when; empty where they are not.
+        chosen: Why the method was taken, where it was left to us and steps are fixed.
         start: Where the trajectories began, if no sample has it.
         kinks: The kinks that they met; None where the rates have none, or from SciPy.
     """
@@ -82,6 +83,7 @@ class Course:
     seed: int | None = None
     keeps: str = ""
     projection: str = ""
+    chosen: str = ""
     start: Start | None = None
     kinks: Kinks | None = None
 
@@ -93,6 +95,10 @@ class Course:
         """What the method keeps by itself; "" for nothing."""
         whose = "of what each path keeps, " if self.seed is not None else ""
         return f"{whose}{self.method} keeps {self.keeps}" if self.keeps else ""
+
+    def tell_chosen(self) -> str:
+        """Why the method was taken; "" where it was named."""
+        return f"{self.method} was taken: {self.chosen}" if self.chosen else ""
 
     @property
     def status(self) -> str:

@@ -184,6 +184,7 @@ def _make_course(
         order=None if request.seed is not None else request.choice.order,
         seed=request.seed,
         keeps=_tell_keeps(request.choice),
+        chosen=request.chosen,
         projection=describe_projection(system, request.choice.name),
         rtol=None if request.step and request.choice.name != "taylor" else request.rtol,
         atol=None if request.step else request.atol,

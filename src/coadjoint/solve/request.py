@@ -23,6 +23,7 @@ from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
 from coadjoint.solve.choices import GENERATED, Choice
 from coadjoint.solve.costs import choose_order
+from coadjoint.solve.preferences import Preferred, find_default, grant_wish, is_wish
 from coadjoint.solve.reconstruct import is_asked
 from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
 
@@ -68,6 +69,7 @@ class Request:
         events: What to look for.
         dense: Whether the steps are kept.
         stepwise: Why a generated method makes its steps in Python; empty where it does not.
+        chosen: Why the method was taken, where it was left to us and keeps structure or could.
         seed: Of the noise; None where there is none.
     """
 
@@ -91,6 +93,7 @@ class Request:
     dense: bool
     stepwise: str
     seed: int | None = None
+    chosen: str = ""
 
     @cached_property
     def choice(self) -> Choice:
@@ -302,8 +305,8 @@ def choose_method(
     obstacles: Mapping[str, str],
     *,
     tolerances: bool,
-) -> str:
-    """The method that does it: ``scipy:NAME``, or one of `GENERATED`.
+) -> Preferred:
+    """The method that does it, ``scipy:NAME`` or a generated one, and why it was chosen.
 
     Args:
         system: The System.
@@ -315,10 +318,8 @@ def choose_method(
     Raises:
         KernelArgumentError: There is no such method, or it does not apply.
     """
-    name = _normal(method)
-    if name == "auto":
-        fit = [each for each in ("taylor", "dop853") if each not in obstacles]
-        name = (fit or [SCIPY + "DOP853"])[0] if step is None else "dop853"
+    chosen = _prefer(system, method, step, obstacles)
+    name = chosen.name
     if name in obstacles:
         asked = f"method {method!r}" if step is None else f"method {method!r} with a fixed step"
         without = " without step" if len(obstacles) == len(_generated()) else ""
@@ -336,17 +337,33 @@ def choose_method(
             expected=["auto", *_generated(), *_scipy()],
         )
     _check_step(name, step, tolerances=tolerances)
-    return name
+    return chosen
+
+
+def _prefer(
+    system: System, method: Any, step: float | None, obstacles: Mapping[str, str]
+) -> Preferred:
+    """The method that is named, or that is taken for a person, whether or not it applies."""
+    if is_wish(method):
+        return grant_wish(system, method, obstacles)
+    if not is_auto(method):
+        return Preferred(_normal(method), "")
+    if step is not None:
+        return find_default(system, obstacles)
+    fit = [each for each in ("taylor", "dop853") if each not in obstacles]
+    return Preferred((fit or [SCIPY + "DOP853"])[0], "")
+
+
+def is_chosen_by_structure(method: Any, step: float | None) -> bool:
+    """Whether the method may be one of those that keep structure."""
+    return (
+        is_wish(method) or _normal(method) in _FIXED_STEP or (is_auto(method) and step is not None)
+    )
 
 
 def is_auto(method: Any) -> bool:
     """Whether a method is left to us."""
     return _normal(method) == "auto"
-
-
-def is_structured(method: Any) -> bool:
-    """Whether a method is one of those that keep structure."""
-    return _normal(method) in STRUCTURED
 
 
 def _normal(method: Any) -> str:

@@ -44,7 +44,7 @@ from coadjoint.solve.request import (
     choose_method,
     find_kind,
     is_auto,
-    is_structured,
+    is_chosen_by_structure,
     list_times,
     prefers_dop853,
 )
@@ -98,6 +98,7 @@ def simulate(
     obstacle = generated.find_obstacle(system, target, reconstruct)
     recorded = bool(events or dense)
     stepwise = generated.find_stepwise(system, inputs, is_recorded=recorded)
+    chosen = ""
     if has_noise(system):
         given = {"rtol or atol": tolerances, "dense": dense}
         given["reconstruct"] = is_asked(reconstruct)
@@ -107,8 +108,13 @@ def simulate(
     else:
         check_no_noise(system, method, seed)
         obstacles = dict.fromkeys((*GENERATED, *STRUCTURED, *MAPPED), obstacle) if obstacle else {}
-        if is_structured(method) and not obstacle:
+        if is_chosen_by_structure(method, step) and not obstacle:
             obstacles |= generated.find_structure_obstacles(system, find_kind(reconstruct))
+            obstacles |= generated.find_missing_maps(system, reconstruct)
+        if stepwise and is_auto(method):
+            obstacles |= dict.fromkeys(
+                (*STRUCTURED, *MAPPED), f"Python leads the steps: {stepwise}"
+            )
         without = (
             ""
             if obstacle
@@ -119,7 +125,8 @@ def simulate(
         obstacles |= {"taylor": without} if without else {}
         if not obstacle and not is_auto(method):
             obstacles |= generated.find_missing_maps(system, reconstruct)
-        name = choose_method(system, method, step, obstacles, tolerances=tolerances)
+        preferred = choose_method(system, method, step, obstacles, tolerances=tolerances)
+        name, chosen = preferred.name, preferred.why
         within = "the path within steps is asked for" if recorded else obstacle or system.stepwise
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
@@ -145,6 +152,7 @@ def simulate(
         dense=check_dense(dense),
         stepwise=stepwise,
         seed=None if seed is None else int(seed),
+        chosen=chosen,
     )
     check_steps(request)
     if has_noise(system):

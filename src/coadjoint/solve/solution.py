@@ -116,11 +116,12 @@ class Solution:
 
         Of a motion with noise there is its seed, and what the method keeps, by its own update, of
         what each path keeps. ``projection`` says onto what states are moved in addition, and when.
-        ``stepwise`` says why the steps of a generated method were made in Python.
+        ``stepwise`` says why the steps of a generated method were made in Python, and ``chosen``
+        why a method with a fixed step was taken where that was left to us.
         """
         course = self.course
         names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed")
-        told = {name: getattr(course, name) for name in (*names, "keeps", "projection")}
+        told = {name: getattr(course, name) for name in (*names, "keeps", "projection", "chosen")}
         return {name: value for name, value in told.items() if value not in (None, "")}
 
     @property
@@ -438,7 +439,8 @@ class Solution:
             lines += [f"  {self.message}"] if self.message else []
         else:
             lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
-        told = (self.course.tell_stepwise(), self.course.tell_keeps())
+        course = self.course
+        told = (course.tell_stepwise(), course.tell_chosen(), course.tell_keeps())
         lines += [f"  {each}" for each in told if each]
         return "\n".join([*lines, *describe_drift(self)])
 

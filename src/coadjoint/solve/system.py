@@ -21,6 +21,7 @@ from coadjoint.declared import Bound, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.methods import JudgedMethod
 from coadjoint.solve.functions import Functions, Target, by_name
 from coadjoint.solve.quantities import Quantities
 
@@ -60,6 +61,7 @@ class System(Functions):
         TIME: The time, if the system depends on it.
         unit_of_time: The unit of the time, also where the system does not depend on it.
         written: The index of members that are all written out, and their number; else None.
+        METHODS: Methods that keep structure, with what each keeps of this system.
     """
 
     def __init__(
@@ -78,9 +80,10 @@ class System(Functions):
         time: Quantities | None = None,
         unit_of_time: str = "s",
         written: tuple[str, int] | None = None,
+        methods: Sequence[JudgedMethod] = (),
     ) -> None:
         self.name = name
-        self.written = written
+        self.written, self.METHODS = written, tuple(methods)
         self.folder = Path(file).parent
         self.STATE = state
         self.PARAMETERS = parameters

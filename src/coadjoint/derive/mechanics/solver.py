@@ -148,7 +148,7 @@ class _Elimination:
     def __init__(self, field: Field, solve: Solve, decided: Decided) -> None:
         self.field, self.solve, self.decided = field, solve, decided
         self.lines: list[Definition] = []
-        #: The name of each value, up to its sign, by the value.
+        #: The name of each polynomial, up to its sign, by its value.
         self._named: dict[Element, Element] = {}
         self._size = range(len(solve.block))
         self._w: dict[tuple[int, int], Element] = {}
@@ -210,10 +210,19 @@ class _Elimination:
         value = self.decided.value(value)
         if _is_leaf(self.field, value):
             return self._define(name, value)
-        if (same := self._named.get(value)) is None:
+        if (same := self._find_named(value)) is None:
             return self._define(name, value)
         self._define(name, same)
         return same
+
+    def _find_named(self, value: Element) -> Element | None:
+        """The name of an equal value, or minus that of its opposite."""
+        if value.is_polynomial:
+            return self._named.get(value)
+        for known, other in self.lines:
+            if value in (other, -other):
+                return self.field[known] if value == other else -self.field[known]
+        return None
 
     def _rest(self, i: int, j: int) -> Element:
         """``a_ij`` without what the columns before take: ``a_ij - w_ik u_kj``."""
@@ -225,8 +234,9 @@ class _Elimination:
         """Write a line, and return what later lines read: a number, or the name."""
         value = self.decided.define(name, value)
         self.lines.append((name, value))
-        self._named.setdefault(value, self.field[name])
-        self._named.setdefault(-value, -self.field[name])
+        if value.is_polynomial:
+            self._named.setdefault(value, self.field[name])
+            self._named.setdefault(-value, -self.field[name])
         return self.decided.numbers.get(name, self.field[name])
 
 

@@ -1,0 +1,330 @@
+"""Methods of integration, judged: which apply to a system, and what each keeps by its theorem.
+
+Comes in: Equations, their certificate, the functions of a kernel and the maps of explicit methods.
+Goes out: a `JudgedMethod` for each method of the list, in the order of the list, the default one
+first in rank. A method of a new file keeps nothing here until it has a rule.
+Read next: `coadjoint.prove.facts`, where the facts are decided.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+from typing import Final
+
+from coadjoint.derive import Equations
+from coadjoint.exact.linear import primes
+from coadjoint.exact.residues import Residue, draw, residue, square_root
+from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.mapped import SPLITTINGS, Maps, list_schedules
+from coadjoint.lower.program import Program, run
+from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, StructuredMethod
+from coadjoint.prove.certificate import Certificate
+from coadjoint.prove.facts import Facts, Kept
+from coadjoint.render.solvers import describe_structured, select_programs
+
+#: Points, each modulo another prime of 61 bits, at which a map is asked whether it keeps a
+#: function. Two that differ agree at one with a chance of their degree by 2^61.
+POINTS: Final = 2
+#: Primes that are tried: half of all numbers have no root modulo one.
+TRIES: Final = 60
+#: Evaluations of the rates that an implicit equation takes for each stage, about.
+SWEEPS: Final = "about a dozen sweeps"
+#: Steps of order 2 that make one of each order.
+_STEPS: Final = {2: 1, 4: 5, 6: 9}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What a theorem says of a method for one system.
+
+    Attributes:
+        exactly: What is kept to rounding.
+        is_poisson: Whether a step is a Poisson map.
+        decides: The fact that the theorem asks for.
+        cost: Of a step, in words.
+    """
+
+    exactly: tuple[Kept, ...]
+    is_poisson: bool
+    decides: str
+    cost: str
+
+
+#: What a rule takes: the facts, the method, and the maps of the system by name.
+Rule = Callable[[Facts, StructuredMethod, Mapping[str, Program]], Judgement]
+
+
+def judge_methods(
+    equations: Equations, certificate: Certificate, programs: Mapping[str, Program], maps: Maps
+) -> tuple[Facts, tuple[JudgedMethod, ...]]:
+    """The facts of a system that methods ask for, and every method judged by them.
+
+    Args:
+        equations: The emitted route.
+        certificate: What is proved of it.
+        programs: The functions of its kernel.
+        maps: What explicit methods make a step of.
+    """
+    facts = Facts(equations, programs, certificate)
+    solved = hold_sides(select_programs(programs.values(), maps=maps.programs))
+    offered = {each.name for each in describe_structured(solved)["structured"]["methods"]}
+    refusals = dict(maps.refusals)
+    refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
+    known = {program.name: program for program in maps.programs}
+    judged = {
+        name: JudgedMethod(name=name, order=method.order, decides=refusals[name])
+        if name in refusals
+        else _judge(facts, method, known)
+        for name, method in {**STRUCTURED, **MAPPED}.items()
+    }
+    return facts, _rank(facts, judged)
+
+
+def _refuse(facts: Facts, method: StructuredMethod) -> str:
+    """Why a method does not apply, as a clause."""
+    if facts.is_noisy:
+        return "motions with noise have methods of their own, heun and midpoint"
+    if facts.has_kinks:
+        return "its rates have kinks, at which explicit methods end their steps"
+    return f"it expects {method.expects}"
+
+
+def _judge(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> JudgedMethod:
+    """A method that applies."""
+    found = _RULES.get(method.file, _judge_unknown)(facts, method, maps)
+    names = [each.name for each in found.exactly]
+    return JudgedMethod(
+        name=method.name,
+        order=method.order,
+        exactly=tuple(names),
+        nearly=tuple(each.name for each in facts.integrals if each.name not in names),
+        is_poisson=found.is_poisson,
+        decides=found.decides,
+        cost=found.cost,
+    )
+
+
+# -- one rule for each theorem --------------------------------------------------------------------
+
+
+def _judge_unknown(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """Of a method without a rule nothing is said."""
+    return Judgement((), False, "nothing is proved of it", SWEEPS)
+
+
+def _judge_runge_kutta(
+    facts: Facts, method: StructuredMethod, _: Mapping[str, Program]
+) -> Judgement:
+    """Methods of Gauss keep quadratic integrals, and are symplectic where the tensor is constant.
+
+    Of a step ``X = x + h sum b_i f(Y_i)`` a quadratic integral F changes by
+    ``h sum b_i dF(Y_i) . f(Y_i)``, which is zero where dF . f is, at all stages.
+    """
+    exactly = tuple(each for each in facts.integrals if each.is_kept_within_steps)
+    is_symplectic = facts.is_hamiltonian and facts.tensor == "constant"
+    said = [f"{_list(exactly)} {_be(exactly)} of degree 2 at the most"] if exactly else []
+    if facts.is_moved and not exactly:
+        said.append("after each step the state is moved, so that quadratic integrals are not kept")
+    elif not exactly:
+        said.append("no integral is seen to be of degree 2 or less")
+    said += ["the Poisson tensor is constant"] * is_symplectic
+    is_gauss = method.file == "gauss"
+    stages = method.order // 2 if is_gauss else _STEPS[method.order]
+    each = "stage" if is_gauss else "midpoint"
+    cost = f"{SWEEPS} of {_count(stages, each)}"
+    return Judgement(exactly, is_symplectic, "; ".join(said), cost)
+
+
+def _on_orbits(facts: Facts) -> tuple[Kept, ...]:
+    """What a step ``X = x + h {x, h}(m)`` that is a coadjoint action keeps, m any point.
+
+    Casimirs are those of the orbit. A linear integral changes by h times its rate at m, which is 0.
+    """
+    return tuple(
+        each
+        for each in facts.integrals
+        if each.is_casimir or (each.is_kept_within_steps and each.degree in (0, 1))
+    )
+
+
+_ACTION: Final = "the motion is the bracket with its energy, and the bracket is linear"
+
+
+def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """Coadjoint actions are Poisson maps where they come from a discrete principle."""
+    stages = _STEPS[method.order]
+    cost = f"{SWEEPS} of {_count(stages, 'coadjoint arc')}, each a dozen brackets"
+    return Judgement(_on_orbits(facts), True, _ACTION, cost)
+
+
+def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """The spherical midpoint, which on one sphere is the midpoint with another length of step.
+
+    There ``X(s m) = s^2 X(m)`` of a field that is homogeneous and quadratic, so that all quadratic
+    integrals are kept.
+    """
+    exactly, decides = (
+        _on_orbits(facts),
+        f"its orbits are those of {_count(len(facts.spheres), 'sphere')}",
+    )
+    (one, *others) = facts.spheres
+    alone = not others and not one.tangent and len(facts.state) == len(one.rows)
+    if alone and facts.is_energy_homogeneous:
+        exactly = tuple(
+            each
+            for each in facts.integrals
+            if each in exactly or (each.is_kept_within_steps and each.degree == 2)
+        )
+        decides += ", on which the energy is quadratic"
+    cost = f"{SWEEPS} of {_count(_STEPS[method.order], 'midpoint')}"
+    return Judgement(exactly, True, decides, cost)
+
+
+def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> Judgement:
+    """Sequences of maps: flows keep all Casimirs; other integrals are asked of each map."""
+    schedule = list_schedules(maps)[method.name]
+    if method.name == "exact_body":
+        return Judgement(
+            facts.integrals, facts.is_hamiltonian, "the motion is that of Euler's top", "one map"
+        )
+    is_flow = method.name in SPLITTINGS
+    used = [maps[name] for name in dict.fromkeys(name for name, _ in schedule)]
+    exactly = tuple(
+        each
+        for each in facts.integrals
+        if (is_flow and each.is_casimir) or all(_keeps(facts, each, program) for program in used)
+    )
+    if not is_flow:
+        return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
+    parts = len(used)
+    decides = f"the energy is the sum of {_count(parts, 'part')} whose flows are in closed form"
+    return Judgement(exactly, True, decides, _count(len(schedule), "explicit map"))
+
+
+def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """Discrete gradients keep the energy, and Casimirs of degree 1, whose gradient is constant."""
+    exactly = tuple(
+        each
+        for each in facts.integrals
+        if each.name == "energy" or (each.is_casimir and each.degree in (0, 1))
+    )
+    decides = "the motion is an antisymmetric tensor times the gradient of its energy"
+    return Judgement(exactly, False, decides, SWEEPS)
+
+
+def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """The product of discrete gradients of all distinguished functions keeps each of them."""
+    exactly = tuple(each for each in facts.integrals if each.name == "energy" or each.is_casimir)
+    decides = "the motion is the product of the gradients of its energy and Casimirs"
+    return Judgement(exactly, False, decides, SWEEPS)
+
+
+_RULES: Final[Mapping[str, Rule]] = {
+    "midpoint": _judge_runge_kutta,
+    "gauss": _judge_runge_kutta,
+    "coadjoint_mean": _judge_orbits,
+    "isospectral_midpoint": _judge_orbits,
+    "spherical_midpoint": _judge_spheres,
+    "sequence": _judge_maps,
+    "discrete_gradient": _judge_gradients,
+    "average_gradient": _judge_gradients,
+    "nambu_gradient": _judge_nambu,
+}
+
+
+def _keeps(facts: Facts, each: Kept, program: Program) -> bool:
+    """Whether a map leaves a function as it is, at points modulo primes."""
+    field, source = facts.field, random.Random(1)  # noqa: S311
+    reached = frozenset[str]().union(*map(field.reach, each.values))
+    if reached - {*facts.state, *facts.equations.setting.parameters}:
+        return False
+    names, compared = dict.fromkeys((*program.names, *facts.equations.setting.parameters)), 0
+    for prime in islice(primes(), TRIES):
+        known = {name: Residue(source.randrange(1, prime), prime) for name in names}
+        number, call = partial(residue, prime=prime), partial(_call, prime=prime)
+        try:  # a root that is not there modulo this prime, or a pole
+            moved = run(program, {name: known[name] for name in program.names}, number, call)
+            there = known | dict(zip(facts.state, moved, strict=True))
+            pairs = [
+                [field.evaluate(value, dict(at), number, call) for at in (known, there)]
+                for value in each.values
+            ]
+        except ZeroDivisionError:
+            continue
+        if any(first != second for first, second in pairs):
+            return False
+        compared += 1
+        if compared == POINTS:
+            return True
+    return False
+
+
+def _call(function: str, *arguments: Residue, prime: int) -> Residue:
+    """A number that a function has at an argument: any, but roots, and points of a circle."""
+    if function == "sqrt":
+        return square_root(arguments[0])
+    seed = " ".join(str(each.value) for each in arguments)
+    if function in ("sin", "cos"):
+        one, half = Residue(1, prime), draw(f"half {seed}", prime)
+        square = half * half
+        top = half + half if function == "sin" else one + -square
+        return top / (one + square)
+    return draw(f"{function} {seed}", prime)
+
+
+# -- the order of preference ----------------------------------------------------------------------
+
+
+def _rank(facts: Facts, judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
+    """The methods with their ranks: those that apply and keep something, as they are preferred."""
+    wanted = [judged[name] for name in prefer(facts) if name in judged]
+    fit = [each.name for each in wanted if each.applies and (each.exactly or each.is_poisson)]
+    return tuple(
+        replace(each, rank=fit.index(name) + 1) if name in fit else each
+        for name, each in judged.items()
+    )
+
+
+def prefer(facts: Facts) -> tuple[str, ...]:
+    """Names of methods in the order in which ``"auto"`` takes them with a fixed step.
+
+    Names that a system does not have are passed over.
+    """
+    return tuple(dict.fromkeys((*_prefer_first(facts), "gauss4", "midpoint")))
+
+
+def _prefer_first(facts: Facts) -> Sequence[str]:
+    """What is preferred to the methods of Gauss."""
+    if facts.is_constrained:
+        return ["discrete_gradient"]
+    if facts.is_nambu:
+        pair = [each.degree for each in facts.integrals if each.name == "energy" or each.is_casimir]
+        is_quadratic = all(degree is not None for degree in pair)
+        return ["midpoint"] if is_quadratic else ["nambu_gradient", "discrete_gradient"]
+    if facts.tensor == "linear" and facts.is_hamiltonian:
+        if facts.spheres and not any(each.tangent for each in facts.spheres):
+            return ["spherical_midpoint", "coadjoint_mean"]
+        general = ["isospectral_midpoint4", "spherical_midpoint", "coadjoint_mean"]
+        return ["splitting4", *general] if facts.is_separable else general
+    if facts.is_canonical:
+        return ["splitting4"] if facts.is_separable else []
+    return ["splitting4", "discrete_gradient"] if facts.is_hamiltonian else []
+
+
+def _list(integrals: Sequence[Kept]) -> str:
+    """Names: ``energy, casimir1 and casimir2``."""
+    *others, last = [each.name for each in integrals]
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _be(integrals: Sequence[Kept]) -> str:
+    return "is" if len(integrals) == 1 else "are"
+
+
+def _count(number: int, what: str) -> str:
+    """A number of things: ``one midpoint``, ``5 midpoints``."""
+    return f"one {what}" if number == 1 else f"{number} {what}s"

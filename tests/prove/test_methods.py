@@ -1,0 +1,247 @@
+"""Methods judged by facts: what each keeps of a system, by its theorem, and on runs."""
+
+import numpy as np
+import pytest
+
+from coadjoint.derive import derive
+from coadjoint.lower.lowering import lower
+from coadjoint.lower.mapped import lower_maps
+from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.prove import Certificate
+from coadjoint.prove.methods import judge_methods
+from coadjoint.systems import galilei, heavy_top, kepler, nambu_body, rigid_body, suslov
+from tests.specs import RIGID_BODY, emitted, lowered, spec
+
+HAMILTONIAN = RIGID_BODY.replace(
+    'routes = ["euler-poincare", "lie-poisson"]', 'routes = ["lie-poisson"]'
+)
+HAMILTONIAN = HAMILTONIAN.replace('Omega = { role = "velocity" }\n', "")
+HAMILTONIAN = HAMILTONIAN.replace(
+    '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"',
+    '[hamiltonian]\nh = "Pi[1]^2/(2*I[1]) + Pi[2]^2/(2*I[2]) + Pi[3]^2/(2*I[3])"',
+)
+END = "Pi[3]^2/(2*I[3])"
+
+
+def judge(declared):
+    """Facts and methods by name, of a spec."""
+    equations = derive(declared, declared.routes[0])
+    return _judge(equations, lower(equations))
+
+
+def judge_shipped(name):
+    """The same of a shipped system."""
+    return _judge(emitted(name), lowered(name))
+
+
+def _judge(equations, programs):
+    maps = lower_maps(equations, programs["rhs"])
+    empty = Certificate(equations.spec.name, ())
+    facts, methods = judge_methods(equations, empty, programs, maps)
+    assert [each.name for each in methods] == [*STRUCTURED, *MAPPED]
+    return facts, {each.name: each for each in methods}
+
+
+def default(methods):
+    """The first one in rank, or ""."""
+    return next((name for name, each in methods.items() if each.rank == 1), "")
+
+
+# -- facts, from the textbook forms of these systems ----------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("rigid_body", ("linear", 2, True, False, False, 1)),
+        ("heavy_top", ("linear", 2, False, True, False, 1)),
+        ("kepler", ("constant", None, False, True, True, 0)),
+        ("galilei", ("linear", 2, False, False, False, 0)),
+        ("guiding_centre", ("not affine", None, False, False, False, 0)),
+        ("suslov", ("", 2, False, False, False, 0)),
+    ],
+)
+def test_facts_are_those_of_the_book(name, expected):
+    """Tensor, degree of the energy, whether it is homogeneous, separable, canonical; spheres."""
+    facts, _ = judge_shipped(name)
+    found = (facts.tensor, facts.energy_degree)
+    assert (found, facts.is_separable, facts.is_canonical) == (expected[:2], *expected[3:5])
+    assert len(facts.spheres) == expected[5]
+    if expected[2]:
+        assert facts.is_energy_homogeneous
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("rigid_body", "spherical_midpoint"),
+        ("heavy_top", "splitting4"),
+        ("galilei", "coadjoint_mean"),
+        ("kepler", "splitting4"),
+        ("c3_oscillators", "gauss4"),
+        ("nambu_body", "midpoint"),
+        ("suslov", "gauss4"),
+        ("bloch", ""),
+        ("stochastic_rigid_body", ""),
+    ],
+)
+def test_the_default_is_that_of_the_matrix(name, expected):
+    """One for each kind of system; none where nothing is kept."""
+    _, methods = judge_shipped(name)
+    assert default(methods) == expected
+
+
+def test_what_each_method_keeps_of_a_heavy_top():
+    """By the theorems: Gauss what is quadratic, actions and flows the Casimirs."""
+    _, methods = judge_shipped("heavy_top")
+    both = ("casimir1", "casimir2")
+    assert methods["gauss4"].exactly == ("energy", *both)
+    assert not methods["gauss4"].is_poisson
+    for name in ("coadjoint_mean", "spherical_midpoint", "splitting4"):
+        assert (methods[name].exactly, methods[name].nearly) == (both, ("energy",)), name
+        assert methods[name].is_poisson
+    assert methods["kahan"].exactly == ()
+    assert (
+        methods["exact_body"].decides == "it is no free motion of three components in closed form"
+    )
+
+
+def test_flows_are_asked_what_they_keep():
+    """Kicks and drifts keep the angular momentum of Kepler's motion, not its energy."""
+    _, methods = judge_shipped("kepler")
+    assert methods["splitting4"].exactly == ("L",)
+    assert "energy" in methods["splitting4"].nearly
+
+
+# -- facts that are spoiled -----------------------------------------------------------------------
+
+
+def test_a_cubic_term_takes_the_energy_from_the_midpoint():
+    """The energy is no longer of degree 2; the Casimir still is."""
+    _, before = judge(spec(HAMILTONIAN))
+    assert before["midpoint"].exactly == ("energy", "casimir1")
+    assert before["spherical_midpoint"].exactly == ("energy", "casimir1")
+    facts, after = judge(spec(HAMILTONIAN, (END, f"{END} + Pi[1]^3")))
+    assert facts.energy_degree is None
+    for name in ("midpoint", "gauss6", "spherical_midpoint"):
+        assert (after[name].exactly, after[name].nearly) == (("casimir1",), ("energy",)), name
+
+
+def test_a_linear_term_takes_the_energy_from_the_spherical_midpoint_alone():
+    """A gyrostat's energy is quadratic and not homogeneous."""
+    _, methods = judge(spec(HAMILTONIAN, (END, f"{END} + Pi[1]")))
+    assert methods["midpoint"].exactly == ("energy", "casimir1")
+    assert methods["spherical_midpoint"].exactly == ("casimir1",)
+
+
+def test_another_algebra_takes_the_spheres():
+    """On sl(2,R) orbits are no spheres, and the general method of orbits is the default."""
+    changed = ('name = "so(3)"', 'name = "sl(2,R)"')
+    casimir = ('casimirs = ["dot(Pi, Pi)"]', "")
+    facts, methods = judge(spec(HAMILTONIAN, changed, casimir))
+    assert facts.spheres == ()
+    assert not methods["spherical_midpoint"].applies
+    assert methods["spherical_midpoint"].decides.startswith("it expects a motion")
+    assert default(methods) == "coadjoint_mean"
+
+
+def test_friction_takes_the_bracket():
+    """Methods of orbits do not apply, and the Casimir that friction keeps decides."""
+    damped = f'{HAMILTONIAN}\n[double_bracket]\nG = "0.1"\n'
+    _, methods = judge(spec(damped))
+    assert not methods["coadjoint_mean"].applies
+    assert (methods["gauss4"].exactly, methods["gauss4"].nearly) == (("casimir1",), ())
+    assert default(methods) == "gauss4"
+
+
+def test_kinks_and_noise_take_all():
+    """Each method says what is in the way."""
+    _, methods = judge_shipped("stochastic_rigid_body")
+    reasons = {each.decides for each in methods.values() if not each.applies}
+    assert "motions with noise have methods of their own, heun and midpoint" in reasons
+    assert not any(each.applies for each in methods.values())
+
+
+def test_states_that_are_moved_take_quadratic_integrals():
+    """Two pendulums on rods: after each step positions are moved onto spheres."""
+    facts, methods = judge_shipped("double_spherical_pendulum")
+    assert facts.is_moved
+    assert methods["gauss4"].exactly == ()
+    assert "the state is moved" in methods["gauss4"].decides
+
+
+# -- on runs --------------------------------------------------------------------------------------
+
+RUNS = {
+    "rigid_body": (rigid_body, [0.5, 0.3, 0.9], {"I": [2.0, 1.0, 2 / 3]}),
+    "heavy_top": (
+        heavy_top,
+        [0.4, -0.3, 1.2, 0.6, 0.0, 0.8],
+        {"I": [1.0, 1.3, 0.6], "m": 1.0, "g": 1.0, "chi": [0.1, 0.2, 0.6]},
+    ),
+    "kepler": (kepler, [1.0, 0.0, 0.0, 0.0, 1.1, 0.2], {"mu": 1.0}),
+    "nambu_body": (nambu_body, [0.5, 0.3, 0.9], None),
+    "galilei": (galilei, np.linspace(0.2, 0.9, galilei.system.STATE.size), None),
+    "suslov": (suslov, [0.429, -0.084, 0.0], None),
+}
+#: Steps of 0.1; an integral that is not kept is missed by more after so many.
+STEPS, ROUNDING = 400, 1e-13
+#: What is not kept and hardly moves all the same, by system: nothing says that it has to.
+QUIET = {("suslov", "energy")}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_what_is_kept_exactly_stays_on_runs(name):
+    """Drifts at rounding of all that a method keeps, and above it of all that it does not."""
+    system, start, parameters = RUNS[name]
+    methods = system.system.METHODS
+    assert {each.name for each in methods} >= {"midpoint", "midpoint4", "gauss4"}
+    compared = 0
+    for method in methods:
+        span = (0, 0.125 * STEPS)
+        run = system.simulate(
+            start, span, parameters, method=method.name, step=0.125, samples=41, target="numpy"
+        )
+        assert run.status == "OK", method.name
+        assert {*method.exactly, *method.nearly} == {*run.drift}
+        for integral in method.exactly:
+            assert run.drift[integral] < ROUNDING, (method.name, integral)
+        for integral in method.nearly if method.order == 2 else ():
+            assert run.drift[integral] > 1e-9, (method.name, integral)
+        compared += len(run.drift)
+    assert compared >= len(methods)
+
+
+def find_defect(system, start, parameters, method, step=0.3):
+    """How far a step is from a Poisson map: ``max |D J D^T - J|`` by differences."""
+    start, eps, n = np.array(start), 1e-5, len(start)
+
+    def flow(x):
+        run = system.simulate(x, (0, step), parameters, method=method, step=step, samples=1)
+        return run.state[..., -1]
+
+    shifts = eps * np.eye(n)
+    both = flow(start[:, np.newaxis] + shifts), flow(start[:, np.newaxis] - shifts)
+    slope = (both[0] - both[1]) / (2 * eps)
+    tensor = system.poisson_tensor(start, parameters)
+    return np.abs(slope @ tensor @ slope.T - system.poisson_tensor(flow(start), parameters)).max()
+
+
+@pytest.mark.parametrize("name", ["rigid_body", "heavy_top", "kepler", "galilei"])
+def test_poisson_maps_are_those_that_are_said_to_be(name):
+    """Claimed ones to the error of differences, others above 1e-6."""
+    system, start, parameters = RUNS[name]
+    found = {each.name: find_defect(system, start, parameters, each.name) for each in
+             system.system.METHODS if each.order < 6}  # fmt: skip
+    for method in system.system.METHODS:
+        if method.is_poisson and method.name in found:
+            assert found[method.name] < 1e-9, method.name
+        elif method.order == 2:
+            assert found[method.name] > 1e-6, method.name
+    assert len(found) > 5
+
+
+def test_a_wrong_claim_would_be_seen():
+    """RK4 in place of the methods that keep the Casimir: its drift is far above rounding."""
+    run = rigid_body.simulate([0.5, 0.3, 0.9], (0, 50), method="rk4", step=0.125, samples=41)
+    assert min(run.drift.values()) > 1e3 * ROUNDING
