@@ -8,6 +8,7 @@ Read next: `coadjoint.sandbox`.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from os import PathLike, fspath
@@ -87,6 +88,25 @@ def prove_bounded(
     """
     argument = {"path": fspath(path), "sizes": dict(sizes)}
     return _run("coadjoint.bounded:certificate_record", argument, seconds, memory)
+
+
+def methods_bounded(
+    path: str | PathLike[str],
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
+) -> dict[str, Any]:
+    """Which methods of integration keep what of a system, judged in a bounded child.
+
+    Arguments and errors are those of `derive_bounded`.
+
+    Returns:
+        What ``coadjoint show --methods --json`` prints: ``system``, ``structure``, the facts that
+        decide, and ``methods`` with the attributes of `coadjoint.methods.JudgedMethod`.
+    """
+    argument = {"path": fspath(path), "sizes": dict(sizes)}
+    return _run("coadjoint.bounded:methods_record", argument, seconds, memory)
 
 
 def _run(
@@ -200,3 +220,16 @@ def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         "failures": [failure_text(claim) for claim in certificate.failures],
         **entries,
     }
+
+
+def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """Methods of integration, judged, as plain JSON values; runs in a bounded child."""
+    from coadjoint.pipeline import render
+    from coadjoint.spec import read_spec
+
+    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
+    stages = ("derive", "lower", "prove", "render")
+    rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    record = json.loads(rendered.texts["certificate.json"])
+    judged = {key: record.get(key, empty) for key, empty in (("structure", {}), ("methods", []))}
+    return {"system": spec.name, **judged}

@@ -273,6 +273,11 @@ _MAPS: Final = (
     ),
 )
 
+#: Methods of motions with noise; ``"auto"`` is the last one.
+NOISY: Final = ("heun", "midpoint")
+#: With a fixed step, without a method that keeps structure.
+PLAIN: Final = "dop853"
+
 _TABLE: Final = {each.name: each for each in _ENTRIES}
 #: Every method that keeps structure, by name.
 STRUCTURED: Final = MappingProxyType(_TABLE)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 
@@ -59,3 +61,39 @@ def test_many_short_lines_stand_side_by_side(run):
     many = run("show", "so5_body").stdout
     assert not [line for line in few.splitlines() if line.count("} =") > 1]
     assert [line for line in many.splitlines() if line.count("} =") > 1]
+
+
+def test_methods_are_listed_with_what_decides(run):
+    """The default first, the reasons of those that do not apply together, and JSON of the same."""
+    shown = run("show", "rigid_body", "--methods").stdout
+    first = next(line for line in shown.splitlines() if "Poisson tensor" in line)
+    assert first.split()[0] == "spherical_midpoint"
+    assert "energy, casimir1, Poisson tensor" in first
+    assert '"auto" with step= takes spherical_midpoint.' in shown
+    record = json.loads(run("show", "heavy_top", "--methods", "--json").stdout)
+    by_name = {each["name"]: each for each in record["methods"]}
+    assert by_name["splitting4"]["rank"] == 1
+    assert by_name["gauss4"]["exactly"] == ["energy", "casimir1", "casimir2"]
+    assert record["structure"]["poisson_tensor"] == "linear"
+    refused = "exact_body does not apply: it is no free motion of three components in closed form."
+    assert refused in run("show", "heavy_top", "--methods").stdout
+
+
+@pytest.mark.parametrize(
+    ("system", "said"),
+    [
+        ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
+        ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
+        ("toda_lattice", "No method that keeps structure is generated for toda_lattice"),
+        ("bloch", '"auto" with step= takes dop853.'),
+    ],
+)
+def test_systems_without_methods_that_keep_structure_say_so(run, system, said):
+    """Of noise, of equal members, and where nothing is kept."""
+    assert said in run("show", system, "--methods").stdout
+
+
+def test_a_derivation_is_printed_as_json(run):
+    """The fields of the document."""
+    record = json.loads(run("show", "rigid_body", "--json").stdout)
+    assert record["title"] == "Free rigid body"

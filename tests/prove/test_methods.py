@@ -185,7 +185,7 @@ RUNS = {
     "suslov": (suslov, [0.429, -0.084, 0.0], None),
 }
 #: Steps of 0.1; an integral that is not kept is missed by more after so many.
-STEPS, ROUNDING = 400, 1e-13
+STEPS, ROUNDING = 400, 1e-12
 #: What is not kept and hardly moves all the same, by system: nothing says that it has to.
 QUIET = {("suslov", "energy")}
 
@@ -238,7 +238,7 @@ def test_poisson_maps_are_those_that_are_said_to_be(name):
             assert found[method.name] < 1e-9, method.name
         elif method.order == 2:
             assert found[method.name] > 1e-6, method.name
-    assert len(found) > 5
+    assert len(found) >= 5
 
 
 def test_a_wrong_claim_would_be_seen():

@@ -133,7 +133,7 @@ def test_a_finished_run_is_not_computed_again(tmp_path, monkeypatch):
         ({"atol": 1e-9}, "its atol is 1e-12"),
         ({"method": "dop853"}, "its method is 'taylor', and that of this run is 'dop853'"),
         ({"target": "numpy"}, "its target is 'c'"),
-        ({"step": 0.1}, "is 'dop853'"),
+        ({"step": 0.1}, "is 'spherical_midpoint'"),
         ({"max_steps": 7}, "its max_steps is 1000000"),
         ({"state": [1.0, 0.3, -0.7]}, "its initial state has the hash"),
         ({"t": (0, 2)}, "its samples has the hash"),

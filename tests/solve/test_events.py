@@ -24,7 +24,13 @@ METHODS = [
     {"method": "scipy:DOP853"},
 ]
 #: All that find events; those with fixed steps are as exact as their step makes them.
-ALL = [{}, {"method": "dop853"}, {"step": 0.05}, {"method": "rk4", "step": 0.005}, *METHODS]
+ALL = [
+    {},
+    {"method": "dop853"},
+    {"method": "dop853", "step": 0.05},
+    {"method": "rk4", "step": 0.005},
+    *METHODS,
+]
 
 
 @pytest.fixture(scope="module")

@@ -90,7 +90,7 @@ WRONG = [
     ({"method": "rk4", "step": 0.1, "rtol": 1e-3}, "expected one or the other"),
     ({"method": "scipy:BDF", "step": 0.1}, "chooses its steps by the tolerances"),
     ({"method": "dop853", "step": 0.1, "rtol": 1e-6}, "expected one or the other"),
-    ({"step": 0.1, "atol": 1e-6}, "which method 'dop853' does not look at.* one or the other"),
+    ({"step": 0.1, "atol": 1e-6}, "which method 'splitting4' does not look at.* one or the other"),
     ({"state": BATCH, "method": "scipy:Radau"}, "follows one trajectory; .* Leave method out"),
     ({"target": "python", "method": "taylor"}, "does not apply.*targets c, c-fast and numpy"),
     ({"target": "python", "step": 0.1}, "with a fixed step is a generated solver, which does not"),

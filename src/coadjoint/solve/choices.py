@@ -15,8 +15,6 @@ from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Methods that are generated.
 GENERATED: Final = ("taylor", "dop853", "rk4")
-#: Those of systems with noise.
-NOISY: Final = ("heun", "midpoint")
 
 
 @dataclass(frozen=True)

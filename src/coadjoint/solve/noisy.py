@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import STRUCTURED
-from coadjoint.solve.choices import NOISY
+from coadjoint.methods import NOISY, STRUCTURED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import PLAIN
 
 if TYPE_CHECKING:
     from coadjoint.solve.system import System
 
-#: Without a method that keeps structure.
-PLAIN: Final = "dop853"
 #: Words of a wish for the bracket, with the energy.
 _BRACKET: Final = frozenset({"poisson", "symplectic"})
 #: Why both are not to be had.

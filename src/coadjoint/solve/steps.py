@@ -126,9 +126,10 @@ class Cubic:
         return first, chord, rise, self.h * (self.last() - first) + 2.0 * rise
 
     def follow(self, after: Array) -> Array:
-        """The state some time after the start."""
+        """The state some time after the start; after the whole step it is the end to the bit."""
         part, (_, chord, rise, both) = after / self.h, self._parts()
-        return np.asarray(self.start + part * (chord + (1.0 - part) * (rise - part * both)))
+        within = self.start + part * (chord + (1.0 - part) * (rise - part * both))
+        return np.asarray(np.where(after == self.h, self.end, within))
 
     def coefficients(self) -> Array:
         """Those of the path in the time since the start, ``(n, 4, N)``."""

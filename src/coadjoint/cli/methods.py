@@ -1,0 +1,54 @@
+"""Methods of integration as a command shows them: what each keeps of a system, and why.
+
+Comes in: the record of `coadjoint.bounded.methods_bounded`. Goes out: a table of those that apply,
+the default first, and a line for each of the others.
+Read next: `coadjoint.prove.methods`, which judges them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from coadjoint.cli.output import print_table, say
+from coadjoint.methods import NOISY, PLAIN
+
+
+def print_methods(record: Mapping[str, Any]) -> None:
+    """The methods of a system: order, what is kept, whether a step is a Poisson map, and cost."""
+    name, methods = record["system"], record["methods"]
+    if not methods:
+        say(f"No method that keeps structure is generated for {name}: its members are equal.")
+        return
+    fit = sorted((each for each in methods if each["cost"]), key=_place)
+    if fit:
+        columns = ("method", ">order", "keeps exactly", "keeps nearly", "why", "a step takes")
+        print_table(columns, list(map(_row, fit)), f"Methods of {name} with a fixed step")
+        say("keeps nearly: up to an error of the order of the method")
+    is_noisy = "noise" in record["structure"].get("acts", ())
+    first = next((each["name"] for each in fit if each["rank"] == 1), "")
+    say(f'"auto" with step= takes {first or (NOISY[-1] if is_noisy else PLAIN)}.')
+    others = dict[str, list[str]]()
+    for each in methods:
+        if not each["cost"]:
+            others.setdefault(each["decides"], []).append(each["name"])
+    for why, names in others.items():
+        say(f"{', '.join(names)} {'do' if len(names) > 1 else 'does'} not apply: {why}.")
+
+
+def _place(method: Mapping[str, Any]) -> tuple[bool, int]:
+    """Methods that ``"auto"`` takes, in its order, before the others."""
+    return not method["rank"], method["rank"]
+
+
+def _row(method: Mapping[str, Any]) -> tuple[str, ...]:
+    """A line of the table."""
+    exactly = [*method["exactly"], *(["Poisson tensor"] if method["is_poisson"] else [])]
+    return (
+        method["name"],
+        str(method["order"]),
+        ", ".join(exactly) or "-",
+        ", ".join(method["nearly"]) or "-",
+        method["decides"],
+        method["cost"],
+    )
