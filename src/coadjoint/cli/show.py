@@ -41,7 +41,7 @@ def command(
     seconds: int | None,
     as_json: bool,
 ) -> None:
-    """Show a derivation, step by step, or the methods that keep what it says."""
+    """Show a derivation, step by step, or methods of integration."""
     from coadjoint.bounded import derive_bounded, methods_bounded
     from coadjoint.render.document import render_document
 
