@@ -1,5 +1,7 @@
 """Systems that a Lax pair declares without any energy: Toda, Lotka and Volterra, Euler."""
 
+import json
+
 import numpy as np
 import pytest
 import sympy
@@ -101,7 +103,11 @@ def test_nothing_speaks_of_an_energy(text, typed, count):
     rendered = pipeline.render(spec(text))
     assert {"rhs", "jacobian", "observables"} <= set(rendered.programs)
     assert not {"energy", "poisson_tensor"} & set(rendered.programs)
-    for name in ("certificate.json", "kernel.py", "kernel.h", "__init__.py"):
+    record = json.loads(rendered.texts["certificate.json"])
+    refused = {each["decides"] for each in record.pop("methods") if not each["cost"]}
+    assert "energy" in " ".join(refused)  # which such methods ask for
+    assert "energy" not in json.dumps(record).lower()
+    for name in ("kernel.py", "kernel.h", "__init__.py"):
         assert "energy" not in rendered.texts[name].lower(), name
     steps = [step.title for step in rendered.equations.steps]
     assert len(steps) == 3
