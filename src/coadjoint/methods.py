@@ -94,8 +94,10 @@ _QUADRATIC: Final = (
     "E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), theorem IV.2.1"
 )
 
-#: Functions of the kernel that act on a state where a motion stays on coadjoint orbits.
+#: Functions of the kernel of which a motion is made that is a bracket with an energy.
 ACTION: Final = ("energy_gradient", "bracket_vector")
+#: The same where the motion stays on coadjoint orbits, on which the bracket acts.
+_ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
     "Casimirs, to the rounding of each step, and the Poisson bracket: it stays on coadjoint orbits"
 )
@@ -115,6 +117,19 @@ _SPHERES: Final = (
 )
 _LIE_POISSON: Final = (
     "a motion that is the bracket with its energy alone, which is linear in the state"
+)
+
+_BALANCE: Final = (
+    "the energy, to the rounding of each step, or its balance with the power of forces; Casimirs "
+    "of degree 2 at the most"
+)
+_TENSOR: Final = (
+    "J(m) times a discrete gradient of the energy, J an antisymmetric tensor at the middle m of a "
+    "step (R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 "
+    "(1999) 1021)"
+)
+_TENSORS: Final = (
+    "an energy, and a Poisson or almost-Poisson tensor in closed form, without relaxation"
 )
 
 _ENTRIES: Final = (
@@ -148,7 +163,7 @@ _ENTRIES: Final = (
         name="coadjoint_mean",
         file="coadjoint_mean",
         order=2,
-        needs=ACTION,
+        needs=_ORBITS,
         keeps=_ON_ORBITS,
         theorem=_MEAN,
         expects=_LIE_POISSON,
@@ -157,7 +172,7 @@ _ENTRIES: Final = (
         name="coadjoint_mean4",
         file="coadjoint_mean",
         order=4,
-        needs=ACTION,
+        needs=_ORBITS,
         keeps=_ON_ORBITS,
         theorem="five steps with Suzuki's lengths of the coadjoint-mean method, a Poisson map",
         expects=_LIE_POISSON,
@@ -166,7 +181,7 @@ _ENTRIES: Final = (
         name="coadjoint_mean6",
         file="coadjoint_mean",
         order=6,
-        needs=ACTION,
+        needs=_ORBITS,
         keeps=_ON_ORBITS,
         theorem="nine steps with the lengths of Kahan and Li of the coadjoint-mean method, a "
         "Poisson map",
@@ -176,7 +191,7 @@ _ENTRIES: Final = (
         name="spherical_midpoint",
         file="spherical_midpoint",
         order=2,
-        needs=(*ACTION, "spheres"),
+        needs=(*_ORBITS, "spheres"),
         keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
         theorem=_SPHERICAL,
         expects=_SPHERES,
@@ -185,7 +200,7 @@ _ENTRIES: Final = (
         name="spherical_midpoint4",
         file="spherical_midpoint",
         order=4,
-        needs=(*ACTION, "spheres"),
+        needs=(*_ORBITS, "spheres"),
         keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
         theorem="five steps with Suzuki's lengths of the spherical midpoint, a Poisson map",
         expects=_SPHERES,
@@ -194,7 +209,7 @@ _ENTRIES: Final = (
         name="spherical_midpoint6",
         file="spherical_midpoint",
         order=6,
-        needs=(*ACTION, "spheres"),
+        needs=(*_ORBITS, "spheres"),
         keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
         theorem="nine steps with the lengths of Kahan and Li of the spherical midpoint, a Poisson "
         "map",
@@ -212,6 +227,32 @@ _ENTRIES: Final = (
             "(M. Antonana, J. Makazaga and A. Murua, Numerical Algorithms 76 (2017) 861)",
         )
         for order in (4, 6, 8)
+    ),
+    *(
+        StructuredMethod(
+            name=f"discrete_gradient{suffix}",
+            file="discrete_gradient",
+            order=order,
+            needs=(*ACTION, "energy"),
+            keeps=_BALANCE,
+            theorem=f"{steps}{_TENSOR}, by the gradient at m corrected along the step (O. "
+            "Gonzalez, Journal of Nonlinear Science 6 (1996) 449)",
+            expects=_TENSORS,
+        )
+        for suffix, order, steps in (
+            ("", 2, ""),
+            ("4", 4, "five steps with Suzuki's lengths of "),
+        )
+    ),
+    StructuredMethod(
+        name="average_gradient",
+        file="average_gradient",
+        order=2,
+        needs=ACTION,
+        keeps=f"{_BALANCE}, of energies that are polynomials of degree 8 at the most",
+        theorem=f"{_TENSOR}, by the mean of the gradient along the step (E. Celledoni et al., "
+        "Journal of Computational Physics 231 (2012) 6770)",
+        expects=_TENSORS,
     ),
 )
 
@@ -292,8 +333,8 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
     Motions with noise have methods of their own, and steps that end at kinks are explicit.
 
     Args:
-        functions: Their names, ``kinks`` among them where the rates have some, and ``spheres``
-            where they are on spheres.
+        functions: Their names, ``kinks`` among them where the rates have some, ``orbits`` where
+            the motion stays on coadjoint orbits, and ``spheres`` where these are spheres.
 
     >>> [method.name for method in list_structured(["rhs"])]
     ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import cast
 
-from coadjoint.derive import charts, frame_names, pairs
+from coadjoint.derive import charts, frame_names, pairs, times_vector
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics import external, kinematics, legendre
@@ -20,7 +20,14 @@ from coadjoint.spec import Spec
 from coadjoint.spec.routes import ROUTES
 
 #: What names symbols whatever the routes are, after these.
-_ALWAYS = (external.symbols, legendre.symbols, charts.symbols, pairs.symbols, frame_names.symbols)
+_ALWAYS = (
+    external.symbols,
+    legendre.symbols,
+    charts.symbols,
+    pairs.symbols,
+    frame_names.symbols,
+    times_vector.symbols,
+)
 _FOLDER = "coadjoint.derive.routes"
 
 

@@ -1,46 +1,209 @@
-"""The Poisson tensor of a motion times a vector, in a field with components of the vector.
+r"""The tensor of a motion times a vector, in a field with components of the vector.
 
 Comes in: Equations. Goes out: Equations with the products in place of the rates. Methods that keep
 the structure of a motion ask for them: the motion is the tensor times the gradient of the energy.
+
+Over a distribution the tensor J is that of the momenta :math:`M = B^T p` along it and of the
+positions z (`coadjoint.derive.mechanics.almost_poisson`), and the state has the velocities
+:math:`\eta` in place of M. With :math:`T = \partial (M, z)/\partial (\eta, z)` the tensor in the
+state is :math:`T^{-1} J T^{-T}`, so that its product with (a, b) is :math:`(\mathcal{M}^{-1} (r -
+\partial_z M \, s), s)` where :math:`(r, s) = J (u, b - (\partial_z M)^T u)` and
+:math:`\mathcal{M} u = a`. It is antisymmetric as J is. Both solves are those of the accelerations.
 Read next: `coadjoint.derive.formulas`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.almost_poisson import momenta_along
+from coadjoint.derive.mechanics.decided import Decided
+from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.mechanics.kinematics import rate_name
+from coadjoint.derive.mechanics.solver import (
+    Solve,
+    definitions_under,
+    solve_in_kernel,
+    solver_names,
+)
 from coadjoint.derive.records import Exact
-from coadjoint.derive.setting import Setting, once, vector_names
-from coadjoint.exact import Field
+from coadjoint.derive.setting import Setting, list_components, once, vector_names
+from coadjoint.exact import Element, Field
+from coadjoint.spec import Spec
+
+Tensor = Sequence[Sequence[Element]]
+#: Terms of the derivatives of momenta by positions beyond which a product is not written out:
+#: rolling ellipsoids have 60, and Veselova's problem on so(4) has 1900.
+TERMS: Final = 1000
+
+
+def symbols(spec: Spec) -> tuple[str, ...]:
+    """The names that products need in the field of a spec whose tensors may call functions."""
+    count = len(list_components(spec.state))
+    if spec.in_frame:
+        unknowns = (*_number("eta", count), *_number("acc", count))
+        return (*vector_names(count), *unknowns, *solver_names(range(2 * count)))
+    has_velocities = spec.algebra is None and not spec.having_role("momentum")
+    return vector_names(count) if has_velocities or spec.poisson is not None else ()
+
+
+def _number(word: str, count: int) -> list[str]:
+    """Names of what a tensor over a distribution turns, and of what it gives."""
+    return [f"_{word}{n + 1}" for n in range(count)]
 
 
 @once
 def times_vector(equations: Equations) -> Equations | None:
-    """``J(x) v`` in place of the rates; None where the motion is not ``J`` times a gradient.
+    """``J(x) v`` in place of the rates; None where there is no such J in closed form.
 
-    It is for free motions by a route with an energy and a bracket, whose momenta do not move at a
-    fixed state, and to which no relaxation is added. The certificate proves it of each. Tensors
-    with functions of the state or with velocities that the kernel solves for are left out.
+    It is for motions by a route with an energy and a bracket, whose momenta do not move at a
+    fixed state, and to which no relaxation is added. The certificate proves it of each.
     """
-    setting, exact = equations.setting, equations.exact
-    tensor, spec = exact.poisson_tensor, equations.spec
-    if exact.energy is None or tensor is None or equations.distribution is not None:
+    setting, exact, spec = equations.setting, equations.exact, equations.spec
+    tensor = exact.poisson_tensor
+    if exact.energy is None or tensor is None or spec.relaxation or equations.chart is not None:
         return None
-    if spec.constraints or spec.relaxation or equations.chart is not None:
-        return None
-    field, state = setting.field, setting.state
-    named, vector = (*state, *setting.parameters, *setting.driving), vector_names(len(state))
+    named = {*setting.state, *setting.parameters, *setting.driving}
     closed = [[equations.close(entry) for entry in row] for row in tensor]
-    for entry in (entry for row in closed for entry in row):
-        if not field.is_function_free(entry) or field.reach(entry) - {*named}:
-            return None
-    wide = Field([*state, *vector, *named[len(state) :]], 0, field.positive & {*named})
-    products = tuple(
-        wide.sum(wide.adopt(entry) * wide[v] for entry, v in zip(row, vector, strict=True) if entry)
-        for row in closed
+    if any(setting.field.reach(entry) - named for row in closed for entry in row):
+        return None
+    if equations.distribution is not None:
+        return _over_distribution(equations, tensor)
+    if spec.constraints:
+        return None
+    vector = vector_names(len(setting.state))
+    if {*vector} <= {*setting.field.names}:
+        own = Exact(
+            definitions=(),
+            rates=_apply(setting.field, closed, setting.elements(vector)),
+            energy=None,
+            emitted=(),
+            poisson_tensor=None,
+        )
+        return replace(equations, exact=own, steps=())
+    return _in_wider_field(equations, closed)
+
+
+def _apply(field: Field, tensor: Tensor, vector: Sequence[Element]) -> tuple[Element, ...]:
+    """A matrix times a vector."""
+    return tuple(
+        field.sum(x * v for x, v in zip(row, vector, strict=True) if x and v) for row in tensor
     )
-    own = Exact(definitions=(), rates=products, energy=None, emitted=(), poisson_tensor=None)
+
+
+def _in_wider_field(equations: Equations, tensor: Tensor) -> Equations | None:
+    """The same in a field of its own; None of a tensor with functions, which stay in theirs."""
+    setting, field = equations.setting, equations.setting.field
+    if not all(field.is_function_free(entry) for row in tensor for entry in row):
+        return None
+    vector = vector_names(len(setting.state))
+    named = (*setting.state, *vector, *setting.parameters, *setting.driving)
+    wide = Field(named, 0, field.positive & {*named})
+    adopted = [[wide.adopt(entry) for entry in row] for row in tensor]
+    own = Exact(
+        definitions=(),
+        rates=_apply(wide, adopted, [wide[name] for name in vector]),
+        energy=None,
+        emitted=(),
+        poisson_tensor=None,
+    )
     return replace(
-        equations, setting=Setting(spec=spec, field=wide, values={}), exact=own, steps=()
+        equations, setting=Setting(spec=equations.spec, field=wide, values={}), exact=own, steps=()
     )
+
+
+def _over_distribution(equations: Equations, tensor: Tensor) -> Equations | None:
+    """The same where velocities along a distribution are the state, in place of their momenta."""
+    setting, of = equations.setting, equations.distribution
+    assert of is not None, equations.route
+    field, state = setting.field, setting.state
+    if of.kept or setting.driving or _number("eta", 1)[0] not in field.names:
+        return None
+    along = map(equations.close, momenta_along(setting, list(zip(*of.B, strict=True))))
+    momenta = dict(zip(of.independent, along, strict=True))
+    if any(field.reach(each) - {*state, *setting.parameters} for each in momenta.values()):
+        return None
+    positions = [name for name in state if name not in momenta]
+    slopes = {
+        name: dict(zip(positions, field.gradient(each, positions), strict=True))
+        for name, each in momenta.items()
+    }
+    if sum(len(field.terms(x)) for each in slopes.values() for x in each.values()) > TERMS:
+        return None
+    mass = _Mass(equations, of, tensor)
+    vector = dict(zip(state, setting.elements(vector_names(len(state))), strict=True))
+    eta = mass.divide("eta", vector)
+    eta |= mass.name(
+        "eta",
+        {z: vector[z] - field.sum(slopes[name][z] * eta[name] for name in eta) for z in positions},
+    )
+    moved = dict(zip(state, _apply(field, tensor, [eta[name] for name in state]), strict=True))
+    rates = mass.name("acc", {z: moved[z] for z in positions})
+    forces = {
+        name: moved[name] - field.sum(slopes[name][z] * rates[z] for z in positions)
+        for name in momenta
+    }
+    rates |= mass.divide("acc", forces)
+    own = Exact(
+        definitions=tuple(mass.definitions),
+        rates=tuple(rates[name] for name in state),
+        energy=None,
+        emitted=(),
+        poisson_tensor=None,
+        solves=tuple(mass.solves),
+    )
+    return replace(equations, exact=own, steps=())
+
+
+class _Mass:
+    """The reduced mass matrix, with what is computed by it, each value by a name of its own.
+
+    Attributes:
+        solves: What was solved, block by block.
+        definitions: On which the matrix and the tensor rest, then those of the solves.
+    """
+
+    def __init__(self, equations: Equations, of: Distribution, tensor: Tensor) -> None:
+        self._blocks, self._field = equations.exact.solves, equations.setting.field
+        self._names, self._state = of.independent, equations.setting.state
+        rows = [row for each in self._blocks for row in each.matrix]
+        needed = [entry for row in (*rows, *tensor) for entry in row]
+        self.solves = list[Solve]()
+        self.definitions = definitions_under(self._field, equations.exact.definitions, needed)
+        self._decided = Decided(self._field, [*self._state, *vector_names(len(self._state))])
+        for name, value in self.definitions:
+            self._decided.define(name, value)
+
+    def divide(self, word: str, known: Mapping[str, Element]) -> dict[str, Element]:
+        """Velocities from momenta, or accelerations from forces, by names of velocities."""
+        first = len(self._names) if self.solves else 0
+        by_rate = {rate_name(name): name for name in self._names}
+        for each in self._blocks:
+            own = [by_rate[name] for name in each.names]
+            solve = Solve(
+                matrix=each.mirrored,  # without what forces add
+                known=[known[name] for name in own],
+                block=[first + place for place in each.block],
+                names=[self._find_name(word, name) for name in own],
+            )
+            self.solves.append(solve)
+            self.definitions += solve_in_kernel(self._field, solve, self._decided)
+        return {name: self._take(word, name) for name in self._names}
+
+    def name(self, word: str, values: Mapping[str, Element]) -> dict[str, Element]:
+        """Components that are read several times: products of sums are not multiplied out."""
+        for name, value in values.items():
+            own = self._find_name(word, name)
+            self.definitions.append((own, self._decided.define(own, value)))
+        return {name: self._take(word, name) for name in values}
+
+    def _find_name(self, word: str, name: str) -> str:
+        return f"_{word}{self._state.index(name) + 1}"
+
+    def _take(self, word: str, name: str) -> Element:
+        """A named value as others read it: zero where it is that."""
+        own = self._find_name(word, name)
+        return self._decided.numbers.get(own, self._field[own])

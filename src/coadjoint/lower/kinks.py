@@ -49,7 +49,7 @@ def hold_sides(programs: Mapping[str, Program]) -> dict[str, Program]:
         if not set(find_kinks(form)) <= sides.keys():
             return dict(programs)  # recurrences are made of other arguments
         held = replace(held, factored=_hold(form, sides))
-    bounds = {name: each for name, each in programs.items() if name not in ACTION}
+    bounds = {name: each for name, each in programs.items() if name not in (*ACTION, "energy")}
     return {**bounds, "rates": held, "kinks": _make_kinks(rates, kinks)}
 
 

@@ -1,29 +1,20 @@
-"""Orbits: whether a motion stays on coadjoint orbits, decided by its Programs.
+"""Orbits: whether a motion is a bracket, and stays on coadjoint orbits, decided by its Programs.
 
 Comes in: the functions of a kernel. Goes out: whether its rates are its bracket with the gradient
-of its energy, nothing added, and the bracket is linear in the state. Then that is a coadjoint
-action, and methods apply that move a state by elements of the group.
+of its energy, nothing added, and whether the bracket is linear in the state. Then that is a
+coadjoint action, and methods apply that move a state by elements of the group.
 Read next: `coadjoint.methods`.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
-from itertools import islice
-from typing import Final
 
-from coadjoint.exact.linear import primes
-from coadjoint.exact.residues import Residue, draw, residue
+from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.program import Program, run
 from coadjoint.methods import ACTION, Sphere
-
-#: Points modulo a prime, of 61 bits, at which rates are compared, and those that are tried.
-POINTS: Final = 2
-TRIES: Final = 20
 
 
 class NotLinearError(Exception):
@@ -63,9 +54,7 @@ def stays_on_orbits(programs: Mapping[str, Program]) -> bool:
     Args:
         programs: The functions of a kernel by name.
     """
-    if not {*ACTION} <= programs.keys() or "noise" in programs:
-        return False
-    return _is_linear(programs) and _is_bracket(programs)
+    return {*ACTION} <= programs.keys() and _is_linear(programs) and is_bracket(programs)
 
 
 def _is_linear(programs: Mapping[str, Program]) -> bool:
@@ -89,36 +78,31 @@ def _call_degree(_: str, *of: _Degree) -> _Degree:
     return _Degree(0)
 
 
-def _is_bracket(programs: Mapping[str, Program]) -> bool:
-    """Whether the rates are the bracket with the gradient, at points modulo primes.
+def is_bracket(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are the bracket with the gradient of the energy, an antisymmetric one.
 
-    Two functions of degree d that differ agree at such a point with a chance of ``d / 2^61``.
+    It is asked at points modulo primes.
+
+    Args:
+        programs: The functions of a kernel by name.
     """
-    source, reached = random.Random(1), 0  # noqa: S311
-    rates, slopes, bracket = (
-        programs[name] for name in ("rhs", "energy_gradient", "bracket_vector")
-    )
+    if not {*ACTION} <= programs.keys() or "noise" in programs:
+        return False
+    rates, slopes, bracket = (programs[name] for name in ("rhs", *ACTION))
     vector = bracket.state[len(rates.state) :]
-    for prime in islice(primes(), TRIES):
-        number, call = partial(residue, prime=prime), partial(_call, prime=prime)
-        point = {name: Residue(source.randrange(1, prime), prime) for name in rates.names}
-        try:
-            expected = run(rates, point, number, call)
-            known = point | dict(zip(vector, run(slopes, point, number, call), strict=True))
-            found = run(bracket, known, number, call)
-        except ZeroDivisionError:
-            continue
-        if any((a + -b).value for a, b in zip(expected, found, strict=True)):
-            return False
-        reached += 1
-        if reached == POINTS:
-            return True
-    return False
 
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        along = at | dict(zip(vector, run(slopes, at, number, call_modulo), strict=True))
+        pairs = zip(
+            run(rates, at, number, call_modulo),
+            run(bracket, along, number, call_modulo),
+            strict=True,
+        )
+        yield from (a + -b for a, b in pairs)
+        turned = run(bracket, at, number, call_modulo)
+        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
 
-def _call(function: str, *arguments: Residue, prime: int) -> Residue:
-    """A number that a function has at an argument: any, but always the same."""
-    return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)
+    return vanish(find, bracket.names)
 
 
 #: Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k`` by i and j, as entries by k.

@@ -15,9 +15,9 @@ from contextlib import suppress
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import rows_of
-from coadjoint.derive.mechanics.decided import TRIES, Decided, call_modulo
+from coadjoint.derive.mechanics.decided import TRIES, Decided
 from coadjoint.exact.linear import PRIME
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.residues import Residue, call_modulo, residue
 from coadjoint.lower.program import ZERO, Program, run
 
 

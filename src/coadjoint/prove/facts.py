@@ -7,7 +7,7 @@ Read next: `coadjoint.prove.methods`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,9 +17,10 @@ from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.records import Emitted
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
+from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.orbits import find_spheres, stays_on_orbits
-from coadjoint.lower.program import Program
+from coadjoint.lower.orbits import find_spheres, is_bracket, stays_on_orbits
+from coadjoint.lower.program import Program, run
 from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.prove.certificate import Certificate, Verdict
@@ -227,14 +228,14 @@ class Facts:
             and all(map(self._is_still, each.values)),
         )
 
-    def find_degree(self, values: Iterable[Element]) -> int | None:
-        """The degree of polynomials in the state up to 2; None of others, or where it is not seen.
+    def find_degree(self, values: Iterable[Element], most: int = 2) -> int | None:
+        """The degree of polynomials in the state, 2 at most; None of others, or where it is unseen.
 
         It is read from the normal form: what cancels there alone that is not seen to be the same,
         as values of functions, may have a lower degree.
         """
         degrees = [self._read_degree(value) for value in values]
-        known = [degree for degree in degrees if degree is not None]
+        known = [degree for degree in degrees if degree is not None and degree <= most]
         return max(known, default=0) if len(known) == len(degrees) else None
 
     def _read_degree(self, value: Element) -> int | None:
@@ -250,7 +251,7 @@ class Facts:
                 return None
             degrees = (sum(e for n, e in each.powers if n in state) for each in quotient.monomials)
             degree = max(degree, *degrees)
-        return degree if degree <= 2 else None
+        return degree
 
     def _is_seen(self, value: Element) -> bool:
         """Whether a function is written in state, parameters and inputs, which a run holds."""
@@ -282,9 +283,45 @@ class Facts:
         bound = (residual for _, residual in self.motion.kept)
         if any(self.find_degree([each]) not in (0, 1) for each in bound):
             return True
+        return not all(map(self._is_still, self._turning))
+
+    @cached_property
+    def _turning(self) -> list[Element]:
+        """Of attitudes the products of columns, where these decide whether they are rotations."""
         products = [x for _, x in turning_residuals(self.equations.setting)]
-        quadratic = [x for x in products if self.find_degree([x]) == 2]
-        return bool(products) and not (quadratic and all(map(self._is_still, quadratic)))
+        return [x for x in products if self.find_degree([x]) == 2] or products
+
+    # -- what the tensor of the motion keeps, whatever vector it is multiplied by ------------------
+
+    @cached_property
+    def is_bracket(self) -> bool:
+        """Whether the motion is an antisymmetric tensor times the gradient of its energy."""
+        return is_bracket(self.programs)
+
+    @cached_property
+    def is_turned_by_tensor(self) -> bool:
+        """Whether attitudes stay rotations where the tensor at the middle of a step moves them."""
+        quadratic = all(self.find_degree([x]) == 2 for x in self._turning)
+        return quadratic and self.is_kept_by_tensor(self._turning)
+
+    def is_kept_by_tensor(self, values: Sequence[Element]) -> bool:
+        """Whether the gradients of functions are orthogonal to the tensor times any vector.
+
+        It is asked at points modulo primes.
+        """
+        bracket, field = self.programs.get("bracket_vector"), self.field
+        named = {*self.state, *self.equations.setting.parameters}
+        if bracket is None or any(field.reach(value) - named for value in values):
+            return False
+        slopes = [field.gradient(value, self.state) for value in values]
+
+        def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+            turned = run(bracket, at, number, call_modulo)
+            for row in slopes:
+                along = (field.evaluate(slope, dict(at), number, call_modulo) for slope in row)
+                yield sum((a * b for a, b in zip(along, turned, strict=True)), number(0))
+
+        return vanish(find, {*bracket.names, *named})
 
     # -- in words -------------------------------------------------------------------------
 

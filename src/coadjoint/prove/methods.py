@@ -8,16 +8,12 @@ Read next: `coadjoint.prove.facts`, where the facts are decided.
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import islice
 from typing import Final
 
 from coadjoint.derive import Equations
-from coadjoint.exact.linear import primes
-from coadjoint.exact.residues import Residue, draw, residue, square_root
+from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import SPLITTINGS, Maps, list_schedules
 from coadjoint.lower.program import Program, run
@@ -26,13 +22,10 @@ from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
 from coadjoint.render.solvers import describe_structured, select_programs
 
-#: Points, each modulo another prime of 61 bits, at which a map is asked whether it keeps a
-#: function. Two that differ agree at one with a chance of their degree by 2^61.
-POINTS: Final = 2
-#: Primes that are tried: half of all numbers have no root modulo one.
-TRIES: Final = 60
 #: Evaluations of the rates that an implicit equation takes for each stage, about.
 SWEEPS: Final = "about a dozen sweeps"
+#: The degree up to which the mean of a gradient is exact: Gauss's formula has four nodes.
+MEAN_DEGREE: Final = 8
 #: Steps of order 2 that make one of each order.
 _STEPS: Final = {2: 1, 4: 5, 6: 9}
 
@@ -206,14 +199,34 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
 
 
 def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
-    """Discrete gradients keep the energy, and Casimirs of degree 1, whose gradient is constant."""
+    """Discrete gradients keep the energy, and Casimirs C of degree 2 at the most.
+
+    The mean of a gradient is one by Gauss's formula, of polynomials. C changes by its gradient at
+    the middle of a step times the tensor there, which is zero.
+    """
+    steps = _count(_STEPS[method.order], "middle")
+    is_mean = method.file == "average_gradient"
+    cost = f"{SWEEPS} of {steps}, each with {'five gradients' if is_mean else 'two energies'}"
+    if not facts.is_bracket:
+        balance = "the energy changes by the power at the middles of steps of what acts on it"
+        return Judgement((), False, balance, cost)
+    is_moved = facts.is_moved and not facts.is_turned_by_tensor
+    seen = [each for each in facts.integrals if not is_moved]
+    has_mean = (
+        facts.energy is not None and facts.find_degree([facts.energy], MEAN_DEGREE) is not None
+    )
     exactly = tuple(
         each
-        for each in facts.integrals
-        if each.name == "energy" or (each.is_casimir and each.degree in (0, 1))
+        for each in seen
+        if (each.name == "energy" and (has_mean or not is_mean))
+        or (each.degree is not None and facts.is_kept_by_tensor(each.values))
     )
     decides = "the motion is an antisymmetric tensor times the gradient of its energy"
-    return Judgement(exactly, False, decides, SWEEPS)
+    if is_mean and not has_mean:
+        decides += f", which is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
+    if is_moved:
+        decides += "; after each step the state is moved, so that integrals are not kept"
+    return Judgement(exactly, False, decides, cost)
 
 
 def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -238,42 +251,18 @@ _RULES: Final[Mapping[str, Rule]] = {
 
 def _keeps(facts: Facts, each: Kept, program: Program) -> bool:
     """Whether a map leaves a function as it is, at points modulo primes."""
-    field, source = facts.field, random.Random(1)  # noqa: S311
+    field = facts.field
     reached = frozenset[str]().union(*map(field.reach, each.values))
     if reached - {*facts.state, *facts.equations.setting.parameters}:
         return False
-    names, compared = dict.fromkeys((*program.names, *facts.equations.setting.parameters)), 0
-    for prime in islice(primes(), TRIES):
-        known = {name: Residue(source.randrange(1, prime), prime) for name in names}
-        number, call = partial(residue, prime=prime), partial(_call, prime=prime)
-        try:  # a root that is not there modulo this prime, or a pole
-            moved = run(program, {name: known[name] for name in program.names}, number, call)
-            there = known | dict(zip(facts.state, moved, strict=True))
-            pairs = [
-                [field.evaluate(value, dict(at), number, call) for at in (known, there)]
-                for value in each.values
-            ]
-        except ZeroDivisionError:
-            continue
-        if any(first != second for first, second in pairs):
-            return False
-        compared += 1
-        if compared == POINTS:
-            return True
-    return False
 
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        there = at | dict(zip(facts.state, run(program, at, number, call_modulo), strict=True))
+        for value in each.values:
+            start, end = (field.evaluate(value, dict(x), number, call_modulo) for x in (at, there))
+            yield start + -end
 
-def _call(function: str, *arguments: Residue, prime: int) -> Residue:
-    """A number that a function has at an argument: any, but roots, and points of a circle."""
-    if function == "sqrt":
-        return square_root(arguments[0])
-    seed = " ".join(str(each.value) for each in arguments)
-    if function in ("sin", "cos"):
-        one, half = Residue(1, prime), draw(f"half {seed}", prime)
-        square = half * half
-        top = half + half if function == "sin" else one + -square
-        return top / (one + square)
-    return draw(f"{function} {seed}", prime)
+    return vanish(find, (*program.names, *facts.state, *facts.equations.setting.parameters))
 
 
 # -- the order of preference ----------------------------------------------------------------------

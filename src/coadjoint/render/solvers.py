@@ -40,7 +40,12 @@ from coadjoint.lower.program import (
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
 from coadjoint.methods import ACTION, list_structured
-from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
+from coadjoint.solve.methods import (
+    average_gradient,
+    coadjoint_mean,
+    discrete_gradient,
+    spherical_midpoint,
+)
 from coadjoint.solve.methods.gauss import TABLEAUS
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -260,7 +265,7 @@ def select_programs(
 ) -> dict[str, Program]:
     """The rates, what bounds the motion, noise and maps, by their names in the texts of solvers.
 
-    Where a motion stays on coadjoint orbits, also what acts on a state there.
+    Where a motion is made of a bracket and an energy, also these.
 
     Args:
         programs: The functions of the kernel.
@@ -271,14 +276,15 @@ def select_programs(
     rates = reduce(join, (known[name] for name in kind.rates))
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
-    action = kind == SOLVER and stays_on_orbits(known)
+    has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
+    action = (*ACTION, "energy") if has_action else ()
     return {
         "rates": rates,
         **{
             name: widen(program, rates.state, moves=name == "projection")
             for name, program in bounds.items()
         },
-        **{name: known[name] for name in ACTION if action},
+        **{name: known[name] for name in action},
         **{each.name: _with_own_names(each) for each in maps if kind == SOLVER},
     }
 
@@ -316,8 +322,10 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
         programs: As `select_programs` has them, with kinks.
     """
     bracket = programs.get("bracket_vector")
-    spheres = () if bracket is None else find_spheres(programs)
-    methods = list_structured([*programs, *(["spheres"] if spheres else [])])
+    on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
+    spheres = find_spheres(programs) if on_orbits else ()
+    marks = {"orbits": on_orbits, "spheres": bool(spheres)}
+    methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
     state = () if bracket is None else bracket.state
     composed = [each for each in methods if each.file != "gauss"]
     orders = sorted({each.order for each in composed})
@@ -331,6 +339,11 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "near": spherical_midpoint.NEAR,
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
+            "gradients": {
+                "NODES": average_gradient.NODES,
+                "ROUNDINGS": discrete_gradient.ROUNDINGS,
+                "NEAR": discrete_gradient.NEAR,
+            },
             "mean": {name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},
             "tableaus": {
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"

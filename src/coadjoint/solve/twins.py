@@ -55,7 +55,7 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise", *ACTION)
+        functions = (*choice.kind.rates, "domain", "projection", "noise", "energy", *ACTION)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
         self._held, kinks, self._spheres = None, None, ()
@@ -112,7 +112,8 @@ class NumpyStepper:
         if self._choice.is_structured:
             gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
-            functions |= {"gradient": gradient, "bracket": self._bracket}
+            energy = partial(self._evaluate, ("energy",))
+            functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,

@@ -19,7 +19,7 @@ from copy import copy
 from math import prod
 
 from coadjoint.exact import Element, Field
-from coadjoint.exact.residues import Residue, draw, residue, square_root
+from coadjoint.exact.residues import Residue, call_modulo, draw, residue
 
 #: Points modulo the prime, with the same parameters.
 POINTS = 2
@@ -158,28 +158,6 @@ class Decided:
             self._points = points
             return
         self._points = None
-
-
-def call_modulo(function: str, *arguments: Residue) -> Residue:
-    """A value of an elementary function that satisfies the relations of the field.
-
-    Raises:
-        ZeroDivisionError: The argument has no square root.
-    """
-    argument = arguments[0]
-    if function == "sqrt":
-        return square_root(argument)
-    if function in ("sin", "cos"):  # a point of the circle, the same one for both
-        half = draw(f"half of {argument.value}")
-        whole = Residue(1) + half * half
-        return (half + half if function == "sin" else Residue(1) + -(half * half)) / whole
-    if function in ("sinh", "cosh", "tanh"):  # by one exponential
-        power, half = draw(f"exp {argument.value}"), Residue(1) / Residue(2)
-        cosh, sinh = (power + Residue(1) / power) * half, (power + -(Residue(1) / power)) * half
-        return {"sinh": sinh, "cosh": cosh}.get(function) or sinh / cosh
-    if function == "sign":
-        return Residue((-1) ** draw(f"sign {argument.value}").value)
-    return draw(f"{function} {' '.join(str(each.value) for each in arguments)}")
 
 
 # -- sizes ----------------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
-            **dict.fromkeys(("energy_gradient", "bracket_vector"), "SPARED"),
+            **dict.fromkeys(("energy", "energy_gradient", "bracket_vector"), "SPARED"),
             **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan", "exact_body"), "INLINE"),
         }.items()
     },

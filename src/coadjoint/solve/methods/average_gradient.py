@@ -1,0 +1,94 @@
+"""Discrete gradients: steps that keep the energy, or balance it with the power of forces.
+
+A step is ``y - x = h (J(m) g + f(m))``, where m is the middle of x and y, J the tensor of the
+motion, f its forces, and g a discrete gradient of the energy: ``g.(y - x) = H(y) - H(x)``. J is
+antisymmetric, so ``H(y) - H(x) = h g.f(m)``; it need not fulfil Jacobi's identity. The rates at m
+are ``J(m) dH(m) + f(m)``, so that the step follows from them and from ``J(m) (g - dH(m))``. Without
+forces a function C of degree 2 at the most with ``J dC = 0`` changes by ``dC(m).(y - x) = 0``.
+R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 (1999) 1021.
+Here g is the mean of the gradient along the chord, by Gauss's formula with four nodes: a discrete
+gradient of polynomials up to degree 8 (E. Celledoni et al., Journal of Computational Physics 231
+(2012) 6770).
+Comes in: where members are. Goes out: the middle of a step by sweeps, and its chord.
+Read next: `coadjoint.solve.methods.discrete_gradient`, for any energy.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.solve.methods.gauss import TABLEAUS
+from coadjoint.solve.methods.lie_poisson import Arc, Gradient, LiePoisson, Sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.methods.lie_poisson import Bracket
+
+    Array = NDArray[np.float64]
+
+_OUTER, _INNER = TABLEAUS[8].nodes[:2]
+_WEIGHT: Final = TABLEAUS[8].lengths[0]
+#: Nodes between the ends and their weights, of those nearer to the start.
+NODES: Final = ((_OUTER, _WEIGHT), (_INNER, 0.5 - _WEIGHT))
+
+
+def make(functions: Mapping[str, Any], size: float, order: int) -> AverageGradient:
+    """The method of an order, from functions of the kernel."""
+    return AverageGradient(
+        rates=functions["rates"],
+        gradient=functions["gradient"],
+        bracket=functions["bracket"],
+        size=size,
+        order=order,
+    )
+
+
+class AverageGradient(LiePoisson):
+    """The mean of the gradient along the chord.
+
+    Args:
+        rates: Rates of lanes, at states some time later.
+        gradient: The derivative of the energy.
+        bracket: The tensor times a vector.
+        size: The step.
+        order: 2, or that of a composition.
+    """
+
+    def __init__(
+        self,
+        *,
+        rates: Callable[..., Array],
+        gradient: Gradient,
+        bracket: Bracket,
+        size: float,
+        order: int = 2,
+    ) -> None:
+        super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
+        self.rates = rates
+
+    def sweep(self, arc: Arc, middle: Array, kept: Any) -> Sweep:
+        """As `LiePoisson.sweep`."""
+        chord = 2.0 * ((middle - arc.state) - arc.low)
+        return self.move(arc, middle, self.find_excess(arc, middle, chord))
+
+    def find_excess(self, arc: Arc, middle: Array, chord: Array) -> Array:
+        """The mean of the gradient minus the gradient at the middle."""
+        at_middle = self.gradient(arc.lanes, arc.middle, middle)
+        total = np.zeros(middle.shape)
+        for node, weight in NODES:
+            ends = (arc.state + (arc.low + part * chord) for part in (node, 1.0 - node))
+            near, far = (self.gradient(arc.lanes, arc.middle, end) for end in ends)
+            total = total + weight * (near + far - 2.0 * at_middle)
+        return total
+
+    def move(self, arc: Arc, middle: Array, correction: Array) -> Sweep:
+        """The step, by what is to be added to the gradient at its middle."""
+        rates = self.rates(arc.lanes, arc.middle, middle)
+        turn = self.bracket(arc.lanes, arc.middle, middle, correction)
+        rise = arc.length * (rates + turn)
+        return Sweep(arc.state + (arc.low + 0.5 * rise), rise)
