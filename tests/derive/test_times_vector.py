@@ -12,25 +12,35 @@ from coadjoint.derive.reference import Reference
 from coadjoint.lower.program import Program, run
 from tests.specs import emitted, lowered
 
-#: Systems over algebras of many kinds, with declared brackets, canonical ones, inputs and time.
+#: Systems over algebras of many kinds, with declared brackets, canonical ones, inputs and time, and
+#: over distributions.
 SYSTEMS = (
     "affine_line",
     "bargmann",
     "bloch_iserles_3",
+    "body_of_revolution",
+    "chaplygin_ball",
+    "chaplygin_sleigh",
     "complex_rigid_body",
     "coupled_bodies",
+    "euler_disk",
     "gravity_gradient_satellite",
     "heavy_top",
     "heisenberg_lattice",
+    "guiding_centre",
     "kapitza_top",
     "kepler",
     "kirchhoff",
     "magnetic_bottle",
     "manakov_so6",
     "maxwell_bloch",
+    "monopole_kepler",
     "point_vortices",
+    "rattleback",
     "relativistic_particle",
     "rigid_body_attitude",
+    "rocking_disk",
+    "roller_racer",
     "se2_pendulum",
     "so5_body",
     "spd_motion_3",
@@ -94,10 +104,24 @@ def test_forces_are_not_in_the_bracket():
 
 @pytest.mark.parametrize(
     "system",
-    ["chaplygin_ball", "suslov", "double_bracket_body", "landau_lifshitz_gilbert", "tippe_top"],
+    ["suslov", "double_bracket_body", "landau_lifshitz_gilbert", "tippe_top", "veselova_so4"],
 )
 def test_other_motions_have_neither(system):
-    """Motions with constraints or relaxation are no bracket with the energy."""
+    """Motions with constraints that are kept, with relaxation, or with too long a tensor."""
     equations = emitted(system)
     assert rows_of(equations, "energy_gradient") is None
     assert rows_of(equations, "bracket_vector") is None
+
+
+@pytest.mark.parametrize("system", ["euler_disk", "chaplygin_ball", "roller_racer"])
+def test_tensors_over_distributions_are_antisymmetric(system):
+    """``v.J v = 0`` for any v: energy is kept by whatever gradient stands in its place."""
+    program = lowered(system)["bracket_vector"]
+    count, largest = len(program.state) // 2, 0.0
+    for seed in range(3):
+        point = draw(program, seed)
+        vector = [point[name] for name in program.state[count:]]
+        rows = run(program, point, float, call)
+        assert abs(sum(a * b for a, b in zip(vector, rows, strict=True))) < 1e-12
+        largest = max(largest, *map(abs, rows))
+    assert largest > 0.1

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import pytest
 
-from coadjoint.lower.orbits import find_spheres, stays_on_orbits
-from coadjoint.lower.program import Negate
-from coadjoint.methods import STRUCTURED, Sphere, list_structured
+from coadjoint.lower.orbits import find_spheres, is_bracket, stays_on_orbits
+from coadjoint.lower.program import Add, Divide, Multiply, Negate, Symbol
+from coadjoint.methods import ACTION, STRUCTURED, Sphere, list_structured
 from coadjoint.render.solvers import describe_structured, select_programs
 from tests.specs import lowered
 
+#: Files of discrete gradients.
+GRADIENTS = ("average_gradient", "discrete_gradient")
 #: Spheres by system, from the order of the momenta and vectors that its spec declares.
 SPHERES = {
     "rigid_body": (Sphere((0, 1, 2)),),
@@ -50,6 +52,37 @@ def test_other_motions_do_not_stay_on_orbits(system, why):
     assert not stays_on_orbits(lowered(system)), why
 
 
+@pytest.mark.parametrize("system", ["euler_disk", "rattleback", "kepler", "guiding_centre"])
+def test_motions_are_brackets(system):
+    """Of momenta along a distribution too; a spoiled tensor or gradient is none."""
+    programs = lowered(system)
+    assert is_bracket(programs)
+    for name in ACTION:
+        first, *others = programs[name].outputs
+        wrong = replace(
+            programs[name], outputs=(replace(first, value=Negate(first.value)), *others)
+        )
+        assert not is_bracket(programs | {name: wrong}), name
+
+
+def test_a_symmetric_part_is_no_bracket():
+    """What a tensor adds that a gradient does not see: it has to be antisymmetric."""
+    programs = lowered("rigid_body")
+    own = programs["bracket_vector"]
+    first, *others = own.outputs
+    # (Pi2/I2) v1 - (Pi1/I1) v2: zero for v = (Pi1/I1, Pi2/I2, ...), and v1 has a diagonal entry
+    one, other = (
+        Multiply(Divide(Symbol(momentum), Symbol(inertia)), Symbol(along))
+        for momentum, inertia, along in (
+            ("Pi2", "I2", own.state[3]),
+            ("Pi1", "I1", own.state[4]),
+        )
+    )
+    more = Add(one, Negate(other))
+    wrong = replace(own, outputs=(replace(first, value=Add(first.value, more)), *others))
+    assert not is_bracket(programs | {"bracket_vector": wrong})
+
+
 def test_a_spoiled_function_is_caught():
     """A sign that is wrong in the gradient or in the bracket makes the system another one."""
     programs = lowered("heavy_top")
@@ -68,9 +101,11 @@ def test_a_spoiled_function_is_caught():
 @pytest.mark.parametrize(
     ("system", "methods"),
     [
-        ("heavy_top", {"midpoint", "gauss", "coadjoint_mean", "spherical_midpoint"}),
-        ("so5_body", {"midpoint", "gauss", "coadjoint_mean"}),
-        ("heavy_top_damped", {"midpoint", "gauss"}),
+        ("heavy_top", {"midpoint", "gauss", "coadjoint_mean", "spherical_midpoint", *GRADIENTS}),
+        ("so5_body", {"midpoint", "gauss", "coadjoint_mean", *GRADIENTS}),
+        ("heavy_top_damped", {"midpoint", "gauss", *GRADIENTS}),
+        ("euler_disk", {"midpoint", "gauss", *GRADIENTS}),
+        ("suslov", {"midpoint", "gauss"}),
     ],
 )
 def test_a_system_lists_the_methods_that_apply(system, methods):
@@ -78,7 +113,7 @@ def test_a_system_lists_the_methods_that_apply(system, methods):
     found = describe_structured(select_programs(lowered(system).values()))["structured"]["methods"]
     names = {each.name for each in found}
     assert {each.file for each in found} == methods
-    composed = methods - {"gauss"}
+    composed = methods - {"gauss", *GRADIENTS}
     assert all({f"{name}{order}" for order in ("", 4, 6)} <= names for name in composed)
     assert {each.order for each in found if each.file in composed} == {2, 4, 6}
     assert {"gauss4", "gauss6", "gauss8"} <= names
@@ -90,6 +125,6 @@ def test_every_method_says_what_it_expects():
         assert each.expects
         assert each.keeps
         assert each not in list_structured(["rhs", "noise"])
-    names = {each.name for each in list_structured(["energy_gradient", "bracket_vector"])}
+    names = {each.name for each in list_structured([*ACTION, "orbits"])}
     assert "coadjoint_mean" in names
     assert "spherical_midpoint" not in names

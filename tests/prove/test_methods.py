@@ -81,6 +81,9 @@ def test_facts_are_those_of_the_book(name, expected):
         ("c3_oscillators", "gauss4"),
         ("nambu_body", "midpoint"),
         ("suslov", "gauss4"),
+        ("chaplygin_sleigh", "gauss4"),
+        ("euler_disk", "discrete_gradient"),
+        ("guiding_centre", "discrete_gradient"),
         ("bloch", ""),
         ("stochastic_rigid_body", ""),
     ],
@@ -111,6 +114,25 @@ def test_flows_are_asked_what_they_keep():
     _, methods = judge_shipped("kepler")
     assert methods["splitting4"].exactly == ("L",)
     assert "energy" in methods["splitting4"].nearly
+
+
+def test_what_discrete_gradients_keep():
+    """The energy, quadratic Casimirs, and with forces neither."""
+    _, top = judge_shipped("heavy_top")
+    kept = ("energy", "casimir1", "casimir2")
+    assert top["discrete_gradient"].exactly == top["average_gradient"].exactly == kept
+    assert not top["discrete_gradient"].is_poisson
+    _, disk = judge_shipped("euler_disk")
+    assert disk["discrete_gradient"].exactly == ("energy",)
+    assert disk["average_gradient"].exactly == ()
+    assert "not seen to be a polynomial of degree 8" in disk["average_gradient"].decides
+    _, bodies = judge_shipped("complex_rigid_body")
+    quadratic = {each.name for each in judge_shipped("complex_rigid_body")[0].integrals
+                 if each.is_casimir and each.degree == 2}  # fmt: skip
+    assert {*bodies["discrete_gradient"].exactly} == quadratic | {"energy"}
+    _, damped = judge_shipped("heavy_top_damped")
+    assert damped["discrete_gradient"].exactly == ()
+    assert "power at the middles of steps" in damped["discrete_gradient"].decides
 
 
 # -- facts that are spoiled -----------------------------------------------------------------------
@@ -186,8 +208,8 @@ RUNS = {
 }
 #: Steps of 0.1; an integral that is not kept is missed by more after so many.
 STEPS, ROUNDING = 400, 1e-12
-#: What is not kept and hardly moves all the same, by system: nothing says that it has to.
-QUIET = {("suslov", "energy")}
+#: Energies that the mean of a gradient misses by little: they are no polynomials.
+MISSED = {("kepler", "average_gradient"): 2e-12}
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -207,7 +229,8 @@ def test_what_is_kept_exactly_stays_on_runs(name):
         for integral in method.exactly:
             assert run.drift[integral] < ROUNDING, (method.name, integral)
         for integral in method.nearly if method.order == 2 else ():
-            assert run.drift[integral] > 1e-9, (method.name, integral)
+            least = MISSED.get((name, method.name), 1e-9)
+            assert run.drift[integral] > least, (method.name, integral)
         compared += len(run.drift)
     assert compared >= len(methods)
 

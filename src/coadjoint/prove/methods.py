@@ -289,7 +289,8 @@ def prefer(facts: Facts) -> tuple[str, ...]:
 def _prefer_first(facts: Facts) -> Sequence[str]:
     """What is preferred to the methods of Gauss."""
     if facts.is_constrained:
-        return ["discrete_gradient"]
+        is_quadratic = any(x.name == "energy" and x.is_kept_within_steps for x in facts.integrals)
+        return [] if is_quadratic else ["discrete_gradient"]
     if facts.is_nambu:
         pair = [each.degree for each in facts.integrals if each.name == "energy" or each.is_casimir]
         is_quadratic = all(degree is not None for degree in pair)

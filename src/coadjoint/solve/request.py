@@ -160,6 +160,20 @@ def list_times(t: Any, samples: Any, size: int) -> tuple[float, Array]:
     return start, spread
 
 
+def take_ends_of_steps(start: float, times: Array, step: float) -> Array:
+    """Those ends of steps that are nearest to evenly spaced times, and the last time.
+
+    What a method keeps it keeps there; between them a path is a cubic, which keeps nothing.
+
+    >>> take_ends_of_steps(0.0, np.linspace(0.0, 1.0, 4), 0.1)
+    array([0. , 0.3, 0.7, 1. ])
+    >>> take_ends_of_steps(0.0, np.linspace(0.0, 1.0, 1001), 0.25)
+    array([0.  , 0.25, 0.5 , 0.75, 1.  ])
+    """
+    ends = start + np.unique(np.round((times - start) / step)) * step
+    return np.append(ends[ends < times[-1] - 0.5 * step], times[-1])
+
+
 def _check_increasing(times: Array, given: Any) -> None:
     """Times are finite and increase.
 

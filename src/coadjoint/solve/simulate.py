@@ -47,6 +47,7 @@ from coadjoint.solve.request import (
     is_chosen_by_structure,
     list_times,
     prefers_dop853,
+    take_ends_of_steps,
 )
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.surroundings import Driven, Surroundings
@@ -131,6 +132,9 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
+    if np.size(t) == 2 and name in {*STRUCTURED, *MAPPED} and not has_noise(system):
+        assert step is not None, "methods that keep structure have steps of one length"
+        times = take_ends_of_steps(start, times, float(step))
     request = Request(
         state=initial,
         start=start,
