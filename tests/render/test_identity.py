@@ -16,7 +16,7 @@ CLAIMED = RIGID_BODY.replace(
     'casimirs = ["dot(Pi, Pi)"]\nconserved = ["energy", "Pi[1]^2 + Pi[2]^2 + Pi[3]^2"]',
 )
 SUM = "Pi[1]^2 + Pi[2]^2 + Pi[3]^2"
-KERNELS = {"kernel.py", "kernel.c", "kernel.h", "kernel_python.py", "__init__.py"}
+KERNELS = {"kernel.py", "kernel.c", "kernel.h", "kernel_python.py", "__init__.py", "__main__.py"}
 KERNELS |= {"solver.c", "solver.h", "solver.py"}
 
 

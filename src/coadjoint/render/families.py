@@ -296,6 +296,7 @@ class FamilyContext:
 #: Template of each file of a family, and the target in whose words it says where names are read.
 FAMILY_FILES: Final = {
     "__init__.py": ("package/family.py.j2", "numpy"),
+    "__main__.py": ("package/__main__.py.j2", "numpy"),
     "kernel.py": ("numpy/family.py.j2", "numpy"),
     "kernel.c": ("c/family.c.j2", "c"),
     "kernel.h": ("c/family.h.j2", "c"),

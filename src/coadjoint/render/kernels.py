@@ -46,9 +46,10 @@ from coadjoint.render.targets import TARGETS
 from coadjoint.solver_kinds import FILES, SOLVER, SolverKind, list_kinds
 
 #: Template of each rendered file.
-TEMPLATES: Final = {"__init__.py": "package/__init__.py.j2"} | {
-    file: template for target in TARGETS.values() for file, template in target.files.items()
-}
+TEMPLATES: Final = {
+    "__init__.py": "package/__init__.py.j2",
+    "__main__.py": "package/__main__.py.j2",
+} | {file: template for target in TARGETS.values() for file, template in target.files.items()}
 
 #: Where the id is to stand; no name, unit or number has these marks.
 PLACE: Final = "<the 16 letters>"

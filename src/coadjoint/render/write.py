@@ -55,6 +55,7 @@ __all__ = [
 #: The files of every system.
 SYSTEM_FILES: Final = (
     "__init__.py",
+    "__main__.py",
     *(file for target in TARGETS.values() for file in target.files),
     "certificate.json",
 )

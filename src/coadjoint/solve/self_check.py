@@ -1,0 +1,234 @@
+"""Self-check: methods that keep structure, measured on runs of a system.
+
+Comes in: a System. Goes out: a `Measured` for each of its methods: the order by steps that are
+halved, the defect of a step from a Poisson map by differences, and the drift of integrals. What its
+certificate says of a method by theorems is asked of runs here.
+Read next: `coadjoint.cli.self_check`, which shows it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import JudgedMethod
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: Members near the default state, drawn so that none is at rest, and by what part of it, the widest
+#: first: those in the domain count.
+MEMBERS: Final = 4
+SPREADS: Final = (0.1, 0.01, 0.001)
+DRAWN: Final = 16
+#: Steps that the state would need to change by its own size, about.
+STEPS: Final = 20
+#: Steps of the longest of the three runs that tell the order, and of the run that tells drifts.
+HALVED: Final = 8
+DRIFTING: Final = 100
+#: Components of a state beyond which a compiled solver takes less time than NumPy, with compiling.
+LARGE: Final = 8
+#: By how much an order may be measured too low. One that is too high is no fault of a method.
+SHY: Final = 0.5
+#: Gaps of runs, relative to the state, that are roundings: no order is read from them.
+ROUNDED: Final = 1e-12
+#: How far a map may be from a Poisson map by differences, and how far integrals may go that are
+#: kept exactly.
+DEFECT: Final = 1e-7
+DRIFT: Final = 1e-12
+#: The part of a state by which differences move it.
+_DIFFERENCE: Final = 1e-5
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What runs say of a method.
+
+    Attributes:
+        method: As it was judged.
+        order: The measured order; None where runs differ by roundings alone.
+        defect: How far a step is from a Poisson map, relative to the tensor; None without one.
+        drifts: The largest drift of each integral.
+        compared: How many numbers were compared with what is claimed.
+        failures: What contradicts the claims, as clauses.
+    """
+
+    method: JudgedMethod
+    order: float | None
+    defect: float | None
+    drifts: dict[str, float]
+    compared: int
+    failures: tuple[str, ...]
+
+
+def check_methods(system: System, names: list[str] | None = None) -> Iterator[Measured]:
+    """Methods measured on runs: those that ``"auto"`` takes, in its order, or those that are named.
+
+    Args:
+        system: The System.
+        names: Methods; ``["all"]`` for all that apply.
+
+    Raises:
+        KernelArgumentError: The system has no such method, or no run can be followed.
+    """
+    known = {each.name: each for each in system.METHODS if each.applies}
+    names = [*known] if names == ["all"] else names
+    unknown = [name for name in names or () if name not in known]
+    if unknown:
+        raise KernelArgumentError(
+            f"method {unknown[0]!r} does not apply to {system.name}; expected some of "
+            f"{', '.join(known) or 'none: no method that keeps structure applies'}.",
+            found=unknown[0],
+            expected=list(known),
+        )
+    ranked = sorted((each for each in known.values() if each.rank), key=lambda each: each.rank)
+    chosen = [known[name] for name in names] if names else ranked or [*known.values()]
+    if not chosen:
+        return
+    runs = _Runs(system)
+    for method in chosen:
+        yield _measure(runs, method)
+
+
+class _Runs:
+    """Runs of a system from states near its default.
+
+    Args:
+        system: The System.
+
+    Raises:
+        KernelArgumentError: None of them can be followed.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.at = {"time": 0.0} if system.TIME else {}
+        default = [v for each in system.STATE.values() for v in _fill(each)]
+        states = self._draw(np.array(default))
+        self.target = "c" if len(states) > LARGE else "numpy"
+        if not states.size:
+            raise self._fail()
+        rates = np.asarray(system.rhs(states, **self.at))
+        speeds = np.abs(rates).max(axis=0) / np.abs(states).max(axis=0)
+        fast = float(np.nanmax(np.where(np.isfinite(speeds), speeds, 0.0), initial=0.0))
+        self.step = 2.0 ** round(math.log2(1.0 / (STEPS * fast))) if fast > 0 else 0.125
+        ends = self.run("rk4", self.step, HALVED, states)
+        self.states = states[:, np.isfinite(ends).all(axis=0)]
+        if not self.states.size:
+            raise self._fail()
+
+    def _fail(self) -> KernelArgumentError:
+        """There is nothing to run."""
+        name = self.system.name
+        return KernelArgumentError(
+            f"no motion of {name} near its default state can be followed; expected a default state "
+            "inside the domain: give [variables] a default there.",
+            found=name,
+        )
+
+    def _draw(self, default: Array) -> Array:
+        """States near the default, in the domain and on the constraints that are kept."""
+        source = np.random.default_rng(1)
+        size = float(np.abs(default).max()) or 1.0
+        moved = [s * size * source.uniform(-1, 1, (default.size, DRAWN)) for s in SPREADS]
+        states = default[:, np.newaxis] + np.concatenate(moved, axis=1)
+        if "projection" in self.system.functions:
+            for _ in range(3):  # attitudes take a step of Newton's method each time
+                states = np.asarray(self.system.projection(states, **self.at))
+        inside = np.isfinite(self.system.rhs(states, **self.at)).all(axis=0)
+        if self.system.DOMAIN:
+            inside &= (np.asarray(self.system.domain(states, **self.at)) > 0).all(axis=0)
+        return states[:, inside][:, :MEMBERS]
+
+    def run(self, method: str, step: float, count: int, states: Array) -> Array:
+        """States after so many steps; NaN where they were not reached."""
+        found = self._simulate(method, step, count, states, samples=1)
+        return np.asarray(found.state[..., -1])
+
+    def find_drifts(self, method: str) -> dict[str, float]:
+        """The largest drift of each integral at ends of steps."""
+        found = self._simulate(method, self.step, DRIFTING, self.states, samples=41)
+        return {name: float(np.nanmax(x)) for name, x in found.drift.items()}
+
+    def _simulate(self, method: str, step: float, count: int, states: Array, samples: int) -> Any:
+        return self.system.simulate(
+            states,
+            (0.0, count * step),
+            method=method,
+            step=step,
+            samples=samples,
+            target=self.target,
+            progress=False,
+        )
+
+
+def _fill(quantity: Any) -> list[float]:
+    """The default of a quantity, or ones."""
+    count = len(quantity.components)
+    return [*(quantity.default or ())] or [1.0] * count
+
+
+def _measure(runs: _Runs, method: JudgedMethod) -> Measured:
+    """A method on the runs of a system."""
+    order, reached = _find_order(runs, method)
+    defect = _find_defect(runs, method.name) if method.is_poisson else None
+    drifts = runs.find_drifts(method.name)
+    failures = [] if reached else ["no run reached its end"]
+    if order is not None and not order > method.order - SHY:
+        failures.append(f"its order is {order:.1f}, and {method.order} is claimed")
+    if defect is not None and not defect < DEFECT:
+        failures.append(f"a step is {defect:.1e} from a Poisson map")
+    missed = {name: drifts.get(name, math.nan) for name in method.exactly}
+    failures += [
+        f"{name} drifts by {drift:.1e}" for name, drift in missed.items() if not drift < DRIFT
+    ]
+    compared = (order is not None) + (defect is not None) + len(missed)
+    return Measured(
+        method=method,
+        order=order,
+        defect=defect,
+        drifts=drifts,
+        compared=compared,
+        failures=tuple(failures),
+    )
+
+
+def _find_order(runs: _Runs, method: JudgedMethod) -> tuple[float | None, bool]:
+    """The order by three runs with steps that are halved, and whether some reached the end."""
+    first = runs.step * (2.0 if method.order > 4 else 1.0)
+    ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
+    reached = np.isfinite(ends).all(axis=(0, 1))
+    if not reached.any():
+        return None, False
+    one, two, three = (each[:, reached] for each in ends)
+    size = float(np.abs(three).max())
+    gaps = float(np.abs(one - two).max()), float(np.abs(two - three).max())
+    if not gaps[1] > ROUNDED * size:
+        return None, True
+    return math.log2(gaps[0] / gaps[1]), True
+
+
+def _find_defect(runs: _Runs, method: str) -> float | None:
+    """``max |D J D^T - J|`` of a step with the derivative D, relative to J; by differences."""
+    if "poisson_tensor" not in runs.system.functions:
+        return None
+    state, count = runs.states[:, 0], len(runs.states)
+    eps = _DIFFERENCE * float(np.abs(state).max())
+    shifts = eps * np.eye(count)
+    column = state[:, np.newaxis]
+    given = np.concatenate([column + shifts, column - shifts, column], axis=1)
+    ends = runs.run(method, runs.step, 1, given)
+    slope = (ends[:, :count] - ends[:, count:-1]) / (2 * eps)
+    start, end = (
+        np.asarray(runs.system.poisson_tensor(x, **runs.at)) for x in (state, ends[:, -1])
+    )
+    return float(np.abs(slope @ start @ slope.T - end).max() / np.abs(end).max())

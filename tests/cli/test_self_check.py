@@ -1,0 +1,76 @@
+"""The check of a system by ``python -m``: what its methods do on runs, against what is claimed."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.cli.self_check import main
+from coadjoint.solve.self_check import check_methods
+from coadjoint.systems import euler_disk, n_body, rigid_body, suslov
+
+PACKAGE = "coadjoint.systems.rigid_body"
+
+
+def check(*arguments, package=PACKAGE):
+    """The command, run as a person does."""
+    command = [sys.executable, "-m", package, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_a_system_checks_its_methods():
+    """Those that "auto" takes, each with its order, its defect and its drifts."""
+    result = check("--check")
+    assert result.returncode == 0, result.stderr
+    assert "4 of 4 methods do what is claimed; 13 numbers were compared" in result.stdout
+    assert "spherical_midpoint       2        2.0" in result.stdout
+
+
+def test_without_check_it_says_how():
+    """Usage, and the status of wrong arguments."""
+    result = check()
+    assert result.returncode == 2
+    assert f"usage: python -m {PACKAGE} [-h] [--check [METHOD ...]]" in result.stderr
+
+
+def test_a_method_that_does_not_apply_is_refused(capsys):
+    """With those that do."""
+    assert main(suslov.system, "here", ["--check", "splitting4"]) == 2
+    said = capsys.readouterr().err
+    assert "python -m here: method 'splitting4' does not apply to suslov; expected some" in said
+    assert "gauss4" in said
+
+
+def test_families_have_nothing_to_check(capsys):
+    """And say so."""
+    assert main(n_body.system, "here", ["--check"]) == 0
+    assert "No method that keeps structure applies to n_body" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("name", "claim", "expected"),
+    [
+        ("midpoint", {"order": 4}, "its order is 2.0, and 4 is claimed"),
+        ("midpoint", {"is_poisson": True}, "from a Poisson map"),
+        ("kahan", {"exactly": ("energy",)}, "energy drifts by"),
+        ("coadjoint_mean", {"exactly": ("energy",)}, "energy drifts by"),
+    ],
+)
+def test_a_false_claim_is_caught(name, claim, expected, monkeypatch, capsys):
+    """A higher order, a bracket or an integral that a method does not keep."""
+    system = rigid_body.system
+    wrong = tuple(replace(x, **claim) if x.name == name else x for x in system.METHODS)
+    monkeypatch.setattr(system, "METHODS", wrong)
+    (found,) = check_methods(system, [name])
+    assert [each for each in found.failures if expected in each]
+    assert main(system, PACKAGE, ["--check", name]) == 1
+    assert expected in capsys.readouterr().out
+
+
+def test_members_are_drawn_inside_the_domain():
+    """A disk whose plane would have to pull is none."""
+    (found,) = check_methods(euler_disk.system)
+    assert found.method.name == "discrete_gradient"
+    assert not found.failures
+    assert found.compared == 2
