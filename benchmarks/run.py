@@ -37,6 +37,7 @@ BENCHMARKS = (
     "ensembles",
     "ensembles_jax",
     "trajectories",
+    "structure",
     "memory",
 )
 #: Those that have figures and nothing more: their files are written here.

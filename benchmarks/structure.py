@@ -1,0 +1,251 @@
+"""Methods that keep structure: drifts over many steps, and time per step against RK4.
+
+python benchmarks/structure.py
+
+- Drifts are the largest relative change of an integral at ends of steps, from the start.
+- Growth is the exponent p of the best line ``log drift = p log n + c`` through decades of steps,
+  of the median of members: 1/2 for roundings that are as often up as down, 1 for a bias.
+- Time is processor time per step of a member, of 4096 bodies, as a multiple of RK4 in one call of C
+  in the same run.
+
+Read next: `trajectories.py`.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from time import process_time
+from typing import Any
+
+import numpy as np
+from figures import Figure, take_turns
+from results import Table, write
+
+from coadjoint.cli.arguments import load_system
+from coadjoint.resources import derivations_folder
+from coadjoint.solve.self_check import check_methods
+
+INERTIA = {"I": (2.0, 1.0, 2.0 / 3.0)}
+BODY = np.array([0.6, 0.4, 0.7])
+TOP = {"I": (1, 1.3, 0.6), "m": 1, "g": 1, "chi": (0.1, 0.2, 0.6)}
+HANGING = np.array([0.4, -0.3, 1.2, 0.6, 0.0, 0.8])
+#: Starts, steps and parameters of motions with constraints; None for the defaults.
+ROLLING = {
+    "chaplygin_sleigh": ((1.0, 1.0), 0.05, None),
+    "suslov": (None, 0.05, None),
+    "chaplygin_ball": ((0.7, -0.2, 1.1, 0.0, 0.6, 0.8), 0.01, None),
+    "euler_disk": (None, 0.001, None),
+    "rattleback": (None, 0.005, None),
+}
+MEMBERS, ROUNDS, TIMED = 4096, 5, 400
+#: Steps per body as multiples of RK4 that are asked for.
+MULTIPLES = {"kahan": 1, "splitting": 3, "midpoint": 4, "spherical_midpoint": 6}
+
+
+def find_default(system: Any) -> Any:
+    """The default state, on the constraints."""
+    parts = [np.ravel(each.default or (1.0,) * len(each.components)) for each in
+             system.STATE.values()]  # fmt: skip
+    state = np.concatenate(parts).astype(float)
+    return np.asarray(system.projection(state)) if "projection" in system.functions else state
+
+
+def run(name: str, state: Any, parameters: Any, method: str, step: float, times: Any) -> Any:
+    """The Solution at times that are ends of steps."""
+    found = load_system(name).simulate(
+        state,
+        np.asarray(times, float) * step,
+        parameters,
+        method=method,
+        step=step,
+        max_steps=10**9,
+        target="c",
+        progress=False,
+    )
+    assert (np.asarray(found.status) == "OK").all(), (name, method, found.status)
+    return found
+
+
+def drift(name: str, state: Any, parameters: Any, method: str, step: float, count: int) -> Any:
+    """The largest drift of each integral over so many steps."""
+    times = np.arange(101) * (count // 100)
+    return run(name, state, parameters, method, step, times).drift
+
+
+def measure_body() -> list[Figure]:
+    """A free body for long."""
+    figures = []
+    for title, method, most in (
+        ("default, spherical_midpoint", "spherical_midpoint", 1e-12),
+        ("accuracy, gauss8", "gauss8", 3e-14),
+    ):
+        found = drift("rigid_body", BODY, INERTIA, method, 0.1, 10**6)
+        worst = max(found.values())
+        what = f"rigid body to t = 1e5, {title}: drift of energy and Casimir"
+        figures.append(Figure(what, f"<= {most:.0e}", f"{worst:.1e}", worst <= most))
+    return figures
+
+
+def measure_growth() -> tuple[list[Figure], Table]:
+    """Drifts of eight bodies over decades of steps, and their growth."""
+    rng = np.random.default_rng(4)
+    states = BODY[:, np.newaxis] + 0.2 * rng.uniform(-1, 1, (3, 8))
+    decades = np.unique(np.round(10.0 ** np.arange(0, 8.01, 0.25))).astype(int)
+    rows, figures = [], []
+    for method in ("midpoint", "spherical_midpoint"):
+        start = process_time()
+        found = run("rigid_body", states, INERTIA, method, 0.05, (0, *decades))
+        taken = process_time() - start
+        for name in ("energy", "casimir1"):
+            values = np.asarray(found[name])
+            changes = np.abs(values / values[:, :1] - 1)[:, 1:]
+            largest = np.maximum.accumulate(changes, axis=1)
+            at = {n: float(np.median(largest[:, decades == n])) for n in (10**5, 10**7, 10**8)}
+            late = decades >= 10**4
+            p = float(
+                np.polyfit(np.log(decades[late]), np.log(np.median(largest, axis=0)[late]), 1)[0]
+            )
+            rows.append([method, name, *(f"{x:.1e}" for x in at.values()), f"{p:.2f}"])
+            what = f"rigid body, h = 0.05, {method}: {name}"
+            figures += [
+                Figure(f"{what}, growth to 1e8 steps", "<= 0.55", f"{p:.2f}", p <= 0.55),
+                Figure(f"{what}, 1e7 steps", "<= 2e-14", f"{at[10**7]:.1e}", at[10**7] <= 2e-14),
+                Figure(f"{what}, 1e8 steps", "<= 1e-13", f"{at[10**8]:.1e}", at[10**8] <= 1e-13),
+            ]
+        rows[-1].append(f"{taken / 8e8 * 1e9:.0f} ns")
+        rows[-2].append("")
+    columns = ("method", "integral", "1e5 steps", "1e7 steps", "1e8 steps", "growth", "a step")
+    return figures, Table("Eight bodies, median drift", columns, rows)
+
+
+def measure_top() -> list[Figure]:
+    """A heavy top by explicit steps."""
+    short = drift("heavy_top", HANGING, TOP, "splitting4", 0.05, 20_000)
+    long = drift("heavy_top", HANGING, TOP, "splitting4", 0.05, 10**7)
+    casimirs, later = (max(x["casimir1"], x["casimir2"]) for x in (short, long))
+    what = "heavy top, h = 0.05, splitting4"
+    return [
+        Figure(f"{what}, t = 1000: energy", "<= 5e-8", f"{short['energy']:.1e}",
+               short["energy"] <= 5e-8),
+        Figure(f"{what}, t = 1000: Casimirs", "<= 1e-13", f"{casimirs:.1e}", casimirs <= 1e-13),
+        Figure(f"{what}, 1e7 steps: Casimirs", "<= 1e-12", f"{later:.1e}", later <= 1e-12),
+    ]  # fmt: skip
+
+
+def measure_rolling() -> tuple[list[Figure], Table]:
+    """Motions with constraints by their defaults."""
+    rows, figures = [], []
+    for name, (state, step, parameters) in ROLLING.items():
+        system = load_system(name)
+        start = find_default(system) if state is None else np.array(state)
+        (method, *_) = sorted((x for x in system.METHODS if x.rank), key=lambda x: x.rank)
+        found = run(name, start, parameters, method.name, step, np.arange(101) * 1000)
+        off = float(np.abs(system.constraint_residual(found.state, found.parameters)).max())
+        energy = found.drift["energy"]
+        rows.append([name, method.name, f"{step:g}", f"{energy:.1e}", f"{off:.1e}"])
+        what = f"{name}, {method.name}, h = {step:g}, 1e5 steps: energy"
+        figures.append(Figure(what, "<= 1e-13", f"{energy:.1e}", energy <= 1e-13))
+    cvt = load_system("knife_edge_cvt")
+    found = run("knife_edge_cvt", find_default(cvt), None, "gauss4", 0.05, np.arange(101) * 1000)
+    rows.append(["knife_edge_cvt", "gauss4", "0.05", f"{found.drift['energy']:.1e}", "projected"])
+    columns = ("system", "method", "step", "energy", "constraints")
+    return figures, Table("Motions with constraints, 1e5 steps", columns, rows)
+
+
+def measure_algebras() -> tuple[list[Figure], Table]:
+    """Casimirs by the coadjoint mean, on every system that has it and Casimirs."""
+    rows, worst = [], 0.0
+    for path in sorted(derivations_folder().glob("*.toml")):
+        system = import_module(f"coadjoint.systems.{path.stem}").system
+        judged = next((x for x in system.METHODS if x.name == "coadjoint_mean"), None)
+        if judged is None or not judged.applies or not judged.exactly or system.INPUTS:
+            continue
+        state = find_default(system)
+        rng = np.random.default_rng(1)
+        state = state + 0.1 * np.abs(state).max() * rng.uniform(-1, 1, state.shape)
+        at = {"time": 0.0} if system.TIME else {}
+        speed = np.abs(system.rhs(state, **at)).max() / np.abs(state).max()
+        step = float(2.0 ** np.floor(np.log2(0.1 / speed)))
+        try:
+            found = drift(path.stem, state, None, "coadjoint_mean", step, 10**6)
+        except AssertionError as error:
+            rows.append([path.stem, f"{step:g}", "", f"ended: {error}"[:60]])
+            continue
+        kept = {name: found[name] for name in judged.exactly}
+        largest = max(kept.values())
+        worst = max(worst, largest)
+        rows.append([path.stem, f"{step:g}", ", ".join(kept), f"{largest:.1e}"])
+    what = f"coadjoint_mean, 1e6 steps, {len(rows)} systems: Casimirs"
+    columns = ("system", "step", "Casimirs", "drift")
+    figure = Figure(what, "<= 1e-12", f"{worst:.1e}", worst <= 1e-12)
+    return [figure], Table("Coadjoint mean, 1e6 steps", columns, rows)
+
+
+def measure_speed() -> list[Figure]:
+    """Steps of 4096 bodies as multiples of those of RK4."""
+    system, rng = load_system("rigid_body"), np.random.default_rng(2)
+    states = BODY[:, np.newaxis] + 0.2 * rng.uniform(-1, 1, (3, MEMBERS))
+
+    def make(method: str) -> Any:
+        def go() -> Any:
+            return system.simulate(
+                states, (0.0, 0.1 * TIMED), INERTIA, method=method, step=0.1, samples=1,
+                target="c-fast", threads=1, progress=False,
+            )  # fmt: skip
+
+        go()
+        return go
+
+    methods = ("rk4", *MULTIPLES, "spherical_midpoint4", "gauss4", "coadjoint_mean",
+               "discrete_gradient", "exact_body")  # fmt: skip
+    taken = take_turns({name: make(name) for name in methods}, ROUNDS)
+    unit, figures = taken["rk4"].median, []
+    for name in methods[1:]:
+        times, most = taken[name].median / unit, MULTIPLES.get(name)
+        nanoseconds = taken[name].median / MEMBERS / TIMED * 1e9
+        figures.append(
+            Figure(
+                f"4096 bodies, h = 0.1: a step of {name}, in steps of RK4",
+                "none" if most is None else f"<= {most}",
+                f"{times:.1f} ({nanoseconds:.1f} ns)",
+                None if most is None else times <= most,
+            )
+        )
+    return figures
+
+
+def measure_claims() -> Table:
+    """Orders, defects and drifts of every method of a few systems, against what is claimed."""
+    rows = []
+    for name in ("rigid_body", "heavy_top", "kepler", "galilei", "euler_disk", "so4_body"):
+        for each in check_methods(load_system(name), ["all"]):
+            kept = [each.drifts[n] for n in each.method.exactly]
+            rest = [each.drifts[n] for n in each.method.nearly]
+            rows.append([
+                name,
+                each.method.name,
+                each.method.order,
+                "rounding" if each.order is None else f"{each.order:.1f}",
+                "-" if each.defect is None else f"{each.defect:.0e}",
+                f"{max(kept):.0e}" if kept else "-",
+                f"{max(rest):.0e}" if rest else "-",
+                "; ".join(each.failures) or "as claimed",
+            ])  # fmt: skip
+    columns = ("system", "method", "order", "measured", "defect", "kept", "rest", "")
+    return Table("Claims on runs of 100 steps", columns, rows)
+
+
+def measure() -> list[Figure]:
+    """All figures; files are written."""
+    growth, growing = measure_growth()
+    rolling, held = measure_rolling()
+    algebras, means = measure_algebras()
+    found = [*measure_body(), *growth, *measure_top(), *rolling, *algebras, *measure_speed()]
+    write("structure", {"rounds": ROUNDS}, (), found, (growing, held, means, measure_claims()))
+    return found
+
+
+if __name__ == "__main__":
+    missed = any(figure.met is False for figure in measure())
+    sys.exit(missed)
