@@ -96,6 +96,8 @@ _QUADRATIC: Final = (
 
 #: Functions of the kernel of which a motion is made that is a bracket with an energy.
 ACTION: Final = ("energy_gradient", "bracket_vector")
+#: Those of it that discrete gradients call.
+BALANCE: Final = (*ACTION, "energy")
 #: The same where the motion stays on coadjoint orbits, on which the bracket acts.
 _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
@@ -233,7 +235,7 @@ _ENTRIES: Final = (
             name=f"discrete_gradient{suffix}",
             file="discrete_gradient",
             order=order,
-            needs=(*ACTION, "energy"),
+            needs=BALANCE,
             keeps=_BALANCE,
             theorem=f"{steps}{_TENSOR}, by the gradient at m corrected along the step (O. "
             "Gonzalez, Journal of Nonlinear Science 6 (1996) 449)",

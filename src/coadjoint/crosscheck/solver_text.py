@@ -37,6 +37,7 @@ from coadjoint.render.solvers import (
     arrange_map,
     describe_noise,
     describe_structured,
+    list_sharing,
 )
 from coadjoint.render.tables import tell_loops
 from coadjoint.render.targets.body import Loop, SolverBody, failure
@@ -115,7 +116,7 @@ def _expected(texts: SolverTexts, function: str) -> SolverBody:
     name = function.removeprefix("find_")
     if name in texts.programs:
         found = arrange_function(name, texts.programs[name])
-        shares = name == "rates" or list_maps([name])
+        shares = name == "rates" or list_sharing([name])
         if not list_maps([name]):
             rows["state"] = texts.programs[name].state
         arrays = ("state", "parameters", "driving", *(["fixed"] if shares else []))

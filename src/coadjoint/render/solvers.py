@@ -39,7 +39,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, list_structured
+from coadjoint.methods import ACTION, BALANCE, list_structured
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -144,7 +144,7 @@ class SolverText:
         fixed_reads: Names that ``fixed`` reads.
         branches: Whether the rates call functions of what moves that have branch points or jumps,
             as sqrt and log. A motion may be analytic there.
-        shared: What maps need of the parameters alone, which follows what is `fixed`.
+        shared: What other functions need of the parameters alone, which follows what is `fixed`.
         shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
         kinks: What the sides are those of, which are the last parameters; None for no sides.
@@ -222,8 +222,8 @@ def _arrange(
     )
     lines = [*first, *rates]
     lines += [line for s in stages for line in (*s.starts, *s.terms, *s.lines)]
-    maps = [programs[name] for name in list_maps(programs)]
-    shared = [Line(s.name, s.value) for each in maps for s in each.statements_at("parameters")]
+    others = [programs[name] for name in list_sharing(programs)]
+    shared = [Line(s.name, s.value) for each in others for s in each.statements_at("parameters")]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
     branches = any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls)
     values = (value for program in programs.values() for value in program.values())
@@ -277,20 +277,26 @@ def select_programs(
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
-    action = (*ACTION, "energy") if has_action else ()
+    action = BALANCE if has_action else ()
     return {
         "rates": rates,
         **{
             name: widen(program, rates.state, moves=name == "projection")
             for name, program in bounds.items()
         },
-        **{name: known[name] for name in action},
+        **{name: _with_own_names(known[name]) for name in action},
         **{each.name: _with_own_names(each) for each in maps if kind == SOLVER},
     }
 
 
+def list_sharing(programs: Iterable[str]) -> list[str]:
+    """The functions that share what parameters give with the rates, but for the rates."""
+    names = tuple(programs)
+    return [*list_maps(names), *(name for name in names if name in BALANCE)]
+
+
 def _with_own_names(program: Program) -> Program:
-    """A map with names of its own, since the rates and all maps share what parameters give."""
+    """A function with names of its own, since all of them share what parameters give."""
     names = {each.name: f"_{program.name}{each.name}" for each in program.statements}
     statements = tuple(
         replace(each, name=names.get(each.name, each.name), value=rename(each.value, names))
@@ -335,6 +341,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
+            "acting": [name for name in BALANCE if name in programs],
             "spheres": spheres,
             "near": spherical_midpoint.NEAR,
             # names of a vector below the state, with their rows
@@ -357,12 +364,13 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     """The lines of a Program, whose rows go to ``_rows``.
 
     Args:
-        name: Its name in a solver. Of rates and maps, what depends on parameters alone is left out.
+        name: Its name in a solver. Of rates and of what `list_sharing` has, what depends on
+            parameters alone is left out.
         program: What to arrange.
     """
     if program.table is not None:  # the template has the loops
         return FunctionText((), frozenset())
-    shares = name == "rates" or list_maps([name])
+    shares = name == "rates" or list_sharing([name])
     statements = program.statements_at("member") if shares else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
