@@ -136,6 +136,28 @@ def measure_top() -> list[Figure]:
     ]  # fmt: skip
 
 
+def measure_spectrum() -> list[Figure]:
+    """The spectrum of a body on so(8), where the implicit midpoint loses it."""
+    name, figures = "so8_body", []
+    rng, rows = np.random.default_rng(6), np.triu_indices(8, 1)
+    state = rng.uniform(-1, 1, len(rows[0]))
+
+    def find(values: Any) -> Any:
+        matrix = np.zeros((8, 8))
+        matrix[rows] = values
+        return np.sort(np.linalg.eigvalsh(1j * (matrix - matrix.T)))
+
+    for method, most in (("isospectral_midpoint4", 1e-13), ("midpoint4", None)):
+        found = run(name, state, None, method, 0.1, np.arange(101) * 100)
+        first = find(state)
+        off = max(float(np.abs(find(each) - first).max()) for each in found.state.T)
+        part = off / float(np.abs(first).max())
+        what = f"so(8) body, h = 0.1, 1e4 steps, {method}: spectrum"
+        target, met = ("none", None) if most is None else (f"<= {most:.0e}", part <= most)
+        figures.append(Figure(what, target, f"{part:.1e}", met))
+    return figures
+
+
 def measure_rolling() -> tuple[list[Figure], Table]:
     """Motions with constraints by their defaults."""
     rows, figures = [], []
@@ -244,7 +266,15 @@ def measure() -> list[Figure]:
     growth, growing = measure_growth()
     rolling, held = measure_rolling()
     algebras, means = measure_algebras()
-    found = [*measure_body(), *growth, *measure_top(), *rolling, *algebras, *measure_speed()]
+    found = [
+        *measure_body(),
+        *growth,
+        *measure_top(),
+        *measure_spectrum(),
+        *rolling,
+        *algebras,
+        *measure_speed(),
+    ]
     write("structure", {"rounds": ROUNDS}, (), found, (growing, held, means, measure_claims()))
     return found
 

@@ -94,6 +94,16 @@ below the state.
         looped="never",
     ),
     KernelFunction(
+        name="sandwich",
+        summary="Product B W B of the matrices of a state W and of a vector B",
+        shape="(n, *batch)",
+        doc="""Only free systems have it whose state is a momentum of an algebra of antisymmetric
+matrices that has all these products, as so(n). Arguments are as of `bracket_vector`, whose rows are
+those of the commutator of the two; the isospectral midpoint calls both.""",
+        below="vector",
+        looped="never",
+    ),
+    KernelFunction(
         name="noise",
         summary="What each Wiener process does to the state, one row for each component",
         shape="(n, w, *batch)",

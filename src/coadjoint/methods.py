@@ -98,7 +98,9 @@ _QUADRATIC: Final = (
 ACTION: Final = ("energy_gradient", "bracket_vector")
 #: Those of it that discrete gradients call.
 BALANCE: Final = (*ACTION, "energy")
-#: The same where the motion stays on coadjoint orbits, on which the bracket acts.
+#: All that methods ask of a kernel beyond its rates.
+ASKED: Final = (*BALANCE, "sandwich")
+#: Those of a motion that stays on coadjoint orbits, on which the bracket acts.
 _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
     "Casimirs, to the rounding of each step, and the Poisson bracket: it stays on coadjoint orbits"
@@ -216,6 +218,25 @@ _ENTRIES: Final = (
         theorem="nine steps with the lengths of Kahan and Li of the spherical midpoint, a Poisson "
         "map",
         expects=_SPHERES,
+    ),
+    *(
+        StructuredMethod(
+            name=f"isospectral_midpoint{suffix}",
+            file="isospectral_midpoint",
+            order=order,
+            needs=(*_ORBITS, "sandwich"),
+            keeps=f"{_ON_ORBITS}; the spectrum of the matrix",
+            theorem=f"{steps}the isospectral midpoint, a Poisson map on the dual of an algebra of "
+            "matrices (K. Modin and M. Viviani, Foundations of Computational Mathematics 20 (2020) "
+            "889)",
+            expects="a motion that is the bracket with its energy alone, of the momentum of an "
+            "algebra of antisymmetric matrices that has all products B W B, as so(n) from 4 on",
+        )
+        for suffix, order, steps in (
+            ("", 2, ""),
+            ("4", 4, "five steps with Suzuki's lengths of "),
+            ("6", 6, "nine steps with the lengths of Kahan and Li of "),
+        )
     ),
     *(
         StructuredMethod(

@@ -53,6 +53,10 @@ def total(counts):
 LONG_BRACKETS = ("n_link_chain", "veselova_so4")
 
 
+#: Systems on so(n), n above 3, in the basis of the planes.
+MATRICES = ("manakov_so4", "manakov_so6", "so5_body", "so6_body", "so8_body")
+
+
 def has_bracket(equations):
     """Whether a bracket with the energy can be written out, to which forces may be added."""
     known = equations.energy is not None and bool(equations.poisson_tensor)
@@ -69,6 +73,7 @@ def test_every_function_that_applies_is_lowered(system):
         "poisson_tensor": not equations.poisson_tensor,
         "energy_gradient": not has_bracket(equations),
         "bracket_vector": not has_bracket(equations),
+        "sandwich": equations.spec.name not in MATRICES,
         "noise": not equations.spec.noise,
         "constraint_residual": not equations.spec.constraints and not equations.spec.turning,
         "projection": equations.projection is None,
@@ -85,6 +90,7 @@ def test_every_function_that_applies_is_lowered(system):
         "poisson_tensor",
         "energy_gradient",
         "bracket_vector",
+        "sandwich",
     ]
     named += ["noise", "constraint_residual", "projection", "reconstruction", "domain"]
     assert list(programs) == [name for name in named if not without.get(name)]

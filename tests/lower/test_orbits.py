@@ -14,6 +14,7 @@ from tests.specs import lowered
 
 #: Files of discrete gradients.
 GRADIENTS = ("average_gradient", "discrete_gradient")
+ON_ORBITS = {"midpoint", "gauss", "coadjoint_mean", *GRADIENTS}
 #: Spheres by system, from the order of the momenta and vectors that its spec declares.
 SPHERES = {
     "rigid_body": (Sphere((0, 1, 2)),),
@@ -102,7 +103,8 @@ def test_a_spoiled_function_is_caught():
     ("system", "methods"),
     [
         ("heavy_top", {"midpoint", "gauss", "coadjoint_mean", "spherical_midpoint", *GRADIENTS}),
-        ("so5_body", {"midpoint", "gauss", "coadjoint_mean", *GRADIENTS}),
+        ("so5_body", {*ON_ORBITS, "isospectral_midpoint"}),
+        ("se2_pendulum", ON_ORBITS),
         ("heavy_top_damped", {"midpoint", "gauss", *GRADIENTS}),
         ("euler_disk", {"midpoint", "gauss", *GRADIENTS}),
         ("suslov", {"midpoint", "gauss"}),

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from coadjoint.derive import sandwich as products
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
@@ -133,6 +134,16 @@ def bracket_vector(equations: Equations) -> Rows | None:
         return None
     state = equations.setting.state
     lines = [(f"{{{name}, v}}", row) for name, row in zip(state, own.exact.rates, strict=True)]
+    return _rows(own, lines, state=(*state, *vector_names(len(state))))
+
+
+def sandwich(equations: Equations) -> Rows | None:
+    """``B W B`` of the matrices of the state and of a vector, which follows it."""
+    own = products.sandwich(equations)
+    if own is None:
+        return None
+    state = equations.setting.state
+    lines = [(f"(v {name} v)", row) for name, row in zip(state, own.exact.rates, strict=True)]
     return _rows(own, lines, state=(*state, *vector_names(len(state))))
 
 

@@ -151,6 +151,8 @@ def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     """Coadjoint actions are Poisson maps where they come from a discrete principle."""
     stages = _STEPS[method.order]
     cost = f"{SWEEPS} of {_count(stages, 'coadjoint arc')}, each a dozen brackets"
+    if method.file == "isospectral_midpoint":
+        cost = f"{SWEEPS} of {_count(stages, 'midpoint')}, each with two products of matrices"
     return Judgement(_on_orbits(facts), True, _ACTION, cost)
 
 

@@ -39,7 +39,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, BALANCE, list_structured
+from coadjoint.methods import ACTION, ASKED, list_structured
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -277,7 +277,7 @@ def select_programs(
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
-    action = BALANCE if has_action else ()
+    action = [name for name in ASKED if name in known] if has_action else []
     return {
         "rates": rates,
         **{
@@ -292,7 +292,7 @@ def select_programs(
 def list_sharing(programs: Iterable[str]) -> list[str]:
     """The functions that share what parameters give with the rates, but for the rates."""
     names = tuple(programs)
-    return [*list_maps(names), *(name for name in names if name in BALANCE)]
+    return [*list_maps(names), *(name for name in names if name in ASKED)]
 
 
 def _with_own_names(program: Program) -> Program:
@@ -341,7 +341,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
-            "acting": [name for name in BALANCE if name in programs],
+            "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
             "near": spherical_midpoint.NEAR,
             # names of a vector below the state, with their rows

@@ -111,7 +111,7 @@ class _Runs:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.at = {"time": 0.0} if system.TIME else {}
+        self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         default = [v for each in system.STATE.values() for v in _fill(each)]
         states = self._draw(np.array(default))
         self.target = "c" if len(states) > LARGE else "numpy"

@@ -14,7 +14,7 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
-from coadjoint.methods import BALANCE, MAPPED
+from coadjoint.methods import ASKED, MAPPED
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
@@ -55,7 +55,7 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise", *BALANCE)
+        functions = (*choice.kind.rates, "domain", "projection", "noise", *ASKED)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
         self._held, kinks, self._spheres = None, None, ()
@@ -114,6 +114,7 @@ class NumpyStepper:
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
+            functions["sandwich"] = self._sandwich
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
@@ -140,6 +141,10 @@ class NumpyStepper:
     def _bracket(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The Poisson tensor at a state times a vector."""
         return self._evaluate(("bracket_vector",), lanes, after, np.concatenate([state, vector]))
+
+    def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
+        """The product of matrices of a state and of a vector."""
+        return self._evaluate(("sandwich",), lanes, after, np.concatenate([state, vector]))
 
     def _find_kinks(
         self, find: Callable[..., Array], lanes: Lanes, after: Array, state: Array

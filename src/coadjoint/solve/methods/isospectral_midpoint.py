@@ -11,15 +11,28 @@ Read next: `coadjoint.solve.methods.lie_poisson`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+
+def make(functions: Mapping[str, Any], size: float, order: int) -> IsospectralMidpoint:
+    """The method of an order, from functions of the kernel."""
+    return IsospectralMidpoint(
+        gradient=functions["gradient"],
+        bracket=functions["bracket"],
+        sandwich=functions["sandwich"],
+        size=size,
+        order=order,
+    )
 
 
 class IsospectralMidpoint(LiePoisson):
@@ -51,4 +64,4 @@ class IsospectralMidpoint(LiePoisson):
         xi = self.gradient(lanes, after, middle)
         rates = self.bracket(lanes, after, middle, xi)
         both = self.sandwich(lanes, after, middle, xi)
-        return Sweep(arc.state + half * (rates + half * both), arc.length * rates)
+        return Sweep(arc.state + (arc.low + half * (rates + half * both)), arc.length * rates)

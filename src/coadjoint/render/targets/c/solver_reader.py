@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 
 from coadjoint.lower.program import Node
+from coadjoint.methods import ASKED
 from coadjoint.render.targets.body import Loop, SolverBody, failure
 from coadjoint.render.targets.c.reader import Reader
 
@@ -24,7 +25,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
-            **dict.fromkeys(("energy", "energy_gradient", "bracket_vector"), "SPARED"),
+            **dict.fromkeys(ASKED, "SPARED"),
             **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan", "exact_body"), "INLINE"),
         }.items()
     },
