@@ -77,7 +77,7 @@ Systems whose rates are loops over a table have no such matrix.""",
         name="energy_gradient",
         summary="Derivative of the energy by the state",
         shape="(n, *batch)",
-        doc="""Only free systems with an energy and a Poisson bracket have it: with `bracket_vector`
+        doc="""Only systems with an energy and a tensor in closed form have it: with `bracket_vector`
 it gives the motion, ``rhs = bracket_vector(state, energy_gradient)`` plus forces.""",
         looped="never",
     ),
@@ -85,8 +85,10 @@ it gives the motion, ``rhs = bracket_vector(state, energy_gradient)`` plus force
         name="bracket_vector",
         summary="Poisson tensor at a state times a vector",
         shape="(n, *batch)",
-        doc="""Only free systems with an energy and a Poisson bracket have it. On the dual of a Lie
-algebra it is the coadjoint action of the vector on the state. Its second argument is the vector, in
+        doc="""Only systems with an energy and a tensor in closed form have it. On the dual of a Lie
+algebra it is the coadjoint action of the vector on the state; of a constrained motion the tensor
+is the almost-Poisson one, taken from momenta to the velocities of the state, where it is
+antisymmetric as well. Its second argument is the vector, in
 the forms of the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector
 below the state.
 """,

@@ -43,7 +43,7 @@ NO_COMPILER: Final = "not run: no compiler"
 ORACLE_POINTS: Final = 2000
 #: Operations and outputs of one function, all its points together: a large function, of which every
 #: point tries many formulas, gets fewer points, and never less than the other number.
-ORACLE_OPERATIONS: Final = 60_000
+ORACLE_OPERATIONS: Final = 40_000
 FEWEST_POINTS: Final = 50
 #: Points of bitwise comparison for each function, and how many outputs these may be together.
 BIT_POINTS: Final = 200_000

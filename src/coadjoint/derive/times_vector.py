@@ -45,7 +45,9 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     count = len(list_components(spec.state))
     if spec.in_frame:
         unknowns = (*_number("eta", count), *_number("acc", count))
-        return (*vector_names(count), *unknowns, *solver_names(range(2 * count)))
+        moving = sum(len(each.components) for each in spec.reduced_momenta)
+        blocks = (range(moving), range(moving, 2 * moving))
+        return (*vector_names(count), *unknowns, *(n for own in blocks for n in solver_names(own)))
     has_velocities = spec.algebra is None and not spec.having_role("momentum")
     return vector_names(count) if has_velocities or spec.poisson is not None else ()
 
