@@ -77,8 +77,8 @@ Systems whose rates are loops over a table have no such matrix.""",
         name="energy_gradient",
         summary="Derivative of the energy by the state",
         shape="(n, *batch)",
-        doc="""Only systems with an energy and a tensor in closed form have it: with `bracket_vector`
-it gives the motion, ``rhs = bracket_vector(state, energy_gradient)`` plus forces.""",
+        doc="""Only systems with an energy and a tensor in closed form have it: with
+`bracket_vector` the motion is ``rhs = bracket_vector(state, energy_gradient)`` plus forces.""",
         looped="never",
     ),
     KernelFunction(

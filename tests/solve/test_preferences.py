@@ -69,3 +69,24 @@ def test_what_does_not_apply_to_a_run_is_passed_over():
     run = quadrotor.simulate(np.full(quadrotor.STATE.size, 0.25), (0, 1), **options)
     assert run.settings["method"] == "dop853"
     assert "does not apply: Python leads the steps" in run.settings["chosen"]
+
+
+@pytest.mark.parametrize(
+    ("samples", "expected"),
+    [(5, [0, 0.25, 0.5, 0.75, 1]), (4, [0, 0.375, 0.625, 1]), (1001, np.arange(9) / 8), (1, [1])],
+)
+def test_samples_are_ends_of_steps(samples, expected):
+    """The nearest to even ones, no more than there are; the integrals are kept there."""
+    run = rigid_body.simulate(BODY, (0, 1), step=0.125, samples=samples, target="numpy")
+    assert run.time.tolist() == list(expected)
+    assert max(run.drift.values()) < 1e-14
+
+
+def test_times_that_are_given_stay():
+    """Between ends of steps too, where a cubic stands; and RK4 has even ones."""
+    times = [0.0, 0.3, 0.7, 1.0]
+    run = rigid_body.simulate(BODY, times, step=0.125, target="numpy")
+    assert run.time.tolist() == times
+    assert max(run.drift.values()) > 1e-9
+    even = rigid_body.simulate(BODY, (0, 1), step=0.125, samples=4, method="rk4", target="numpy")
+    assert even.time.tolist() == np.linspace(0, 1, 4).tolist()

@@ -75,8 +75,9 @@ class Advance(Protocol):
 def compile_solver(
     texts: Mapping[str, str], folder: Path, method: str, build: str, what: SolverKind = SOLVER
 ) -> Path:
-    """The object of a method: the exact build is not optimised, which changes no bit, the fast one
-    less than that of users, which is compiled for longer.
+    """The object of a method: the exact build is not optimised, which changes no bit.
+
+    The fast one is optimised less than that of users, which takes longer to compile.
 
     Args:
         texts: The files of the solver in C.
