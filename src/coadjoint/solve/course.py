@@ -53,6 +53,7 @@ class Course:
         codes: How each trajectory ended, as `Status`; None from SciPy.
         steps: Steps that were taken; likewise.
         rejected: Steps that were tried in vain; likewise.
+        sweeps: Sweeps by which the equations of all steps were solved; None of explicit methods.
         reached: The time that each trajectory reached; likewise.
         last: The state there, ``(n, *batch)``; likewise.
         below: What is reconstructed there, ``(k, *batch)``; None if nothing is.
@@ -75,6 +76,7 @@ class Course:
     codes: NDArray[np.int8] | None = None
     steps: NDArray[np.uint64] | None = None
     rejected: NDArray[np.uint64] | None = None
+    sweeps: NDArray[np.uint64] | None = None
     reached: Array | None = None
     last: Array | None = None
     below: Array | None = None
@@ -118,7 +120,7 @@ class Course:
             start = replace(start, state=start.state[at], inputs=inputs, reconstructed=below)
         of_each: dict[str, Any] = {
             name: np.asarray(values[place])
-            for name in ("codes", "steps", "rejected", "reached")
+            for name in ("codes", "steps", "rejected", "sweeps", "reached")
             if (values := getattr(self, name)) is not None
         }
         of_each |= {
@@ -149,6 +151,7 @@ class Course:
 _ARRAYS = {
     "steps": np.uint64,
     "rejected": np.uint64,
+    "sweeps": np.uint64,
     "reached": np.float64,
     "last": np.float64,
     "below": np.float64,

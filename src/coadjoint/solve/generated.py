@@ -192,6 +192,7 @@ def _make_course(
         codes=run.status.reshape(batch),
         steps=run.steps.reshape(batch),
         rejected=run.rejected.reshape(batch),
+        sweeps=None if run.sweeps is None else run.sweeps.reshape(batch),
         reached=run.time.reshape(batch),
         last=run.state[:n].reshape(-1, *batch),
         below=run.state[n:].reshape(below.shape) if len(below) else None,

@@ -135,6 +135,11 @@ class Solution:
         return None if self.course.rejected is None else self.course.rejected[()]
 
     @property
+    def sweeps(self) -> Any:
+        """Sweeps that solved implicit steps, of a batch an array; None of explicit ones."""
+        return None if self.course.sweeps is None else self.course.sweeps[()]
+
+    @property
     def kinks(self) -> Kinks | None:
         """Where the kinks of the rates were met; None where they have none, or from SciPy."""
         return self.course.kinks

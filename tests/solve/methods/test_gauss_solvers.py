@@ -123,3 +123,16 @@ def test_the_text_names_the_theorem() -> None:
     """Each method stands in the solver's head with its source."""
     text = render_system(make_context())["solver.c"]
     assert all(f"-D{name.upper()} makes the method of Gauss" in text for name in METHODS)
+
+
+def test_sweeps_are_counted(tmp_path: Path) -> None:
+    """More in longer steps, of each member, and in a file; explicit methods have none."""
+    system = write(make_context(), tmp_path / "turning")
+    few, many = (
+        system.simulate(make_states(), (0, 2), method="gauss4", step=step)
+        for step in (0.03125, 0.25)
+    )
+    assert few.sweeps.shape == many.sweeps.shape == (21,)
+    assert 3 < few.sweeps[20] / few.steps[20] < many.sweeps[20] / many.steps[20] < 100
+    assert few.member(20).sweeps == few.sweeps[20]
+    assert system.simulate(make_states(), (0, 2), method="rk4", step=0.1).sweeps is None
