@@ -5,16 +5,14 @@ from itertools import groupby
 import mpmath
 import pytest
 
-from coadjoint.lower.compositions import (
-    PAIRS,
+from coadjoint.lower.compositions import PAIRS, find_sweeps, schedule
+from tests.lower.maps import flows, measure_order, split_step, take
+from tests.lower.order_conditions import (
     compare_series,
     find_pair_errors,
     find_sweep_errors,
-    find_sweeps,
     multiply_exponentials,
-    schedule,
 )
-from tests.lower.maps import flows, measure_order, split_step, take
 
 
 @pytest.mark.parametrize("order", PAIRS)

@@ -3,15 +3,16 @@
 Comes in: a number of parts and an order. Goes out: a `Schedule`, pairs of a flow and the part of
 the step that it takes, from the first that acts to the last one.
 
-Those of Blanes and Moan are published with 15 digits, from which the conditions of order are solved
-again in 50; the tests hold them to their order in the free algebra. In doubles the coefficient of
-each flow in the middle is what the others leave, so that a step has its length to a rounding.
+Those of Blanes and Moan are published with 15 digits; here they have 50, by Newton on the
+conditions of order, and the tests hold them to these, in the free algebra. In doubles the
+coefficient of each flow in the middle is what the others leave, so that a step has its length to a
+rounding.
 Read next: `coadjoint.lower.flows`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any, Final
 
@@ -23,20 +24,52 @@ Coefficients = tuple[Any, ...]
 DIGITS: Final = 50
 
 
+def _mirror(outer: Sequence[Any]) -> Coefficients:
+    """Symmetric coefficients with the sum 1."""
+    return (*outer, 1 - 2 * mpmath.fsum(outer), *reversed(outer))
+
+
+def _complete(a: Sequence[str], b: Sequence[str]) -> tuple[Coefficients, Coefficients]:
+    """Coefficients of two flows from the outer ones of each."""
+    with mpmath.workdps(DIGITS):
+        one, two = list(map(mpmath.mpf, a)), list(map(mpmath.mpf, b))
+        last = mpmath.mpf(1) / 2 - mpmath.fsum(two)
+        return _mirror(one), (*two, last, last, *reversed(two))
+
+
 def blanes_moan4() -> tuple[Coefficients, Coefficients]:
     """Parts of two flows in turn that make order 4, the first one first and last.
 
     S. Blanes and P. C. Moan, Journal of Computational and Applied Mathematics 142 (2002) 313, S6.
     """
-    a = ("0.0792036964311957", "0.353172906049774", "-0.0420650803577195")
-    return _solve_pairs(a, ("0.209515106613362", "-0.143851773179818"), 4)
+    a = (
+        "0.079203696431195669433663495888268873308015070876608",
+        "0.35317290604977398848106131157312105653036945475635",
+        "-0.04206508035771953536811029830251703872041104132472",
+    )
+    b = (
+        "0.20951510661336202127407264002950101690213009527187",
+        "-0.1438517731798180082751150578565277256482351390507",
+    )
+    return _complete(a, b)
 
 
 def blanes_moan6() -> tuple[Coefficients, Coefficients]:
     """The same of order 6: their S10."""
-    a = ("0.0502627644003922", "0.413514300428344", "0.0450798897943977", "-0.188054853819569")
-    b = ("0.148816447901042", "-0.132385865767784", "0.067307604692185", "0.432666402578175")
-    return _solve_pairs((*a, "0.541960678450780"), b, 6)
+    a = (
+        "0.050262764400392686021221654402074109406287588082069",
+        "0.41351430042834381506306372013388443897274411529623",
+        "0.045079889794398062968897052124513471162080957042855",
+        "-0.18805485381956891479912848891887054248560249486645",
+        "0.5419606784507801348314147409330724963472567336488",
+    )
+    b = (
+        "0.14881644790104323192090100553557758887775976985757",
+        "-0.13238586576778364744884542659893992157530238478965",
+        "0.067307604692184458150257896592601046898922503617559",
+        "0.43266640257817359752766797088354529805903744905717",
+    )
+    return _complete(a, b)
 
 
 def strang() -> tuple[Coefficients, Coefficients]:
@@ -101,121 +134,3 @@ def _round(flows: Sequence[tuple[int, Any]]) -> Schedule:
             for n in middle:
                 rounded[n] = float(rest / len(middle))
     return tuple((part, time) for (part, _), time in zip(flows, rounded, strict=True))
-
-
-# -- conditions of order ---------------------------------------------------------------------------
-
-
-def _mirror(outer: Sequence[Any]) -> Coefficients:
-    """Symmetric coefficients with the sum 1."""
-    return (*outer, 1 - 2 * mpmath.fsum(outer), *reversed(outer))
-
-
-def _solve_pairs(
-    a: Sequence[str], b: Sequence[str], order: int
-) -> tuple[Coefficients, Coefficients]:
-    """Coefficients of two flows from approximate outer ones."""
-    size = len(a)
-
-    def complete(c: Sequence[Any]) -> tuple[Coefficients, Coefficients]:
-        one, two = c[:size], c[size:]
-        last = mpmath.mpf(1) / 2 - mpmath.fsum(two)
-        return _mirror(one), (*two, last, last, *reversed(two))
-
-    with mpmath.workdps(DIGITS):
-        start = list(map(mpmath.mpf, (*a, *b)))
-        return complete(_solve(start, lambda c: find_pair_errors(*complete(c), order)))
-
-
-def _solve(start: list[Any], errors: Callable[[list[Any]], list[Any]]) -> list[Any]:
-    """The nearest solution of conditions, by Newton's method with the least change."""
-    here = start
-    for _ in range(6):
-        residuals, small = errors(here), mpmath.mpf(10) ** (-DIGITS // 2)
-        if max(map(abs, residuals)) < mpmath.mpf(10) ** (5 - DIGITS):
-            return here
-        columns = []
-        for n in range(len(here)):
-            moved = [each + small * (k == n) for k, each in enumerate(here)]
-            columns.append([(b - a) / small for a, b in zip(residuals, errors(moved), strict=True)])
-        independent = _choose_rows(columns, len(residuals))
-        slopes = mpmath.matrix([[column[r] for column in columns] for r in independent])
-        change = slopes.T * mpmath.lu_solve(
-            slopes * slopes.T, mpmath.matrix([residuals[r] for r in independent])
-        )
-        here = [each - change[n] for n, each in enumerate(here)]
-    raise AssertionError("conditions of order that Newton's method does not solve")
-
-
-def _choose_rows(columns: Sequence[Sequence[Any]], count: int) -> list[int]:
-    """Conditions that do not follow from those before, by Gram and Schmidt."""
-    chosen: list[int] = []
-    basis: list[list[Any]] = []
-    for row in range(count):
-        rest = [column[row] for column in columns]
-        size = mpmath.fsum(each * each for each in rest)
-        for other in basis:
-            part = mpmath.fdot(rest, other)
-            rest = [a - part * b for a, b in zip(rest, other, strict=True)]
-        norm = mpmath.fsum(each * each for each in rest)
-        if norm > mpmath.mpf(10) ** (-DIGITS // 4) * max(size, 1):
-            basis.append([each / mpmath.sqrt(norm) for each in rest])
-            chosen.append(row)
-    return chosen
-
-
-#: Coefficients of words in letters that do not commute.
-Series = dict[tuple[int, ...], Any]
-
-
-def find_pair_errors(a: Sequence[Any], b: Sequence[Any], order: int) -> list[Any]:
-    """What a product of ``exp(a_i A) exp(b_i B)`` differs by from ``exp(A + B)``, word by word."""
-    flows = [(n % 2, (a, b)[n % 2][n // 2]) for n in range(len(a) + len(b))]
-    found = multiply_exponentials([{(letter,): time} for letter, time in flows], (1, 1), order)
-    return compare_series(found, {(0,): 1, (1,): 1}, (1, 1), order)
-
-
-def find_sweep_errors(sweeps: Sequence[Any], order: int) -> list[Any]:
-    """The same of sweeps ``exp(c X + c^2 Y + c^3 Z + ...)`` and their adjoints, in turn."""
-    weights = tuple(range(1, order + 1))
-    logs: list[Series] = [
-        {(n,): c**weight * (-1) ** (k * (weight - 1)) for n, weight in enumerate(weights)}
-        for k, c in enumerate(sweeps)
-    ]
-    return compare_series(multiply_exponentials(logs, weights, order), {(0,): 1}, weights, order)
-
-
-def multiply_exponentials(logs: Sequence[Series], weights: Sequence[int], order: int) -> Series:
-    """A product of exponentials up to words of some weight, the first one to act on the left."""
-    total: Series = {(): mpmath.mpf(1)}
-    for log in logs:
-        total = _multiply(total, _exponential(log, weights, order), weights, order)
-    return total
-
-
-def _exponential(log: Series, weights: Sequence[int], order: int) -> Series:
-    """The exponential of a series without constant term."""
-    total: Series = {(): mpmath.mpf(1)}
-    power = total
-    for n in range(1, order + 1):
-        power = {w: c / n for w, c in _multiply(power, log, weights, order).items()}
-        for word, value in power.items():
-            total[word] = total.get(word, 0) + value
-    return total
-
-
-def _multiply(a: Series, b: Series, weights: Sequence[int], order: int) -> Series:
-    """The product of two series, longer words left out."""
-    result: Series = {}
-    for one, left in a.items():
-        for two, right in b.items():
-            if sum(weights[letter] for letter in one + two) <= order:
-                result[one + two] = result.get(one + two, 0) + left * right
-    return result
-
-
-def compare_series(found: Series, log: Series, weights: Sequence[int], order: int) -> list[Any]:
-    """What two series differ by, in the order of words."""
-    expected = _exponential(log, weights, order)
-    words = sorted(found.keys() | expected.keys(), key=lambda word: (len(word), word))
-    return [found.get(word, mpmath.mpf(0)) - expected.get(word, 0) for word in words]
