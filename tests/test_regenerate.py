@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from coadjoint.errors import ClaimError, DriftError, SpecError
-from coadjoint.regenerate import check, regenerate
+from coadjoint.regenerate import _guess_work, _Source, check, regenerate
 from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.write import SYSTEM_FILES
 from tests.conftest import FAMILIES
@@ -283,6 +283,17 @@ def test_the_same_bytes_from_two_working_directories(checkout, tmp_path):
     assert done.returncode == 0, done.stderr
     assert tree(elsewhere / "out") == tree(checkout / "generated")
     assert str(tmp_path).encode() not in b"".join(tree(elsewhere / "out").values())
+
+
+def test_the_longest_work_comes_first(tmp_path):
+    """Systems are worked on by the length of their kernels; one that has none yet is the first."""
+    for name, length in (("short", 10), ("long", 99)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "kernel.c").write_text("x" * length)
+    names = ("short", "new", "long")
+    sources = [_Source(Path(f"{name}.toml"), "") for name in names]
+    ordered = sorted(sources, key=lambda each: _guess_work(each, tmp_path))
+    assert [each.name for each in ordered] == ["new", "long", "short"]
 
 
 def test_two_specs_of_one_name_are_refused(tmp_path, cache):

@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields
 from hashlib import sha256
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from types import MappingProxyType
@@ -152,7 +153,7 @@ def regenerate(
     pending = [source for source in sources if source.name not in rows]
     keep = {source.name for source in sources} if complete else None
     _refuse_early(output, pending, keep)
-    records, failures = _build_all(pending, jobs, allowed, progress)
+    records, failures = _build_all(pending, output, jobs, allowed, progress)
     if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
         write_systems(output, systems, template_hashes(), keep, on_wait)
@@ -180,7 +181,7 @@ def check(
         DriftError: Files are missing, extra or changed; its ``differences`` list them.
     """
     sources = _sources(paths)
-    records, failures = _build_all(sources, jobs, allowed_seconds(seconds), progress)
+    records, failures = _build_all(sources, output, jobs, allowed_seconds(seconds), progress)
     systems = {name: _generated_system(record) for name, record in records.items()}
     entries = {name: system.record() for name, system in systems.items()}
     if not complete:
@@ -355,9 +356,9 @@ def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
 
 
 def _build_all(
-    sources: Sequence[_Source], jobs: int, seconds: int, progress: Progress
+    sources: Sequence[_Source], output: Path, jobs: int, seconds: int, progress: Progress
 ) -> tuple[dict[str, dict[str, Any]], dict[str, CoadjointError]]:
-    """Records of the systems that passed, and errors of the others."""
+    """Records of the systems that passed, and errors of the others in the order of the specs."""
     records: dict[str, dict[str, Any]] = {}
     failures: dict[str, CoadjointError] = {}
     children = Children()
@@ -383,11 +384,21 @@ def _build_all(
     # Threads only wait for children; a lost child is an error of its system, never a hang.
     pool = ThreadPoolExecutor(max_workers=max(1, jobs))
     try:
-        list(pool.map(run, sources))
+        list(pool.map(run, sorted(sources, key=lambda source: _guess_work(source, output))))
     finally:  # Ctrl-C arrives here, in the main thread, while the others wait
         children.stop()
         pool.shutdown(cancel_futures=True)
-    return records, failures
+    return records, {each.name: failures[each.name] for each in sources if each.name in failures}
+
+
+def _guess_work(source: _Source, output: Path) -> float:
+    """A key that puts the longest work first, so that no job waits for it at the end.
+
+    The text of the kernel that stands in the folder tells how long it is; new systems come first.
+    """
+    with suppress(OSError):
+        return -(output / source.name / "kernel.c").stat().st_size
+    return -inf
 
 
 def build_record(argument: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Compilers: found, missing, failing, hanging, lying; CC is a program and nothing else."""
 
+import ctypes
 import platform
 import shutil
 import signal
@@ -30,6 +31,11 @@ from coadjoint.systems import heavy_top
 SIMPLE = {
     "kernel.h": "double twice(double x);\n",
     "kernel.c": '#include "kernel.h"\ndouble twice(double x)\n{\n    return 2.0 * x;\n}\n',
+}
+FUSED = {
+    "kernel.h": "double fused(double a, double b, double c);\n",
+    "kernel.c": '#include "kernel.h"\ndouble fused(double a, double b, double c)\n'
+    "{\n    return a * b + c;\n}\n",
 }
 
 
@@ -82,6 +88,27 @@ def test_contraction_is_off_in_the_exact_build_alone():
     assert "-ffp-contract=fast" in find_compiler().flags("fast")
     assert "-ffast-math" not in (*flags, *find_compiler().flags("fast"))
     assert {"-std=c11", "-O3", "-march=native", "-Wall", "-Wextra", "-Werror"} <= set(flags)
+
+
+@pytest.mark.parametrize(("build", "level"), [("exact", 1), ("fast", 0), ("fast", 1), ("fast", 3)])
+def test_products_and_sums_are_fused_from_the_first_level_on(tmp_path, build, level):
+    """The fast objects of the cross-check round as those of users do, by fused operations."""
+    found = find_compiler()
+    if "__FP_FAST_FMA" not in _macros(found):
+        pytest.skip("a processor without fused operations")
+    source = Source("kernel", (), is_loops=False, level=level)
+    folder = sources(tmp_path, **FUSED)
+    made = ctypes.CDLL(str(compile_kernel(found, folder, build, source)))
+    made.fused.restype, made.fused.argtypes = ctypes.c_double, [ctypes.c_double] * 3
+    tiny = 2.0**-30
+    left = made.fused(1.0 + tiny, 1.0 - tiny, -1.0)  # 1 - 2^-60, less 1; the product rounds to 1
+    assert left == (-(2.0**-60) if build == "fast" and level else 0.0)
+
+
+def _macros(found):
+    """Macros of a compiler for this processor."""
+    command = [*found.command, "-march=native", "-dM", "-E", "-x", "c", "/dev/null"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,8 @@ _GNU = (
     "-fno-tree-slp-vectorize",
     "--param=vect-epilogues-nomask=0",
 )
+#: GCC fuses a product and a sum with this alone of all that the second level has in addition.
+_FUSING = ("-fexpensive-optimizations",)
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
 #: What a driver says of a program that ran out of processor time.
@@ -80,7 +82,8 @@ class Source:
         stem: Name of the C file and of its header without their endings.
         defines: Options that choose what is compiled of it, such as ``-DRK4``.
         is_loops: Whether it is long straight loops over members, which need fewer passes of GCC.
-        level: How much is optimised: 3 for what users run, 0 for what is run for some steps alone.
+        level: How much is optimised: 3 for what users run; for what is run for some steps alone 0,
+            or 1, from where on products and sums are fused.
     """
 
     stem: str = "kernel"
@@ -125,8 +128,9 @@ class Compiler:
     ) -> tuple[str, ...]:
         """Options for one build of a source, ``exact`` or ``fast``, on one of `MACHINES`."""
         own = _GNU if self.is_gnu and source.is_loops else ()
-        level = f"-O{source.level}"
-        return (*_FLAGS, level, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
+        fusing = _FUSING if self.is_gnu and source.level == 1 else ()
+        level = (f"-O{source.level}", *fusing)
+        return (*_FLAGS, *level, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
 
 
 def find_compiler() -> Compiler:

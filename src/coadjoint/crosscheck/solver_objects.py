@@ -89,7 +89,7 @@ def compile_solver(
     Raises:
         CompilerError: The compiler failed.
     """
-    level = 0 if build == "exact" else 2  # sums and products are fused from there on
+    level = 0 if build == "exact" else 1  # sums and products are fused from there on
     every = CHOICES | NOISY | STRUCTURED | MAPS
     compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)

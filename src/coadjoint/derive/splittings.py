@@ -263,8 +263,9 @@ class _Search:
     def _find_brackets(self) -> NDArray[np.float64]:
         """``J grad {a, {b, c}}`` at the states, for all atoms a, b and c."""
         field, structure, atoms = self.field, self.structure, range(len(self._atoms))
-        values = self._sample
-        found = np.zeros((*[len(atoms)] * 3, len(values) * len(self.state)))
+        values, factors = self._sample, dict[int, Any]()
+        states = len(next(iter(values.values())))
+        found = np.zeros((*[len(atoms)] * 3, states, len(self.state)))
         for b, c in product(atoms, repeat=2):
             if b >= c:
                 continue
@@ -272,24 +273,28 @@ class _Search:
             for a in atoms if inner else ():
                 outer = structure.bracket(self._atoms[a], inner)
                 rows = structure.hamiltonian_vector_field(outer)
-                vector = [_evaluate(field, row, each) for each in values for row in rows]
-                found[a, b, c] = vector
+                for n, row in enumerate(rows):
+                    if row:
+                        place = found[a, b, c, :, n]
+                        place[:] = field.evaluate(row, values, _number, _call, factors)
                 found[a, c, b] = -found[a, b, c]
-        return found
+        return found.reshape(*found.shape[:3], -1)
 
     @cached_property
-    def _sample(self) -> list[dict[str, Any]]:
-        """The states at which errors are compared."""
+    def _sample(self) -> dict[str, NDArray[np.object_]]:
+        """The states at which errors are compared: for each name its values, with many digits."""
         defaults, state = dict(self.field.region.defaults), self.state
         parameters = [name for name in self.setting.parameters if name not in defaults]
         defaults |= {name: Fraction(1, n + 1) for n, name in enumerate(parameters)}
         free = [name for name in state if name not in defaults]
-        sample = []
-        for turn in range(min(STATES, len(free)) or 1):
-            others = {n: Fraction(1, (k + turn) % len(free) + 1) for k, n in enumerate(free)}
-            whole = {**defaults, **others}
-            sample.append({name: _number(value) for name, value in whole.items()})
-        return sample
+        turns = range(min(STATES, len(free)) or 1)
+        sample = {name: [value] * len(turns) for name, value in defaults.items()}
+        for k, name in enumerate(free):
+            sample[name] = [Fraction(1, (k + turn) % len(free) + 1) for turn in turns]
+        return {
+            name: np.array([_number(value) for value in row], dtype=object)
+            for name, row in sample.items()
+        }
 
 
 def _find_error(brackets: NDArray[np.float64], order: Sequence[Sequence[int]]) -> float:
@@ -312,9 +317,4 @@ def _call(function: str, *arguments: Any) -> Any:
     if own is None:
         entry = ELEMENTARY[function]
         raise NoFlowError(f"{entry.name} has no value here")
-    return own(*arguments)
-
-
-def _evaluate(field: Any, element: Element, values: Mapping[str, Any]) -> Any:
-    """An element at a state."""
-    return field.evaluate(element, values, _number, _call) if element else mpmath.mpf(0)
+    return np.frompyfunc(own, len(arguments), 1)(*arguments)
