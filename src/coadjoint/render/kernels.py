@@ -202,7 +202,9 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
     )
     for kind in list_kinds([program.name for program in context.programs]):
         rows = state if kind == SOLVER else [*state, *reconstructed]
-        texts |= _render_files(kind.files, shared | {"state": rows} | _solver(context, kind))
+        texts |= _render_files(
+            kind.files, shared | {"state": rows} | describe_solver(context, kind)
+        )
     return {file: texts[file] for file in TEMPLATES if file in texts}
 
 
@@ -213,7 +215,7 @@ def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, 
     return {file: rendered[template] for file, template in templates.items()}
 
 
-def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
+def describe_solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
     solved = hold_sides(select_programs(context.programs, kind, context.maps))
     table = dop853()

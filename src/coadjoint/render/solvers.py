@@ -238,11 +238,11 @@ def _arrange(
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         products=jets.products,
         operations=_count(arrange_function("rates", programs["rates"])),
-        reads=_reads(lines),
-        fixed_reads=_reads(fixed),
+        reads=list_reads(lines),
+        fixed_reads=list_reads(fixed),
         branches=branches,
         shared=tuple(shared),
-        shared_reads=_reads(shared),
+        shared_reads=list_reads(shared),
         kinks=programs.get("kinks"),
     )
 
@@ -374,14 +374,14 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     statements = program.statements_at("member") if shares else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
-    return FunctionText(tuple(lines), _reads(lines))
+    return FunctionText(tuple(lines), list_reads(lines))
 
 
 def arrange_map(program: Program) -> FunctionText:
     """The lines of a map with what it needs of the parameters, as the twin in NumPy has them."""
     shared = [Line(each.name, each.value) for each in program.statements_at("parameters")]
     lines = (*shared, *arrange_function(program.name, program).lines)
-    return FunctionText(lines, _reads(lines))
+    return FunctionText(lines, list_reads(lines))
 
 
 def _count(function: FunctionText) -> int:
@@ -390,7 +390,7 @@ def _count(function: FunctionText) -> int:
     return sum(not isinstance(n, leaves) for line in function.lines for n in walk(line.value))
 
 
-def _reads(lines: Iterable[Line]) -> frozenset[str]:
+def list_reads(lines: Iterable[Line]) -> frozenset[str]:
     """The names that lines read, without their orders."""
     nodes = (node for line in lines for node in walk(line.value))
     return frozenset(node.name.split("[")[0] for node in nodes if isinstance(node, Symbol))

@@ -94,12 +94,12 @@ def check_methods(system: System, names: list[str] | None = None) -> Iterator[Me
     chosen = [known[name] for name in names] if names else ranked or [*known.values()]
     if not chosen:
         return
-    runs = _Runs(system)
+    runs = Runs(system)
     for method in chosen:
         yield _measure(runs, method)
 
 
-class _Runs:
+class Runs:
     """Runs of a system from states near its default.
 
     Args:
@@ -179,7 +179,7 @@ def _fill(quantity: Any) -> list[float]:
     return [*(quantity.default or ())] or [1.0] * count
 
 
-def _measure(runs: _Runs, method: JudgedMethod) -> Measured:
+def _measure(runs: Runs, method: JudgedMethod) -> Measured:
     """A method on the runs of a system."""
     order, reached = _find_order(runs, method)
     defect = _find_defect(runs, method.name) if method.is_poisson else None
@@ -206,7 +206,7 @@ def _measure(runs: _Runs, method: JudgedMethod) -> Measured:
     )
 
 
-def _find_order(runs: _Runs, method: JudgedMethod) -> tuple[float | None, bool]:
+def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     """The order by three runs with steps that are halved, and whether some reached the end."""
     first = runs.step * (2.0 if method.order > 4 else 1.0)
     ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
@@ -221,7 +221,7 @@ def _find_order(runs: _Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     return math.log2(gaps[0] / gaps[1]), True
 
 
-def _find_defect(runs: _Runs, method: str) -> float | None:
+def _find_defect(runs: Runs, method: str) -> float | None:
     """``max |D J D^T - J|`` of a step with the derivative D, relative to J; by differences."""
     if "poisson_tensor" not in runs.system.functions:
         return None

@@ -5,10 +5,12 @@ Read next: `coadjoint.render.printers`, which does the work.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from coadjoint.lower.program import Node, Symbol, walk
 from coadjoint.render.printers import WIDTH, Printer, indent
+from coadjoint.render.targets.c.numbers import in_numbers
 
 
 class CPrinter(Printer):
@@ -28,6 +30,16 @@ class CPrinter(Printer):
         inner = self.break_lines(node, WIDTH - column - 4 - 1)
         inner[-1] += ";"
         return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
+
+
+def own_assignment(node: Node, to: str, prefix: str) -> str:
+    """An assignment in a file that has a prefix of its own for the functions that it defines.
+
+    >>> from coadjoint.lower.program import Call
+    >>> own_assignment(Call("sign", Symbol("v")), "s", "top_")
+    's = top_sign(v);'
+    """
+    return replace(C, names={"sign": f"{prefix}sign"}).assignment(node, to)
 
 
 class VectorPrinter(CPrinter):
@@ -62,4 +74,9 @@ class VectorPrinter(CPrinter):
 
 C: Final = CPrinter("", ends_with_comma=False)
 VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False)
-FILTERS: Final = {"c_assignment": C.assignment, "vector_assignment": VECTORS.assignment}
+FILTERS: Final = {
+    "c_assignment": C.assignment,
+    "vector_assignment": VECTORS.assignment,
+    "own_assignment": own_assignment,
+    "in_numbers": in_numbers,
+}
