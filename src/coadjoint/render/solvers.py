@@ -14,7 +14,7 @@ from functools import reduce
 from itertools import islice, pairwise
 from typing import Any
 
-from coadjoint.derive.mechanics.iteration import is_guess
+from coadjoint.derive.mechanics.iteration import is_guess, slope_place
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
@@ -191,12 +191,18 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
 
 
 def _begin(rates: Program) -> list[Line]:
-    """Order 0 of what recurrences carry and the state does not have: velocities of iterations."""
+    """Order 0 of what recurrences carry and the state does not have.
+
+    These are velocities of iterations, and rates of inputs, which are order 1 of the inputs.
+    """
     form, lines = rates.factored or rates, list[Line]()
     carried = form.state[len(rates.state) :]
     names = {name: f"{name}[0]" for name in (*rates.state, *rates.inputs, *rates.time, *carried)}
     if not carried:
         return []
+    for name in carried:
+        if (place := slope_place(name)) is not None:
+            lines.append(Line(names[name], Symbol(f"{rates.inputs[place]}[1]")))
     for statement in rates.statements_at("member"):
         own = statement.name if is_guess(statement.name) else f"_s{statement.name}"
         names.setdefault(statement.name, own)

@@ -333,10 +333,10 @@ class Ensemble:
         status[accepted & self._count_kinks(going, met, accepted, short)] = Status.SLIDING
         status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
-        if attempt.left is not None:
-            status[~accepted & stuck & ~attempt.left.solved] = Status.NOT_SOLVED
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
+        if attempt.left is not None:
+            status[~accepted & ~attempt.left.solved] = Status.NOT_SOLVED
         self.status[going] = status
 
     def _take_left(

@@ -24,7 +24,13 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.iteration import Newton, guess_name, rate_name, tell_iterations
+from coadjoint.derive.mechanics.iteration import (
+    Newton,
+    guess_name,
+    rate_name,
+    slope_name,
+    tell_iterations,
+)
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -192,6 +198,8 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     for block in coupled_blocks(known.mass):
         if any(known.setting.velocities[i] in known.bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
+            driven = sum(len(each.components) for each in spec.inputs)
+            names += [*map(slope_name, range(driven))]
         elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
             names += solver_names(block)
     return tuple(names)
@@ -213,7 +221,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     """Velocities of a block by Newton's iteration, its last step as an ordinary solve.
 
     Raises:
-        DerivationError: The block is driven, or its Hessian at rest not positive for certain.
+        DerivationError: The Hessian of the block at rest is not positive for certain.
     """
     setting, names = of.setting, of.setting.velocities
     _check_count(setting, block)
@@ -221,9 +229,6 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
-    reached = frozenset[str]().union(*map(field.reach, moved.values()))
-    if driven := sorted(reached.intersection(setting.inputs)):
-        raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
     for size in range(1, len(block) + 1):
@@ -275,9 +280,8 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
     message = (
         f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
         f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
-        "is certainly convex at rest, with momenta of the state, the parameters and the time "
-        f"alone. Give {_way_out(of.setting)} instead, or remove {momenta} and take the route "
-        f"{route}, where velocities are the state."
+        f"is certainly convex at rest. Give {_way_out(of.setting)} instead, or remove {momenta} "
+        f"and take the route {route}, where velocities are the state."
     )
     return _refusal(of.setting, message, names[0])
 
