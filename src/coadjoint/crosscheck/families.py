@@ -198,8 +198,9 @@ def crosscheck_family(
         for name, each in loops.items():
             _check_window(window, name, each, system, chosen, figures[name])
         sized = system.resize({system.index.name: window.size})
-        names, made = (window.state, window.parameters), {"c", "numpy"} & set(chosen)
-        if made and not family.time:
+        names = (window.state, window.parameters, (), window.time)
+        made = {"c", "numpy"} & set(chosen)
+        if made:
             check_series(window.reference, names, sized, sorted(made))
     for each in loops.values():
         if each.partners is not None and "numpy" in chosen:
@@ -211,7 +212,7 @@ def crosscheck_family(
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if BUILDS[each].needs_compiler):
-        for choice in () if family.time else METHODS:
+        for choice in METHODS:
             compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):

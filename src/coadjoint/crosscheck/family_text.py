@@ -88,10 +88,7 @@ def check_family_text(
                 lines[name] += _check_part(part, found, loops.is_periodic, file, part_name)
         if loops.partners is not None:
             lines[name] += _check_pairs(loops, texts["kernel.c"])
-    shared, indexed = context.shared, context.indexed
-    rows = (sum(len(each.components) for each in group) for group in (shared, indexed))
-    if not context.time:
-        lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], *rows), texts)
+    lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], context.counts), texts)
     return lines
 
 

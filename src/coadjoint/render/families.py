@@ -18,7 +18,7 @@ from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import names_read, render_templates
-from coadjoint.render.family_solvers import arrange_family
+from coadjoint.render.family_solvers import Counts, arrange_family
 from coadjoint.render.kernels import (
     declaration,
     elementary_functions,
@@ -271,7 +271,7 @@ class FamilyContext:
         repeating: Names of the quantities of which they repeat.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
-        time: The time, if the functions take it: then there are no solvers in C, and no series.
+        time: The time, if the functions take it.
     """
 
     name: str
@@ -291,6 +291,13 @@ class FamilyContext:
     supported: int = 0
     unit_of_time: str = "s"
     time: tuple[Quantity, ...] = ()
+
+    @property
+    def counts(self) -> Counts:
+        """How many rows of parameters there are, and of what drives members."""
+        groups = (self.shared, self.indexed)
+        shared, indexed = (sum(len(each.components) for each in group) for group in groups)
+        return Counts(shared=shared, indexed=indexed, time=len(self.time))
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
@@ -314,7 +321,6 @@ def render_family(context: FamilyContext) -> dict[str, str]:
         return {
             file: _render_file(context, template, target, identity)
             for file, (template, target) in FAMILY_FILES.items()
-            if not (context.time and file.startswith("solver."))
         }
 
     return identify(render)
@@ -333,6 +339,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "lanes": LANES,
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
+        "inputs": "",
         "time": ", time" if context.time else "",
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
@@ -375,7 +382,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     }
     names = names_read(template)
     if "solver" in names:
-        values["solver"] = arrange_family(context.loops["rhs"], len(shared), len(indexed))
+        values["solver"] = arrange_family(context.loops["rhs"], context.counts)
     return render_templates((template,), {name: values[name] for name in names})[template]
 
 

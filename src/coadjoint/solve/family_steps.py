@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -69,6 +70,13 @@ _RUN: Final = (
     ("path_row", _SIZE),
     ("path_order", _SIZE),
 )
+#: What it has in addition where inputs or the time drive the members.
+_DRIVEN_RUN: Final = (
+    ("driving_rows", _SIZE),
+    ("driving", _PLACE),
+    ("slopes", _PLACE),
+    ("now", _PLACE),
+)
 #: ``NAME_solver_ensemble``, likewise.
 _ENSEMBLE: Final = (
     ("sizes", _PLACE),
@@ -84,6 +92,13 @@ _ENSEMBLE: Final = (
     ("max_steps", _SIZE),
     ("work", _SIZE),
     ("scratch", _PLACE),
+)
+#: Likewise, and the lines of inputs.
+_DRIVEN: Final = (("driving_rows", _SIZE),)
+_INPUTS: Final = (
+    *((name, _PLACE) for name in ("knots", "inputs", "input_slopes")),
+    ("pieces", _SIZE),
+    ("inputs_stride", _SIZE),
 )
 
 
@@ -105,6 +120,8 @@ class FamilyTwin(StepwiseStepper):
     def __init__(self, system: FamilySystem, choice: Choice, target: str) -> None:
         super().__init__(system, choice, target, None)
         self._members = system.fixed["sizes"]
+        #: Rows of inputs, and the time below them.
+        self.driving_rows = system.INPUTS.size + system.TIME.size
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
@@ -112,7 +129,9 @@ class FamilyTwin(StepwiseStepper):
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
-        path: Array = self._series(lanes.state, lanes.parameters, self._members, order)
+        driven = (lanes.driving, lanes.slopes) if self.driving_rows else ()
+        given = (lanes.state, lanes.parameters, *driven, self._members)
+        path: Array = self._series(*given, order)
         return path
 
 
@@ -130,8 +149,10 @@ class FamilyStepper(FamilyTwin):
         super().__init__(system, choice, target)
         called = {"rates": "rhs"} | {n: n for n in ("projection",) if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
-        self._run_type = _make_structure(tuple(called), _RUN)
-        self._ensemble_type = _make_structure(tuple(called), _ENSEMBLE)
+        is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
+        self._run_type = _make_structure(tuple(called), (*_RUN, *_DRIVEN_RUN * is_driven))
+        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs)
+        self._ensemble_type = _make_structure(tuple(called), fields)
         names = ("advance", "work", *FUNCTIONS[choice.name])
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
@@ -167,15 +188,25 @@ class FamilyStepper(FamilyTwin):
             size=run.size,
             max_steps=run.max_steps,
         )
+        if self.driving_rows:
+            given.driving_rows = self.driving_rows
+        if len(run.inputs.values):
+            given.pieces = run.inputs.pieces
+            given.inputs_stride = run.inputs.values.shape[1] if run.inputs.own else 0
+            lines = {"knots": run.inputs.knots, "inputs": run.inputs.values}
+            for name, array in (lines | {"input_slopes": run.inputs.slopes}).items():
+                assert array.flags.c_contiguous, name
+                setattr(given, name, array.ctypes.data)
         for name in ARRAYS:
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
         return given
 
-    def _give(self, state: Array, parameters: Array) -> Any:
-        """What every function of the solver takes."""
-        return self._run_type(
+    def _give(self, lanes: Lanes) -> Any:
+        """What every function of the solver takes, from contiguous arrays that live meanwhile."""
+        state, parameters = lanes.state, lanes.parameters
+        given = self._run_type(
             **self._called,
             rows=len(state),
             count=state.shape[1],
@@ -184,6 +215,10 @@ class FamilyStepper(FamilyTwin):
             sizes=self._members.ctypes.data,
             state=state.ctypes.data,
         )
+        if self.driving_rows:
+            given.driving_rows = self.driving_rows
+            given.driving, given.slopes = lanes.driving.ctypes.data, lanes.slopes.ctypes.data
+        return given
 
     def _provide(self, size: int) -> int:
         """Where this thread has memory for so many numbers to work with."""
@@ -192,21 +227,24 @@ class FamilyStepper(FamilyTwin):
             room = self._own.room = np.empty(size)
         return room.ctypes.data
 
-    def _find_stages(self, run: Ensemble, state: Array, step: float) -> tuple[Any, Array]:
+    def _find_stages(self, run: Ensemble, lanes: Lanes, step: float) -> tuple[Any, Array]:
         """The stages of a step of one trajectory, and its end below them."""
-        parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
-        given = self._give(state, parameters)
+        own = _make_contiguous(lanes)
+        own.parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
+        given = self._give(own)
         given.step, given.rtol, given.atol = step, run.rtol, run.atol
-        rows = np.empty((STAGES + 2, *state.shape))
+        rows, now = np.empty((STAGES + 2, *own.state.shape)), np.empty(self.driving_rows)
         given.work = rows.ctypes.data
+        if self.driving_rows:
+            given.now = now.ctypes.data
         self._functions["try"](ctypes.byref(given))
         return given, rows
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
-        state, parameters = map(np.ascontiguousarray, (lanes.state, lanes.parameters))
-        path = np.empty((len(state), order + 1, state.shape[1]))
-        given = self._give(state, parameters)
+        own = _make_contiguous(lanes)
+        path = np.empty((len(own.state), order + 1, own.state.shape[1]))
+        given = self._give(own)
         given.path = path.ctypes.data
         given.work = self._provide(self._functions["room"](ctypes.byref(given)))
         self._functions["expand"](ctypes.byref(given))
@@ -219,6 +257,12 @@ class FamilyStepper(FamilyTwin):
         return _Stages(self, run)
 
 
+def _make_contiguous(lanes: Lanes) -> Lanes:
+    """Lanes whose arrays C can read."""
+    names = ("state", "parameters", "driving", "slopes")
+    return replace(lanes, **{name: np.ascontiguousarray(getattr(lanes, name)) for name in names})
+
+
 class _Stages(DormandPrince8):
     """DOP853 for one trajectory with stages in C; see `DormandPrince8`."""
 
@@ -229,8 +273,7 @@ class _Stages(DormandPrince8):
 
     def _find_stages(self, lanes: Lanes, h: Array) -> tuple[list[Array], Array]:
         """As `DormandPrince8` does."""
-        stepper, state = self._stepper, np.ascontiguousarray(lanes.state)
-        made, rows = stepper._find_stages(self._run, state, float(h[0]))
+        made, rows = self._stepper._find_stages(self._run, lanes, float(h[0]))
         self._errors = made.five, made.three
         return list(rows[:STAGES]), rows[STAGES]
 
@@ -308,8 +351,8 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     run = Ensemble(
         state=state,
         parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
-        inputs=Inputs(np.zeros(1), np.zeros((0, 1)), np.zeros((0, 1))),
-        has_time=False,
+        inputs=_probe_inputs(system, source, end),
+        has_time=bool(system.TIME),
         samples=np.array([0.0, 0.55 * end, end]),
         out=np.zeros((system.STATE.size, members, 3)),
         rtol=1e-9,
@@ -321,6 +364,15 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     return run
 
 
+def _probe_inputs(system: FamilySystem, source: np.random.Generator, end: float) -> Inputs:
+    """Lines of inputs, of which the second begins within a step."""
+    values, slopes = (source.uniform(0.5, 2.0, (system.INPUTS.size, 2)) for _ in range(2))
+    knots = np.array([0.0, 0.3 * end])
+    if not system.INPUTS:
+        knots, values, slopes = knots[:1], values[:, :1], slopes[:, :1]
+    return Inputs(knots, values, slopes)
+
+
 def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_auto: bool) -> str:
     """Why the method of Taylor does not apply to a family, as a clause; "" where it does.
 
@@ -330,8 +382,6 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
         members: How many trajectories there are.
         is_auto: Whether it does not apply either where ``dop853`` is faster.
     """
-    if system.TIME:
-        return "its equations name the time, of which series of equal members know nothing"
     if not (system.folder / "solver.py").is_file():
         return "its folder was generated without series: run `coadjoint regenerate`"
     own, pairs = system.count_series(order, members)
@@ -354,8 +404,8 @@ def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwi
 
 
 def _find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """The same, of a system that has none yet; with the time the twin leads all steps."""
-    if target in FLAGS and not system.TIME:
+    """The same, of a system that has none yet."""
+    if target in FLAGS:
         try:
             return load(system, choice, target)
         except (CompilerError, CrossCheckError) as error:
