@@ -1,5 +1,6 @@
 """The main job: writes what passed, nothing of what did not, the same bytes everywhere."""
 
+import hashlib
 import json
 import os
 import shutil
@@ -12,8 +13,10 @@ from pathlib import Path
 import pytest
 
 from coadjoint.errors import ClaimError, DriftError, SpecError
+from coadjoint.fingerprint import template_hashes
 from coadjoint.regenerate import _guess_work, _Source, check, regenerate
 from coadjoint.render.families import FAMILY_FILES
+from coadjoint.render.ownership import read_manifest
 from coadjoint.render.write import SYSTEM_FILES
 from tests.conftest import FAMILIES
 from tests.prove.test_claims import check_claims
@@ -71,8 +74,8 @@ LONG = {
 def test_the_checked_in_tree_is_current():
     """A fresh run gives the bytes of generated/; if not: `coadjoint regenerate`, then commit.
 
-    `make check` runs this test, and `make check test` runs it once. Processes have random seeds for
-    hashes, so the order of sets leaves no trace either, and nor does what came before in a process.
+    `make check` runs this test, `make test` does not. Processes have random seeds for hashes, so
+    the order of sets leaves no trace either, and nor does what came before in a process.
     """
     specs = sorted((ROOT / "derivations").glob("*.toml"))
     outcome = check(specs, ROOT / "generated", jobs=2, complete=True)
@@ -84,6 +87,43 @@ def test_the_checked_in_tree_is_current():
         assert 0 < row.k <= LONG.get(row.system, 4), row
         assert row.targets == ("numpy", "c", "c-fast", "python")
     assert LONG.keys() <= {row.system for row in outcome.rows}
+
+
+def check_manifest(output, specs):
+    """The hashes of specs, templates and files that a tree was written with are those of today."""
+    manifest = read_manifest(output)
+    assert manifest["templates"] == template_hashes(), "run `coadjoint regenerate`, and commit"
+    hashes = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in specs}
+    written = {name: entry["spec_sha256"] for name, entry in manifest["systems"].items()}
+    assert written == hashes, "run `coadjoint regenerate`, and commit"
+    assert len(hashes) >= 89
+    for name, entry in manifest["systems"].items():
+        for file, known in entry["files"].items():
+            found = hashlib.sha256((output / name / file).read_bytes()).hexdigest()
+            assert found == known, f"{name}/{file}: run `coadjoint regenerate`, and commit"
+
+
+def test_the_checked_in_tree_was_written_from_these_specs_and_templates():
+    """No spec, template or generated file has changed since the tree was written.
+
+    What the engine makes of them today is asked by the test above.
+    """
+    check_manifest(ROOT / "generated", sorted((ROOT / "derivations").glob("*.toml")))
+
+
+def test_the_manifest_check_sees_one_changed_byte(tmp_path):
+    """The check above can fail: for a spec, and for a file that was written."""
+    shutil.copytree(ROOT / "generated", tmp_path / "generated")
+    specs = sorted((ROOT / "derivations").glob("*.toml"))
+    kernel = tmp_path / "generated" / "heavy_top" / "kernel.c"
+    kernel.write_text(kernel.read_text().replace("+", "-", 1))
+    with pytest.raises(AssertionError, match=r"heavy_top/kernel\.c"):
+        check_manifest(tmp_path / "generated", specs)
+    changed = tmp_path / "heavy_top.toml"
+    changed.write_text("# a remark")
+    others = [path for path in specs if path.stem != "heavy_top"]
+    with pytest.raises(AssertionError, match="regenerate"):
+        check_manifest(ROOT / "generated", [*others, changed])
 
 
 def test_every_claim_of_the_checked_in_tree_is_proved(system):
