@@ -16,7 +16,7 @@ Read next: `coadjoint.derive.indexed`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -34,6 +34,7 @@ class Index:
         periodic: Whether member N-1 is followed by member 0; an open chain has two ends.
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
+        from_zero: Whether names count from 0 all the same, as where members are looped over.
     """
 
     name: str
@@ -41,6 +42,12 @@ class Index:
     periodic: bool = False
     first: int = 0
     count: str = ""
+    from_zero: bool = False
+
+    @property
+    def first_name(self) -> int:
+        """The number of the first member in names."""
+        return 0 if self.from_zero else self.first
 
 
 @dataclass(frozen=True)
@@ -69,7 +76,7 @@ class Total:
 
     Attributes:
         name: ``energy``; ``M1`` for the first component of ``M``.
-        formula: In the symbols of its sums and in shared parameters.
+        formula: In the symbols of its sums, of members at the ends and of shared parameters.
         sums: The sums, each over members or over pairs.
     """
 
@@ -93,14 +100,19 @@ class Family:
         partners: By component symbol, that of member j of a pair; of states and indexed parameters.
         rates: Rate of each component of member i, in these symbols and those of pair sums.
         pair_sums: Sums over the partners j of member i, which the rates name; empty without pairs.
-        ends: Of an open chain, the rates of the members that lack a neighbour, by member: 0, 1, ...
-            from the start and -1, -2, ... from the end; empty for a ring.
+        ends: Of an open chain, the rates of the members that lack a neighbour, or that stand alone
+            in the energy, by member: 0, 1, ... from the start and -1, -2, ... from the end; empty
+            for a ring.
         totals: The energy and the observables.
-        small: The least N for which ``rates`` and ``ends`` hold: twice the range of an open chain,
-            1 for a ring, in which members may be each other's neighbours more than once.
+        small: The least N for which ``rates``, ``ends`` and ``totals`` hold: both ends together, 1
+            for a ring, in which members may be each other's neighbours more than once.
         turned: The state of member i with its attitudes moved back to rotations; empty without any.
         residuals: What is zero where they are rotations.
         time: The symbol of the time, which all members share, if the equations name it.
+        singles: By component symbol and number, counted as in ``ends``, the symbol of that
+            component of a member at an end, as far as totals name it.
+        wraps: Whether places of neighbours go on round: in a ring, and in a chain of which members
+            at one end push those at the other.
     """
 
     index: Index
@@ -118,3 +130,5 @@ class Family:
     turned: tuple[Tree, ...] = ()
     residuals: tuple[Tree, ...] = ()
     time: tuple[Symbol, ...] = ()
+    singles: Mapping[tuple[Symbol, int], Symbol] = field(default_factory=dict)
+    wraps: bool = False

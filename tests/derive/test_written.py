@@ -154,9 +154,7 @@ def test_a_chain_hangs_with_the_roots_of_laguerre(n):
 
 def test_size_is_needed_and_limited():
     """The message says why all members are written out."""
-    with pytest.raises(
-        SpecError, match=r"since the energy follows from a Lagrangian; no size is given"
-    ):
+    with pytest.raises(SpecError, match=r"since a sum stands in a sum; no size is given"):
         read(CHAIN, ("size = 2, ", ""))
     with pytest.raises(LimitError, match="STATE_COMPONENTS"):
         read(CHAIN, sizes={"i": 1000})

@@ -85,7 +85,7 @@ def check_family_text(
         for part_name, part in _list_parts(loops):
             for file, read in readers.items():
                 found = read(texts[file], part_name, name)
-                lines[name] += _check_part(part, found, loops.is_periodic, file, part_name)
+                lines[name] += _check_part(part, found, loops.wraps, file, part_name)
         if loops.partners is not None:
             lines[name] += _check_pairs(loops, texts["kernel.c"])
     lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], context.counts), texts)
@@ -106,14 +106,14 @@ def _list_parts(loops: Loops) -> Iterator[tuple[str, Part]]:
         yield f"{loops.name}_finish", loops.finish
 
 
-def _check_part(part: Part, found: _Text, is_periodic: bool, file: str, name: str) -> int:
+def _check_part(part: Part, found: _Text, wraps: bool, file: str, name: str) -> int:
     """A text does what a part does; how many lines were compared."""
     program = part.program
     names = [read.name for read in part.reads]
     if sorted(found.places) != sorted(names):
         raise failure(f"{file}: {name} reads {sorted(found.places)}; expected {names}", name)
     for read in part.reads:
-        _check_place(read, found, is_periodic, file, name)
+        _check_place(read, found, wraps, file, name)
     sums = {each: int(each.removeprefix(SUM)) for each in program.state[len(names) :]}
     if found.sums != sums:
         raise failure(f"{file}: {name} reads the sums {found.sums}; expected {sums}", name)
@@ -151,23 +151,28 @@ def _check_pairs(loops: Loops, text: str) -> int:
     }
     if tile.steps != reads:
         raise failure(f"kernel.c: lanes of a tile read {tile.steps}; expected {reads}", loops.name)
-    return _check_part(part, replace(tile, steps=pair.steps), loops.is_periodic, "kernel.c", name)
+    return _check_part(part, replace(tile, steps=pair.steps), loops.wraps, "kernel.c", name)
 
 
-def _check_place(read: Read, found: _Text, is_periodic: bool, file: str, name: str) -> None:
+def _check_place(read: Read, found: _Text, wraps: bool, file: str, name: str) -> None:
     """A name is read in the right row, for every member."""
     array, text = found.places[read.name]
     for size in _SIZES:
         for i, j in product(range(size), repeat=2):
-            member = 0 if read.shift is None else j if read.of_partner else i + read.shift
-            if not is_periodic and not 0 <= member < size:
+            member = j if read.of_partner else i + (read.shift or 0)
+            if not wraps and not 0 <= member < size:
+                continue
+            if read.single is not None and not -size <= read.single < size:
                 continue
             row = read.rows + read.blocks * size + (0 if read.shift is None else member % size)
+            if read.single is not None:
+                row += read.single % size
             if array != read.array or _evaluate(text, {"i": i, "j": j, "size": size}) != row:
                 raise failure(f"{file}: {name} reads {read.name} at {array}[{text}]", name)
     step = "_run.timed" if read.array == "time" else ""
     if read.array == "parameters":
-        step = "_shared" if read.shift is None or read.of_partner else "_indexed"
+        alike = read.shift is None and read.single is None
+        step = "_shared" if alike or read.of_partner else "_indexed"
     elif read.of_partner:
         step = "_batch"
     if file == "kernel.c" and found.steps.get(read.name, "") != step:

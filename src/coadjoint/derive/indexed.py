@@ -26,17 +26,21 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
+from coadjoint.derive.symmetries import evaluate_map, share_of
+from coadjoint.derive.window import Window
 from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
+from coadjoint.exact.dense import dot
 from coadjoint.families import Family, Sum, Total
 from coadjoint.spec import Formula
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import Members, member_name, place_at, reach
-from coadjoint.spec.core.totals import put_term, split_sums
-from coadjoint.spec.model import Variable, Windows
+from coadjoint.spec.core.members import member_name, place_at, reach
+from coadjoint.spec.core.totals import find_alone, keep_rest, put_term, split_sums
+from coadjoint.spec.model import Symmetry, Variable
 from coadjoint.spec.spatial import turning_rows
 
 
@@ -52,10 +56,11 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
-    small = max(1 if declared.index.periodic else 2 * declared.reach, 2 if declared.pairs else 1)
+    (before, after), totals = declared.ends, tuple(reader.totals)
+    alone = [n + 1 if n >= 0 else -n for _, n in reader.singles_of(totals)]
+    small = max([before + after, 2 if declared.pairs else 1, *alone])
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
     rates = reader.rates_of(reader.middle)
-    totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
     every = (*rates, *(rate for end in reader.ends.values() for rate in end))
     named |= {s for rate in every for s in rate.free_symbols}
@@ -76,119 +81,21 @@ def derive_family(equations: Equations) -> Family:
         turned=reader.turned,
         residuals=reader.residuals,
         time=reader.time,
+        singles=reader.singles_of(totals),
+        wraps=declared.index.periodic or reader.is_closed,
     )
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _Reader(Window):
     """The reading of one window."""
-
-    equations: Equations
-
-    # -- what there is ------------------------------------------------------------------
-
-    @cached_property
-    def declared(self) -> Windows:
-        """What is known of the other members."""
-        family = self.equations.spec.family
-        assert family is not None, self.equations.spec.name
-        return family
 
     @cached_property
     def written(self) -> Written:
         """What the spec says, not multiplied out."""
         return Written(self.equations)
 
-    @cached_property
-    def members(self) -> Members:
-        """The members that are written out."""
-        declared = self.declared
-        spec = self.equations.spec
-        count = len(spec.state) // len(declared.variables)
-        moving = (each.name.rpartition("_")[0] for each in spec.variables)  # velocities among them
-        return Members(
-            index=declared.index.name,
-            count=count,
-            periodic=declared.index.periodic,
-            names=frozenset((*moving, *declared.indexed)),
-        )
-
-    @cached_property
-    def shared(self) -> tuple[str, ...]:
-        """Components of the parameters that all members share."""
-        known = {each.name: each for each in self.equations.spec.parameters}
-        return tuple(c for name in self.declared.shared for c in known[name].components)
-
-    @property
-    def time(self) -> tuple[sympy.Symbol, ...]:
-        """The symbol of the time, if the spec declares it."""
-        time = self.equations.spec.time
-        return () if time is None else (sympy.Symbol(time.name),)
-
-    @cached_property
-    def components(self) -> dict[str, tuple[str, ...]]:
-        """The components of what a member has, of its generic name, by component."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        generic = dict[str, tuple[str, ...]]()
-        for name in (*self.declared.variables, *self.declared.indexed):
-            each = known[member_name(name, 0)]
-            generic[name] = component_names(name, each.shape, each.form)
-        return generic
-
-    def names_of(self, names: Sequence[str], member: int) -> list[str]:
-        """Components of quantities of one member of the window."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        return [c for name in names for c in known[member_name(name, member)].components]
-
-    def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the components of generic quantities."""
-        return tuple(sympy.Symbol(c) for name in names for c in self.components[name])
-
-    @cached_property
-    def states(self) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the state of member i."""
-        return self.generic(self.declared.variables)
-
-    @cached_property
-    def indexed(self) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the parameters of member i."""
-        return self.generic(self.declared.indexed)
-
-    @cached_property
-    def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
-        """Symbols of member j of a pair."""
-        if not self.declared.pairs:
-            return {}
-        own = (*self.states, *self.indexed)
-        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
-
-    @cached_property
-    def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
-        """Symbols of the neighbours of member i, as far as the window has them."""
-        most = self.members.count
-        return {
-            (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
-            for shift in range(-most, most + 1)
-            if shift
-            for each in (*self.states, *self.indexed)
-        }
-
     # -- expressions of a member --------------------------------------------------------
-
-    def rename(self, member: int, before: int, after: int) -> dict[sympy.Symbol, sympy.Symbol]:
-        """The generic symbols by those of the window, seen from one of its members."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict[sympy.Symbol, sympy.Symbol]()
-        for shift in range(-before, after + 1):
-            at = self.members.place(member + shift)
-            if at is not None:
-                seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
-                old = map(sympy.Symbol, self.names_of(names, at))
-                new |= zip(old, seen, strict=True)
-        return new
 
     def see(
         self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
@@ -236,28 +143,30 @@ class _Reader:
                 groups[each].append(seen)
         return list(groups.values())
 
-    @property
-    def middle(self) -> int:
-        """A member that has all its neighbours."""
-        return 0 if self.declared.index.periodic else self.declared.reach
-
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
         """The rates of a member in generic symbols, and in those of sums over its partners."""
         if self.declared.pairs:
             return tuple(self._rates_with_pairs(member))
-        reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
-        new = self.rename(member, reach, reach)
+        new, names = self.see_around(member), self.names_of(self.declared.variables, member)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
         return self.see((by_name[name] for name in names), new, self.written.rates(names))
 
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
-        """The rates of the members of an open chain that lack neighbours."""
-        if self.declared.index.periodic:
-            return {}
-        reach, count = self.declared.reach, self.members.count
-        starts = {k: self.rates_of(k) for k in range(reach)}
-        return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+        """The rates of the members of an open chain that lack neighbours, or are pushed alone."""
+        (first, last), count = self.declared.ends, self.members.count
+        starts = {k: self.rates_of(k) for k in range(first)}
+        return starts | {-k: self.rates_of(count - k) for k in range(last, 0, -1)}
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the rate of a member at one end depends on members at the other end."""
+        places = {symbol: shift for (_, shift), symbol in self.neighbours.items()}
+        for end, rates in self.ends.items():
+            shifts = [places.get(s, 0) for rate in rates for s in rate.free_symbols]
+            if min([0, *shifts]) < -end <= 0 or max([0, *shifts]) >= -end > 0:
+                return True
+        return False
 
     # -- attitudes ----------------------------------------------------------------------
 
@@ -291,6 +200,11 @@ class _Reader:
 
     # -- sums ---------------------------------------------------------------------------
 
+    def singles_of(self, totals: Iterable[Total]) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
+        """Those that totals name."""
+        named = {s for total in totals for s in total.formula.free_symbols}
+        return {place: symbol for place, symbol in self.singles.items() if symbol in named}
+
     def value(self, node: tree.Node) -> tuple[Element, ...]:
         """The components of a tree of the window."""
         setting = self.equations.setting
@@ -310,17 +224,60 @@ class _Reader:
     def totals(self) -> Iterator[Total]:
         """The energy and the observables."""
         spec = self.equations.spec
-        if spec.hamiltonian is not None:
-            yield from self._total("energy", (), spec.hamiltonian)
+        if self.energy is not None:
+            yield from self._total("energy", (), self.energy)
         for each in spec.observables:
             yield from self._total(each.name, each.shape, each.formula)
+        for symmetry in spec.symmetries:
+            yield from self._momentum_map(symmetry)
+
+    def _momentum_map(self, symmetry: Symmetry) -> Iterator[Total]:
+        """The components of the momentum map of an action that moves each member by itself."""
+        if symmetry.map is not None:
+            shares = self._declared_map(symmetry, symmetry.map)
+        else:
+            names = self.names_of(self.declared.variables, self.middle)
+            shares = share_of(self.equations.setting, symmetry, names)
+        terms = self.see(map(self.write, shares), self.rename(self.middle, 0, 0))
+        for component, term in zip(symmetry.components, terms, strict=True):
+            symbol = sympy.Symbol(f"{component}_sum1_1")
+            yield Total(component, symbol, (Sum(symbol=symbol, term=term),))
+
+    def _declared_map(self, symmetry: Symmetry, formula: Formula) -> tuple[Element, ...]:
+        """The share of the member in the middle, along each basis vector."""
+        setting = self.equations.setting
+
+        def evaluate(known: Mapping[str, Any]) -> Element:
+            places = [
+                place_at(term, {each.indices[0]: self.middle}, self.members)
+                for each, term in self.sums_of(formula)
+            ]
+            values = {**setting.values, **known}
+            return setting.field.sum(interpret(each, values, setting.field) for each in places)
+
+        return evaluate_map(setting, symmetry, evaluate)
+
+    @property
+    def energy(self) -> Formula | None:
+        """The Hamiltonian, or the Lagrangian of which it is the Legendre transform."""
+        spec = self.equations.spec
+        return spec.lagrangian if spec.hamiltonian is None else spec.hamiltonian
+
+    def transform(self, formula: Formula, values: Iterable[Element]) -> list[Element]:
+        """``v . dl/dv - l`` of parts of a Lagrangian, in the state; else parts as they are."""
+        setting = self.equations.setting
+        if formula is not setting.spec.lagrangian:
+            return list(values)
+        field, names = setting.field, mechanics(setting).frame.velocities
+        v = setting.elements(names)
+        return [dot(field.gradient(part, names), v) - part for part in values]
 
     def _total(self, name: str, shape: tuple[int, ...], formula: Formula) -> Iterator[Total]:
         """The components of a total."""
-        sums = list[list[Sum]]()
+        sums, rest = list[list[Sum]](), self._see_rest(formula)
         for number, (each, term) in enumerate(self.sums_of(formula), 1):
             sums.append([])
-            for place, value in enumerate(self._terms(each, term)):
+            for place, value in enumerate(self._terms(formula, each, term)):
                 symbol = sympy.Symbol(f"{name}_sum{number}_{place + 1}")
                 before, after = reach(each.term)
                 sums[-1].append(
@@ -332,27 +289,58 @@ class _Reader:
                         after=after,
                     )
                 )
-        for component, parts in zip(
-            component_names(name, shape), zip(*sums, strict=True), strict=True
-        ):
-            yield Total(component, sympy.Add(*(each.symbol for each in parts)), tuple(parts))
+        for n, component in enumerate(component_names(name, shape)):
+            parts = tuple(each[n] for each in sums)
+            values = [*(each.symbol for each in parts), *rest[n : n + 1]]
+            yield Total(component, sympy.Add(*values), parts)
 
-    def _terms(self, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
+    def _place_rest(self, formula: Formula) -> tree.Node | None:
+        """What a total has outside of its sums, in the window."""
+        assert formula.sums is not None, formula.key
+        rest = keep_rest(formula.sums)
+        return None if rest is None else place_at(rest, {}, self.members)
+
+    def _see_rest(self, formula: Formula) -> tuple[sympy.Expr, ...]:
+        """The components of what a total has outside of its sums, in symbols of single members."""
+        placed = self._place_rest(formula)
+        if placed is None:
+            return ()
+        assert formula.sums is not None, formula.key
+        new = dict[sympy.Symbol, sympy.Symbol]()
+        names = (*self.declared.variables, *self.declared.indexed)
+        for number in sorted(find_alone(formula.sums, self.members)):
+            own = map(sympy.Symbol, self.names_of(names, number % self.members.count))
+            seen = (self.singles[each, number] for each in (*self.states, *self.indexed))
+            new |= zip(own, seen, strict=True)
+        return self._see_terms(formula, placed, new)
+
+    def _see_terms(
+        self, formula: Formula, placed: tree.Node, new: Mapping[Any, Any]
+    ) -> tuple[sympy.Expr, ...]:
+        """The components of a part of a formula in the window, in generic symbols."""
+        values = self.transform(formula, self.value(placed))
+        if formula is self.equations.spec.lagrangian:
+            written: Sequence[Any] = [self.written.with_velocities(value) for value in values]
+        else:
+            written = entries(self.written.value(placed))
+        return self.see(map(self.write, values), new, written)
+
+    def _terms(self, formula: Formula, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
         """The components of the term of a sum, in generic symbols."""
         if len(each.indices) > 1:
-            return [self._see_pair(value) for value in self.value(self._place_pair(each, term))]
+            values = self.transform(formula, self.value(self._place_pair(each, term)))
+            return [self._see_pair(value) for value in values]
         before, after = reach(each.term)
         at = 0 if self.members.periodic else before
         placed = place_at(term, {each.indices[0]: at}, self.members)
-        new = self.rename(at, before, after)
-        written = entries(self.written.value(placed))
-        return self.see(map(self.write, self.value(placed)), new, written)
+        return self._see_terms(formula, placed, self.rename(at, before, after))
 
     # -- pairs --------------------------------------------------------------------------
 
-    def _place_pair(self, each: tree.Sum, term: tree.Node, *, turned: bool = False) -> tree.Node:
-        """The term of the first two members, or of the same in the other order."""
-        at = (1, 0) if turned else (0, 1)
+    def _place_pair(
+        self, each: tree.Sum, term: tree.Node, at: tuple[int, int] = (0, 1)
+    ) -> tree.Node:
+        """The term of two members."""
         return place_at(term, dict(zip(each.indices, at, strict=True)), self.members)
 
     def _see_pair(self, value: Element) -> sympy.Expr:
@@ -364,40 +352,45 @@ class _Reader:
         new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
         return self.see([self.write(value)], new)[0]
 
-    @cached_property
-    def pair_energies(self) -> list[Element]:
-        """The term of the first two members, of each sum over pairs in the energy.
+    def pair_energy(self, i: int, j: int) -> Element:
+        """What the sums over pairs have of two members."""
+        assert self.energy is not None, self.equations.spec.name
+        values = list[Element]()
+        for each, term in self.sums_of(self.energy):
+            if len(each.indices) > 1:
+                values += self.value(self._place_pair(each, term, (i, j)))
+        return self.equations.setting.field.sum(self.transform(self.energy, values))
+
+    def check_pairs(self) -> None:
+        """The term of each sum over pairs in the energy is the same for both orders.
 
         Raises:
             DerivationError: One changes when its members change places.
         """
-        spec, field = self.equations.spec, self.equations.setting.field
-        assert spec.hamiltonian is not None, spec.name
-        terms = list[Element]()
-        for each, term in self.sums_of(spec.hamiltonian):
+        spec, field, energy = self.equations.spec, self.equations.setting.field, self.energy
+        assert energy is not None, spec.name
+        for each, term in self.sums_of(energy):
             if len(each.indices) == 1:
                 continue
             (value,), (turned,) = (
-                self.value(self._place_pair(each, term, turned=t)) for t in (False, True)
+                self.value(self._place_pair(each, term, at)) for at in ((0, 1), (1, 0))
             )
             if not field.is_zero(value - turned):
                 i, j = each.indices
                 raise DerivationError(
-                    f"{spec.path}: hamiltonian.h: the term of a pair changes when {i} and {j} "
+                    f"{spec.path}: {energy.key}: the term of a pair changes when {i} and {j} "
                     "change places; expected a term that is the same for both orders. Write it as "
                     "half the sum of both.",
-                    found=spec.hamiltonian.in_one_line,
+                    found=energy.in_one_line,
                 )
-            terms.append(value)
-        return terms
 
     def _flow(self, energy: Element, member: int = 0) -> list[Element]:
         """The brackets of a member's state with a function."""
         tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
+        state, names = self.equations.variables, self.names_of(self.declared.variables, member)
         assert tensor is not None, self.equations.route
-        state = self.equations.variables
         slopes = field.gradient(energy, state)
-        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
+        rows = [state.index(name) for name in names]
         return [
             field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
             for row in rows
@@ -407,42 +400,28 @@ class _Reader:
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
         """What the partners add to the rates of a member, by the components to which they add."""
         field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
-        flows = [self._flow(energy) for energy in self.pair_energies]
-        for n, state in enumerate(self.states):
-            term = field.sum(flow[n] for flow in flows)
+        self.check_pairs()
+        flow = self._flow(self.pair_energy(0, 1))
+        for state, term in zip(self.states, flow, strict=True):
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
                 sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
         return sums
 
-    @cached_property
-    def own_energy(self) -> Element:
-        """What the sums over members give to the energy of the window."""
-        spec, values = self.equations.spec, list[Element]()
-        assert spec.hamiltonian is not None, spec.name
-        for each, term in self.sums_of(spec.hamiltonian):
-            if len(each.indices) == 1:
-                before, after = (0, 0) if self.members.periodic else reach(each.term)
-                for at in range(before, self.members.count - after):
-                    values += self.value(place_at(term, {each.indices[0]: at}, self.members))
-        return self.equations.setting.field.sum(values)
-
-    def _forces(self, member: int) -> list[Element]:
-        """What forces add to the rates of a member."""
-        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
-        zero = self.equations.setting.field.zero
-        return [known.get(name, zero) for name in self.names_of(self.declared.variables, member)]
-
     def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:
         """The rates of a member with sums over its partners.
 
-        What the energy of members and neighbours gives is the member's own share, and so are
-        forces.
+        What is left without the pairs is the member's own share: what members and neighbours do,
+        and forces.
         """
-        width = self.declared.reach
-        new = self.rename(member, width, width)
-        flow, forces = self._flow(self.own_energy, member), self._forces(member)
-        own = (self.write(a + b) for a, b in zip(flow, forces, strict=True))
-        for state, total in zip(self.states, self.see(own, new), strict=True):
+        equations, new = self.equations, self.see_around(member)
+        known = dict(zip(equations.variables, equations.exact.rates, strict=True))
+        names = self.names_of(self.declared.variables, member)
+        own = [equations.close(known[name]) for name in names]
+        for other in range(self.members.count):
+            if other != member:
+                flow = self._flow(self.pair_energy(*sorted((member, other))), member)
+                own = [a - b for a, b in zip(own, flow, strict=True)]
+        for state, total in zip(self.states, self.see(map(self.write, own), new), strict=True):
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

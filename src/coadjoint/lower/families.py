@@ -58,6 +58,8 @@ class Read:
         shift: How far behind member i the member is that it belongs to; None if all members share
             it.
         of_partner: Whether it belongs to member j of a pair.
+        single: The number of the member to which it belongs, whatever i is, counted from 0 or from
+            N as -1, -2 and so on; None if it is none of these.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Read:
     blocks: int
     shift: int | None = 0
     of_partner: bool = False
+    single: int | None = None
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,7 @@ class Loops:
 
     Attributes:
         name: One of `coadjoint.kernel_functions`.
-        is_periodic: Whether member N-1 is followed by member 0.
+        wraps: Whether member N-1 is followed by member 0 where neighbours are read.
         blocks: Rows of its first argument for each member.
         shape: Of a result that does not depend on N, else None.
         partners: Terms of the sums over partners, if there are any: of member i, then of member j.
@@ -121,7 +124,7 @@ class Loops:
     """
 
     name: str
-    is_periodic: bool
+    wraps: bool
     blocks: int
     shape: tuple[int, ...] | None
     partners: Part | None = None
@@ -217,13 +220,17 @@ class _Lowering:
         for component, symbol in family.partners.items():
             name = naming.find(f"{component.name}_j")
             self._reads[symbol] = replace(rows[component], name=name, of_partner=True)
+        for (component, number), symbol in family.singles.items():
+            end = f"first{number or ''}" if number >= 0 else f"last{-1 - number or ''}"
+            name = naming.find(f"{component.name}_{end}")
+            self._reads[symbol] = replace(rows[component], name=name, shift=None, single=number)
         #: The vector of a derivative, which stands below the state.
         self._vector = [
             replace(
                 read, name=naming.find(f"h_{read.name}"), blocks=read.blocks + len(family.states)
             )
             for read in self._reads.values()
-            if read.array == "state"
+            if read.array == "state" and read.single is None
         ]
         #: The name of the other member of a pair, of each name that one of them has.
         self._others = self._pair_names()
@@ -257,7 +264,7 @@ class _Lowering:
         terms = [each.term for each in family.pair_sums]
         found = Loops(
             name=name,
-            is_periodic=family.index.periodic,
+            wraps=family.wraps,
             blocks=len(family.states) * (2 if along else 1),
             shape=None,
             partners=lower(terms, of_pair=True) if terms else None,
@@ -273,7 +280,7 @@ class _Lowering:
         """A function of each member alone."""
         return Loops(
             name=name,
-            is_periodic=self.family.index.periodic,
+            wraps=self.family.wraps,
             blocks=len(self.family.states),
             shape=None,
             member=self._part(name, trees, {}),
@@ -291,7 +298,7 @@ class _Lowering:
             names |= {each.symbol: f"{SUM}{len(names) + n}" for n, each in enumerate(sums)}
         return Loops(
             name=name,
-            is_periodic=self.family.index.periodic,
+            wraps=self.family.wraps,
             blocks=len(self.family.states),
             shape=shape,
             totals=tuple(
@@ -365,7 +372,11 @@ class _Lowering:
         known: dict[int, dict[str, int]] = {
             graph.symbol(read.name): {} for read in self._reads.values()
         }
-        moving = [read.name for read in self._reads.values() if read.array == "state"]
+        moving = [
+            read.name
+            for read in self._reads.values()
+            if read.array == "state" and read.single is None
+        ]
         for name, read in zip(moving, self._vector, strict=True):
             known[graph.symbol(name)] = {"": graph.symbol(read.name)}
         for name, slope in sums.items():

@@ -62,7 +62,7 @@ class _Symbols:
         if read.array == "time":
             return family.time[read.rows]
         if read.array == "parameters":
-            if read.shift is None:
+            if read.shift is None and read.single is None:
                 return family.shared[read.rows]
             assert read.rows == len(family.shared), read
             return self._place(family.indexed[read.blocks], read)
@@ -73,6 +73,8 @@ class _Symbols:
 
     def _place(self, component: Symbol, read: Read) -> Symbol:
         """The symbol of a component of the member that a name belongs to."""
+        if read.single is not None:
+            return self._family.singles[component, read.single]
         if read.of_partner:
             return self._family.partners[component]
         return self._family.neighbours[component, read.shift] if read.shift else component
@@ -110,7 +112,7 @@ def _list_parts(
         ordered = list[Any]()
         for group in loops.totals:
             edges = [(group.over, group.before, group.after)]
-            if loops.is_periodic:
+            if family.index.periodic:
                 chosen = [each for each in known if each.over == group.over]
             else:
                 chosen = [each for each in known if (each.over, each.before, each.after) in edges]

@@ -126,8 +126,9 @@ def family_context(
         observables=tuple(
             _observable(equations, kept[name])
             for name in (
-                *(["energy"] if spec.hamiltonian else []),
+                *(each.name for each in family.totals if each.name == "energy"),
                 *(o.name for o in spec.observables),
+                *(each.name for each in spec.symmetries),
             )
         ),
         loops=loops,

@@ -37,6 +37,11 @@ from coadjoint.spec.model import Lax, Spec, Windows
 from coadjoint.spec.spatial import describe_gram, gram_name
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
+#: What a statement says of a momentum map that is conserved.
+_NOETHER = "by Noether's theorem"
+#: The entries of a cocycle, which name members, and what is said of it in their place.
+_COCYCLE = re.compile(r"the constant 2-cocycle .*")
+_OF_ALL = "a constant 2-cocycle Sigma, the sum of those of all members"
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
 
 
@@ -59,6 +64,7 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     general = zip(list_windows(spec), certificates, strict=True)
     kept = [_merge(_keep_general(family, *each)) for each in general]
     windows, rest = kept[: len(family.windows)], kept[len(family.windows) :]
+    windows = _keep_common(windows)
     assert len({tuple(c.statement for c in each) for each in windows}) == 1, spec.name
     claims = [_join(family, same) for same in zip(*windows, strict=True)]
     claims += [_examine_lax(family)] if family.lax else []
@@ -68,6 +74,15 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
         loaded = [claim for each in rest for claim in each if claim.statement in own]
         claims += [replace(claim, statement=claim.statement + scope) for claim in loaded]
     return Certificate(spec.name, tuple(claims))
+
+
+def _keep_common(windows: Sequence[list[Claim]]) -> list[list[Claim]]:
+    """The claims of windows, without what is said of a symmetry in some of them alone.
+
+    Of a momentum map that is not conserved a statement shows the rate, and names members in it.
+    """
+    common = set.intersection(*({claim.statement for claim in each} for each in windows))
+    return [[c for c in each if c.kind != "symmetry" or c.statement in common] for each in windows]
 
 
 def bind_size(spec: Spec, certificate: Certificate) -> Certificate:
@@ -172,6 +187,8 @@ def _keep_general(family: Windows, window: Spec, certificate: Certificate) -> It
             yield replace(claim, statement=_say_of_member(claim.statement, words))
         elif claim.kind in ("jacobi", "equivalence") or claim.statement in casimirs:
             yield claim
+        elif claim.kind == "symmetry" and not claim.statement.startswith("the flow of "):
+            yield replace(claim, statement=_COCYCLE.sub(_OF_ALL, claim.statement))
 
 
 def _list_words(family: Windows, window: Spec) -> dict[str, str]:
@@ -236,8 +253,11 @@ def _generalise(method: str) -> str:
 def _reason(family: Windows, claim: Claim) -> str:
     """Why so many numbers of members are enough."""
     if claim.statement.startswith("the energy") and not family.windows[0].is_forced:
+        if family.windows[0].hamiltonian is None:
+            return "the Lagrangian does not name the time"
         return "the bracket of each member is antisymmetric"
-    if claim.kind != "conserved" or claim.statement in family.of_members:
+    is_total = claim.kind == "conserved" or _NOETHER in claim.statement
+    if not is_total or claim.statement in family.of_members:
         if family.pairs:
             if len(family.windows) > 2:
                 return "each of its terms reads members next to each other, or those and a partner"

@@ -8,7 +8,7 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
@@ -130,27 +130,36 @@ def _row(read: Read, member: str) -> str:
     return " + ".join([*addends, member] if member else addends) or "0"
 
 
-def _python_place(read: Read, is_periodic: bool) -> str:
+def _fixed_row(read: Read) -> str:
+    """The row of what does not depend on i: of all members, or of one at an end."""
+    if read.single is None:
+        return str(read.rows)
+    if read.single >= 0:
+        return _row(replace(read, rows=read.rows + read.single), "")
+    return f"{_row(replace(read, blocks=read.blocks + 1), '')} - {-read.single}"
+
+
+def _python_place(read: Read, wraps: bool) -> str:
     """Where Python and NumPy read."""
     if read.shift is None:
-        return f"{read.array}[{read.rows}]"
+        return f"{read.array}[{_fixed_row(read)}]"
     member = "j" if read.of_partner else "i"
     if read.shift:
         sign = "+" if read.shift > 0 else "-"
         member = f"i {sign} {abs(read.shift)}"
-        member = f"({member}) % size" if is_periodic else member
+        member = f"({member}) % size" if wraps else member
     return f"{read.array}[{_row(read, member)}]"
 
 
-def _c_place(read: Read, is_periodic: bool) -> str:
+def _c_place(read: Read, wraps: bool) -> str:
     """Where C reads, the address of the first lane."""
-    row = str(read.rows)
+    row = _fixed_row(read).replace("size", "_run.size")
     if read.shift is not None:
         member = "_j" if read.of_partner else "_run.i"
         if read.shift:
             sign, word = ("+", "after") if read.shift > 0 else ("-", "before")
             member = f"_run.i {sign} {abs(read.shift)}"
-            if is_periodic:
+            if wraps:
                 member = f"{word}(_run.i, {abs(read.shift)}, _run.size)"
         row = _row(read, member).replace("size", "_run.size").replace("_run._run.", "_run.")
     if read.array == "time":
@@ -166,6 +175,8 @@ def _c_step(read: Read) -> str:
         return "_run.timed"
     if read.array == "state":
         return "_batch" if read.of_partner else ""
+    if read.single is not None:
+        return "_indexed"
     return "_shared" if read.shift is None or read.of_partner else "_indexed"
 
 
@@ -188,7 +199,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
     edges += [max(place + 1, -place) for place, _ in loops.ends]
 
     def text(part: Part | None, *, to: str = "") -> PartText | None:
-        return None if part is None else _arrange(part, loops.is_periodic, target, to)
+        return None if part is None else _arrange(part, loops.wraps, target, to)
 
     member, finish = text(loops.member, to="member"), text(loops.finish, to="total")
     return FamilyFunction(
@@ -204,12 +215,11 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         pair_sums=loops.pair_sums,
         member=member,
         ends=tuple(
-            (place, _arrange(part, loops.is_periodic, target, "member"))
-            for place, part in loops.ends
+            (place, _arrange(part, loops.wraps, target, "member")) for place, part in loops.ends
         ),
         totals=tuple(
             TotalsText(
-                part=_arrange(each.part, loops.is_periodic, target, ""),
+                part=_arrange(each.part, loops.wraps, target, ""),
                 over=each.over,
                 before=each.before,
                 after=each.after,
@@ -222,7 +232,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
     )
 
 
-def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
+def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
     """A part as the templates of a target read it."""
     place, program = PLACES[target], part.program
     names = program.state[len(part.reads) :]
@@ -231,7 +241,7 @@ def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
         reads=tuple(
             ReadText(
                 name=read.name,
-                place=place(read, is_periodic),
+                place=place(read, wraps),
                 step=_c_step(read) if target == "c" else "",
                 of="all" if read.shift is None else "partner" if read.of_partner else "member",
             )

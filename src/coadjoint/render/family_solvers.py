@@ -101,7 +101,7 @@ class FamilySolverText:
         shared: Parameters that all members share.
         indexed: Parameters of each member.
         reach: How far the members are apart that a part reads, at the most.
-        is_periodic: Whether the last member is followed by the first.
+        wraps: Whether the last member is followed by the first where neighbours are read.
         functions: Elementary functions that are called, with their arguments, sqrt left out.
         orders: Whether factors k are read.
         branches: Whether rates have branch points or jumps.
@@ -119,7 +119,7 @@ class FamilySolverText:
     shared: int
     indexed: int
     reach: int
-    is_periodic: bool
+    wraps: bool
     functions: tuple[tuple[str, str], ...]
     orders: bool
     branches: bool
@@ -175,7 +175,7 @@ def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
         shared=counts.shared,
         indexed=counts.indexed,
         reach=max(part.reach for part in rates.parts),
-        is_periodic=rates.is_periodic,
+        wraps=rates.wraps,
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         orders="_orders[_m]" in read,
         branches=any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls),

@@ -54,6 +54,7 @@ def make_members(
         names=frozenset(name for name, part in parts.items() if part.index is not None),
         bound={} if bound is None else bound,
         first=index.first,
+        from_zero=index.from_zero,
         number=index.count,
         taken=frozenset({*parts, *defined, *filter(None, [index.count])}),
         scalars=frozenset(name for name, part in parts.items() if _is_scalar(file, name, part)),
@@ -120,7 +121,11 @@ class _Writer:
 
     def name(self, name: str, member: int) -> str:
         """What a quantity is called that has an index; another one keeps its name."""
-        return member_name(name, self.index.first + member) if name in self.members.names else name
+        return (
+            member_name(name, self.index.first_name + member)
+            if name in self.members.names
+            else name
+        )
 
     @property
     def written(self) -> tuple[Source, Any]:
@@ -233,7 +238,7 @@ class _Writer:
             ends = [(0, 0)] if self.index.periodic else []
             ends = ends or [reach(t, self.index.name, self.members.names) for t in trees]
             for k in range(max(a for a, _ in ends), self.count - max(b for _, b in ends)):
-                own = member_name(name, self.index.first + k)
+                own = member_name(name, self.index.first_name + k)
                 self._bind((table, name), (table, own), k)
                 plain = text if table == "domain" else self._write_text(text, k)
                 if plain != text:

@@ -133,6 +133,8 @@ class Windows:
             component those of all members.
         repeating: Names of those that have a default for some members, which are taken again.
         reach: How many members further the energy couples.
+        alone: How many members at the beginning and at the end of an open chain stand alone in the
+            energy or in what else acts.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
         windows: The spec written out for two or three numbers of members, the smallest first.
@@ -150,12 +152,20 @@ class Windows:
     defaults: Mapping[str, tuple[tuple[Fraction, ...], ...]]
     repeating: tuple[str, ...]
     reach: int
+    alone: tuple[int, int]
     pairs: bool
     least: int
     windows: tuple[Spec, ...]
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
     lax: tuple[tuple[Spec, Lax], ...] = ()
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """How many members at the beginning and at the end of a chain have rates of their own."""
+        if self.index.periodic:
+            return 0, 0
+        return max(self.reach, self.alone[0]), max(self.reach, self.alone[1])
 
 
 @dataclass(frozen=True)

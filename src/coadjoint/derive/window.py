@@ -1,0 +1,163 @@
+"""A few members that are written out, and the names of the generic member for what they have.
+
+Comes in: the Equations of a window. Goes out: its members, and the symbols of member i, of those
+next to it, of a partner and of members at the ends, by the symbols of the window.
+Read next: `coadjoint.derive.indexed`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy
+
+from coadjoint.derive.equations import Equations
+from coadjoint.spec.core.components import component_names
+from coadjoint.spec.core.members import Members, member_name
+from coadjoint.spec.model import Windows
+
+
+@dataclass(frozen=True)
+class Window:
+    """A system of a few members.
+
+    Attributes:
+        equations: Its Equations.
+    """
+
+    equations: Equations
+
+    @cached_property
+    def declared(self) -> Windows:
+        """What is known of the other members."""
+        family = self.equations.spec.family
+        assert family is not None, self.equations.spec.name
+        return family
+
+    @cached_property
+    def members(self) -> Members:
+        """The members that are written out."""
+        declared = self.declared
+        spec = self.equations.spec
+        count = len(spec.state) // len(declared.variables)
+        moving = (each.name.rpartition("_")[0] for each in spec.variables)  # velocities among them
+        return Members(
+            index=declared.index.name,
+            count=count,
+            periodic=declared.index.periodic,
+            names=frozenset((*moving, *declared.indexed)),
+            first=declared.index.first,
+            number=declared.index.count,
+            from_zero=True,
+        )
+
+    @cached_property
+    def shared(self) -> tuple[str, ...]:
+        """Components of the parameters that all members share."""
+        known = {each.name: each for each in self.equations.spec.parameters}
+        return tuple(c for name in self.declared.shared for c in known[name].components)
+
+    @property
+    def time(self) -> tuple[sympy.Symbol, ...]:
+        """The symbol of the time, if the spec declares it."""
+        time = self.equations.spec.time
+        return () if time is None else (sympy.Symbol(time.name),)
+
+    @cached_property
+    def components(self) -> dict[str, tuple[str, ...]]:
+        """The components of what a member has, of its generic name, by component."""
+        spec = self.equations.spec
+        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        generic = dict[str, tuple[str, ...]]()
+        for name in (*self.declared.variables, *self.declared.indexed):
+            each = known[member_name(name, 0)]
+            generic[name] = component_names(name, each.shape, each.form)
+        return generic
+
+    def names_of(self, names: Sequence[str], member: int) -> list[str]:
+        """Components of quantities of one member of the window."""
+        spec = self.equations.spec
+        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        return [c for name in names for c in known[member_name(name, member)].components]
+
+    def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the components of generic quantities."""
+        return tuple(sympy.Symbol(c) for name in names for c in self.components[name])
+
+    @cached_property
+    def states(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the state of member i."""
+        return self.generic(self.declared.variables)
+
+    @cached_property
+    def indexed(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the parameters of member i."""
+        return self.generic(self.declared.indexed)
+
+    @cached_property
+    def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
+        """Symbols of member j of a pair."""
+        if not self.declared.pairs:
+            return {}
+        own = (*self.states, *self.indexed)
+        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
+
+    @cached_property
+    def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
+        """Symbols of the neighbours of member i, as far as the window has them."""
+        most = self.members.count
+        return {
+            (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
+            for shift in range(-most, most + 1)
+            if shift
+            for each in (*self.states, *self.indexed)
+        }
+
+    @cached_property
+    def singles(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
+        """Symbols of members at the ends, by number."""
+        most = self.members.count
+        return {
+            (each, number): sympy.Symbol(f"{each.name}[{'N' * (number < 0)}{number}]")
+            for number in range(-most, most)
+            for each in (*self.states, *self.indexed)
+        }
+
+    def rename(
+        self, member: int, before: int, after: int, *, around: bool = False
+    ) -> dict[sympy.Symbol, sympy.Symbol]:
+        """The generic symbols by those of the window, seen from one of its members.
+
+        Args:
+            member: Its place.
+            before: How many members are seen before it.
+            after: How many are seen after it.
+            around: Whether those before the first are the last ones, and the other way round.
+        """
+        names = (*self.declared.variables, *self.declared.indexed)
+        own, count = (*self.states, *self.indexed), self.members.count
+        new = dict[sympy.Symbol, sympy.Symbol]()
+        for shift in range(-before, after + 1):
+            at = (member + shift) % count if around else self.members.place(member + shift)
+            if at is not None:
+                seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
+                old = map(sympy.Symbol, self.names_of(names, at))
+                new |= zip(old, seen, strict=True)
+        return new
+
+    @property
+    def middle(self) -> int:
+        """A member that has all its neighbours."""
+        return self.declared.ends[0]
+
+    def see_around(self, member: int) -> dict[sympy.Symbol, sympy.Symbol]:
+        """The generic symbols of all members on which the rate of a member may depend."""
+        reach, (first, last) = self.declared.reach, self.declared.alone
+        before, after = member, self.members.count - 1 - member
+        if before < first:
+            return self.rename(member, before + last, max(reach, first - 1 - before), around=True)
+        if after < last:
+            return self.rename(member, max(reach, last - 1 - after), after + first, around=True)
+        return self.rename(member, reach, reach)
