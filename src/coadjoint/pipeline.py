@@ -33,6 +33,7 @@ from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.declaration import family_context, kernel_context
+from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
 from coadjoint.render.families import FamilyContext, render_family
@@ -134,8 +135,11 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     certificate = prove(spec, list(routes)).require()
     check_loops(family, loops)
     progress("render")
-    context = family_context(first, family, loops, certificate.count(Verdict.SUPPORTED))
-    texts = {**render_family(context), "certificate.json": certificate_json(spec, certificate)}
+    facts, methods = judge_family(windows, declared, family, loops, certificate)
+    supported = certificate.count(Verdict.SUPPORTED)
+    context = family_context(first, family, loops, supported, facts, methods)
+    record = certificate_json(spec, certificate, facts.as_record(), methods)
+    texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member
     assert member is not None, spec.name
     return Rendered(

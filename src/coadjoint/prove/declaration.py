@@ -26,6 +26,7 @@ from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove.driven import while_constant
+from coadjoint.prove.family_methods import FamilyFacts
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.render.families import FamilyContext
 from coadjoint.spec import Spec
@@ -79,7 +80,12 @@ def kernel_context(
 
 
 def family_context(
-    equations: Equations, family: Family, loops: dict[str, Loops], supported: int = 0
+    equations: Equations,
+    family: Family,
+    loops: dict[str, Loops],
+    supported: int = 0,
+    facts: FamilyFacts | None = None,
+    methods: Iterable[JudgedMethod] = (),
 ) -> FamilyContext:
     """What the generated files of a system of equal members say.
 
@@ -88,6 +94,8 @@ def family_context(
         family: Those of the generic member.
         loops: Its functions.
         supported: How many claims are numerically supported and not proved.
+        facts: What decides which methods keep structure.
+        methods: These, as they are judged.
     """
     spec = equations.spec
     declared = spec.family
@@ -135,6 +143,9 @@ def family_context(
         supported=supported,
         unit_of_time=spec.units.time,
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
+        methods=tuple(each for each in methods if each.applies),
+        spheres={} if facts is None else {facts.radii[s.rows[0]]: s.rows for s in facts.spheres},
+        positions=() if facts is None else facts.positions,
     )
 
 

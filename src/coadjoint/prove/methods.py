@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Final
 
 from coadjoint.derive import Equations
@@ -27,7 +28,7 @@ SWEEPS: Final = "about a dozen sweeps"
 #: The degree up to which the mean of a gradient is exact: Gauss's formula has four nodes.
 MEAN_DEGREE: Final = 8
 #: Steps of order 2 that make one of each order.
-_STEPS: Final = {2: 1, 4: 5, 6: 9}
+STEPS: Final = {2: 1, 4: 5, 6: 9}
 
 
 @dataclass(frozen=True)
@@ -68,13 +69,31 @@ def judge_methods(
     refusals = dict(maps.refusals)
     refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
     known = {program.name: program for program in maps.programs}
+    return facts, judge(facts, refusals, known)
+
+
+def judge(
+    facts: Facts,
+    refusals: Mapping[str, str],
+    maps: Mapping[str, Program],
+    rules: Mapping[str, Rule] = MappingProxyType({}),
+) -> tuple[JudgedMethod, ...]:
+    """Every method of the list, judged.
+
+    Args:
+        facts: Of the system.
+        refusals: Why methods do not apply, by name, as far as they do not.
+        maps: What explicit methods make a step of, by name.
+        rules: By files of methods, in the place of those of a system without an index.
+    """
+    every = {**_RULES, **rules}
     judged = {
         name: JudgedMethod(name=name, order=method.order, decides=refusals[name])
         if name in refusals
-        else _judge(facts, method, known)
+        else _judge(every, facts, method, maps)
         for name, method in {**STRUCTURED, **MAPPED}.items()
     }
-    return facts, _rank(facts, judged)
+    return _rank(facts, judged)
 
 
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
@@ -86,9 +105,14 @@ def _refuse(facts: Facts, method: StructuredMethod) -> str:
     return f"it expects {method.expects}"
 
 
-def _judge(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> JudgedMethod:
+def _judge(
+    rules: Mapping[str, Rule],
+    facts: Facts,
+    method: StructuredMethod,
+    maps: Mapping[str, Program],
+) -> JudgedMethod:
     """A method that applies."""
-    found = _RULES.get(method.file, _judge_unknown)(facts, method, maps)
+    found = rules.get(method.file, _judge_unknown)(facts, method, maps)
     names = [each.name for each in found.exactly]
     return JudgedMethod(
         name=method.name,
@@ -126,9 +150,9 @@ def _judge_runge_kutta(
         said.append("no integral is seen to be of degree 2 or less")
     said += ["the Poisson tensor is constant"] * is_symplectic
     is_gauss = method.file == "gauss"
-    stages = method.order // 2 if is_gauss else _STEPS[method.order]
+    stages = method.order // 2 if is_gauss else STEPS[method.order]
     each = "stage" if is_gauss else "midpoint"
-    cost = f"{SWEEPS} of {_count(stages, each)}"
+    cost = f"{SWEEPS} of {count(stages, each)}"
     return Judgement(exactly, is_symplectic, "; ".join(said), cost)
 
 
@@ -149,14 +173,14 @@ _ACTION: Final = "the motion is the bracket with its energy, and the bracket is 
 
 def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
     """Coadjoint actions are Poisson maps where they come from a discrete principle."""
-    stages = _STEPS[method.order]
-    cost = f"{SWEEPS} of {_count(stages, 'coadjoint arc')}, each a dozen brackets"
+    stages = STEPS[method.order]
+    cost = f"{SWEEPS} of {count(stages, 'coadjoint arc')}, each a dozen brackets"
     if method.file == "isospectral_midpoint":
-        cost = f"{SWEEPS} of {_count(stages, 'midpoint')}, each with two products of matrices"
+        cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
     return Judgement(_on_orbits(facts), True, _ACTION, cost)
 
 
-def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
     """The spherical midpoint, which on one sphere is the midpoint with another length of step.
 
     There ``X(s m) = s^2 X(m)`` of a field that is homogeneous and quadratic, so that all quadratic
@@ -164,7 +188,7 @@ def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progr
     """
     exactly, decides = (
         _on_orbits(facts),
-        f"its orbits are those of {_count(len(facts.spheres), 'sphere')}",
+        f"its orbits are those of {count(len(facts.spheres), 'sphere')}",
     )
     (one, *others) = facts.spheres
     alone = not others and not one.tangent and len(facts.state) == len(one.rows)
@@ -175,7 +199,7 @@ def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progr
             if each in exactly or (each.is_kept_within_steps and each.degree == 2)
         )
         decides += ", on which the energy is quadratic"
-    cost = f"{SWEEPS} of {_count(_STEPS[method.order], 'midpoint')}"
+    cost = f"{SWEEPS} of {count(STEPS[method.order], 'midpoint')}"
     return Judgement(exactly, True, decides, cost)
 
 
@@ -196,8 +220,8 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
     if not is_flow:
         return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
     parts = len(used)
-    decides = f"the energy is the sum of {_count(parts, 'part')} whose flows are in closed form"
-    return Judgement(exactly, True, decides, _count(len(schedule), "explicit map"))
+    decides = f"the energy is the sum of {count(parts, 'part')} whose flows are in closed form"
+    return Judgement(exactly, True, decides, count(len(schedule), "explicit map"))
 
 
 def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -206,7 +230,7 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
     The mean of a gradient is one by Gauss's formula, of polynomials. C changes by its gradient at
     the middle of a step times the tensor there, which is zero.
     """
-    steps = _count(_STEPS[method.order], "middle")
+    steps = count(STEPS[method.order], "middle")
     is_mean = method.file == "average_gradient"
     cost = f"{SWEEPS} of {steps}, each with {'five gradients' if is_mean else 'two energies'}"
     if not facts.is_bracket:
@@ -243,7 +267,7 @@ _RULES: Final[Mapping[str, Rule]] = {
     "gauss": _judge_runge_kutta,
     "coadjoint_mean": _judge_orbits,
     "isospectral_midpoint": _judge_orbits,
-    "spherical_midpoint": _judge_spheres,
+    "spherical_midpoint": judge_spheres,
     "sequence": _judge_maps,
     "discrete_gradient": _judge_gradients,
     "average_gradient": _judge_gradients,
@@ -317,6 +341,6 @@ def _be(integrals: Sequence[Kept]) -> str:
     return "is" if len(integrals) == 1 else "are"
 
 
-def _count(number: int, what: str) -> str:
+def count(number: int, what: str) -> str:
     """A number of things: ``one midpoint``, ``5 midpoints``."""
     return f"one {what}" if number == 1 else f"{number} {what}s"

@@ -14,9 +14,12 @@ from typing import Any, Final
 from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower import normals
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
+from coadjoint.lower.mapped import list_schedules
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
+from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.family_solvers import Counts, arrange_family
 from coadjoint.render.kernels import (
@@ -32,6 +35,8 @@ from coadjoint.render.kernels import (
     wrap,
 )
 from coadjoint.render.tables import fill
+from coadjoint.solve.methods import spherical_midpoint
+from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 
 
 @dataclass(frozen=True)
@@ -282,6 +287,10 @@ class FamilyContext:
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
         time: The time, if the functions take it.
+        methods: Methods that keep structure and apply, as they are judged.
+        spheres: The components of a member that are a vector on a sphere, by the name of the square
+            of its radius.
+        positions: Those that are positions, where the energy is ``T(p) + V(q)``.
     """
 
     name: str
@@ -301,6 +310,9 @@ class FamilyContext:
     supported: int = 0
     unit_of_time: str = "s"
     time: tuple[Quantity, ...] = ()
+    methods: tuple[JudgedMethod, ...] = ()
+    spheres: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    positions: tuple[int, ...] = ()
 
     @property
     def counts(self) -> Counts:
@@ -380,9 +392,14 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
             *(["time=TIME"] * bool(context.time)),
+            *(["methods=METHODS"] * bool(context.methods)),
+            *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
+            *([f"positions={context.positions}"] * bool(context.positions)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
+        "methods": list(map(declaration, context.methods)),
+        "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
@@ -394,6 +411,38 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     if "solver" in names:
         values["solver"] = arrange_family(context.loops["rhs"], context.counts)
     return render_templates((template,), {name: values[name] for name in names})[template]
+
+
+def describe_steps(context: FamilyContext) -> dict[str, Any]:
+    """What the solver in C reads of methods that keep structure."""
+    every = {**STRUCTURED, **MAPPED}
+    own = [every[each.name] for each in context.methods]
+    implicit = [each for each in own if each.name in STRUCTURED]
+    schedules = list_schedules(("flow1", "flow2"))
+    flows = {"flow1": 0, "flow2": 1}
+    count = sum(len(each.components) for each in context.state)
+    return {
+        "names": {each.macro: (each.file, each.order) for each in implicit},
+        "stages": {
+            order: list(map(repr, COMPOSITIONS[order]))
+            for order in sorted({each.order for each in implicit})
+        },
+        "spheres": [rows[0] for rows in context.spheres.values()],
+        "schedules": {
+            each.macro: [(flows[flow], repr(part)) for flow, part in schedules[each.name]]
+            for each in own
+            if each.name in MAPPED
+        },
+        "positions": [int(n in context.positions) for n in range(count)],
+        "sweeps": normals.SWEEPS,
+        "near": spherical_midpoint.NEAR,
+    }
+
+
+def _tell_spheres(context: FamilyContext) -> str:
+    """The vectors on spheres, as a generated package declares them."""
+    entries = (f"{quote(name)}: {rows}" for name, rows in context.spheres.items())
+    return "{" + ", ".join(entries) + "}"
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

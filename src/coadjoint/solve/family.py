@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from coadjoint.methods import JudgedMethod
     from coadjoint.render.targets.modules import KernelModule
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.family_steps import FamilyTwin
@@ -47,6 +48,9 @@ class FamilySystem(System):
         index: The index, with N as its size.
         small: The fewest members for which the equations hold.
         steppers: Who makes its steps, by method and target, as far as that was asked for.
+        spheres: Components of a member that are a vector on a sphere, by the name of the square of
+            its radius, if a member has nothing else.
+        positions: Those that are positions, where the energy is ``T(p) + V(q)``.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -67,8 +71,12 @@ class FamilySystem(System):
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
         repeating: Sequence[str] = (),
         time: Quantities | None = None,
+        methods: Sequence[JudgedMethod] = (),
+        spheres: Mapping[str, tuple[int, ...]] = MappingProxyType({}),
+        positions: tuple[int, ...] = (),
     ) -> None:
         self.index, self.small = index
+        self.spheres, self.positions = spheres, positions
         self._declared = (state, shared, indexed, observables, functions, elementary)
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
@@ -91,6 +99,7 @@ class FamilySystem(System):
             identity,
             time=time,
             unit_of_time=unit_of_time,
+            methods=methods,
         )
 
     @property
@@ -128,6 +137,18 @@ class FamilySystem(System):
         own, pairs = int(module.value("MEMBER")), int(module.value("PAIR"))
         return lanes * own * self.size, lanes * pairs * self.size**2
 
+    def rows_of(self, components: Sequence[int]) -> list[slice]:
+        """The rows of components of all members in a state."""
+        return [slice(n * self.size, (n + 1) * self.size) for n in components]
+
+    def find_radii(self, states: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """The squares of the radii of all members, by their name, ``(N, *batch)``."""
+        return {
+            name: states[self.rows_of(components)[0]] ** 2
+            + sum(states[rows] ** 2 for rows in self.rows_of(components)[1:])
+            for name, components in self.spheres.items()
+        }
+
     def resize(self, sizes: Mapping[str, int]) -> FamilySystem:
         """The system with another number of members.
 
@@ -155,6 +176,9 @@ class FamilySystem(System):
             defaults=self._defaults,
             repeating=self._repeating,
             time=self.TIME,
+            methods=self.METHODS,
+            spheres=self.spheres,
+            positions=self.positions,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:

@@ -39,6 +39,8 @@ from coadjoint.solve.twins import StepwiseStepper
 from coadjoint.solver_kinds import list_kinds
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
@@ -82,8 +84,15 @@ def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
         reason = "it moves the state alone, and what is reconstructed is asked for"
         return dict.fromkeys(MAPPED, reason)
     if isinstance(system, FamilySystem):
-        return dict.fromkeys(MAPPED, "its solvers are loops over equal members, without it")
+        return _list_missing(system, MAPPED)
     return system._solvers.refusals
+
+
+def _list_missing(system: FamilySystem, names: Iterable[str]) -> dict[str, str]:
+    """Why methods do not apply to equal members, as far as they do not."""
+    known = {each.name for each in system.METHODS}
+    reason = f"it does not apply to its equal members: see `coadjoint show {system.name} --methods`"
+    return dict.fromkeys((name for name in names if name not in known), reason)
 
 
 def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
@@ -107,7 +116,7 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         kind: What is integrated.
     """
     if isinstance(system, FamilySystem):
-        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+        return _list_missing(system, STRUCTURED)
     if system.stepwise:
         return {}
     module = KernelModule(system, kind.files[2])

@@ -17,6 +17,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import JudgedMethod
+from coadjoint.solve.family import FamilySystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -159,7 +160,11 @@ class Runs:
         found = self._simulate(method, self.step, DRIFTING, self.states, samples=41)
         sizes = np.abs(found.state).max(axis=0)
         growth = float(np.nanmax(sizes.max(axis=-1) / np.abs(self.states).max(axis=0)))
-        return {name: float(np.nanmax(x)) for name, x in found.drift.items()}, max(growth, 1.0)
+        drifts = {name: float(np.nanmax(x)) for name, x in found.drift.items()}
+        if isinstance(self.system, FamilySystem):
+            for name, radii in self.system.find_radii(found.state).items():
+                drifts[name] = float(np.nanmax(np.abs(radii / radii[..., :1] - 1.0)))
+        return drifts, max(growth, 1.0)
 
     def _simulate(self, method: str, step: float, count: int, states: Array, samples: int) -> Any:
         return self.system.simulate(

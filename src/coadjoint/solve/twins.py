@@ -114,7 +114,7 @@ class NumpyStepper:
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
-            functions["sandwich"] = self._sandwich
+            functions |= {"sandwich": self._sandwich, "field": self._field}
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
@@ -141,6 +141,12 @@ class NumpyStepper:
     def _bracket(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The Poisson tensor at a state times a vector."""
         return self._evaluate(("bracket_vector",), lanes, after, np.concatenate([state, vector]))
+
+    def _field(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The bracket with the energy."""
+        return self._bracket(
+            lanes, after, state, self._evaluate(("energy_gradient",), lanes, after, state)
+        )
 
     def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The product of matrices of a state and of a vector."""

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.lower.normals import SWEEPS
-from coadjoint.solve.steps import Lanes, larger
+from coadjoint.solve.steps import Lanes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -112,9 +112,10 @@ class Search:
 
     def take(self, sweep: Sweep) -> None:
         """Go on to what a sweep finds, in lanes that have not ended."""
-        change, size = np.zeros(self.last.shape), np.zeros(self.last.shape)
-        for one, other in zip(sweep.middle, self.middle, strict=True):
-            change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
+        change, size = (
+            np.fmax.reduce(np.abs(rows), axis=0, initial=0.0)  # what is no number is left out
+            for rows in (sweep.middle - self.middle, sweep.middle)
+        )
         small = (change <= SOLVED * size) & ~np.asarray(sweep.goes_on)
         ends = small & ((change == 0.0) | (change >= self.last))
         self.middle = np.where(self.done, self.middle, sweep.middle)

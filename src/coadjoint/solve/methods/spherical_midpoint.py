@@ -19,12 +19,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.methods import Sphere
-from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
+from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
+
+    from coadjoint.solve.steps import Lanes
 
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
@@ -36,8 +38,7 @@ NEAR: Final = 2.0**-20
 def make(functions: Mapping[str, Any], size: float, order: int) -> SphericalMidpoint:
     """The method of an order, from functions of the kernel and the rows of spheres."""
     return SphericalMidpoint(
-        gradient=functions["gradient"],
-        bracket=functions["bracket"],
+        field=functions["field"],
         size=size,
         spheres=tuple(Sphere(*each) for each in functions["spheres"]),
         order=order,
@@ -48,23 +49,22 @@ class SphericalMidpoint(LiePoisson):
     """A step through the middle of an arc of each sphere.
 
     Args:
-        gradient: As of `LiePoisson`.
-        bracket: Likewise.
-        size: Likewise.
-        spheres: The factors; rows in none are moved by the midpoint.
+        field: The bracket with the energy, some time after that of the lanes.
+        size: As of `LiePoisson`.
+        spheres: The factors; rows in none are moved by the midpoint. Of a family of equal members a
+            row is a slice, of one component of all members.
         order: As of `LiePoisson`.
     """
 
     def __init__(
         self,
         *,
-        gradient: Gradient,
-        bracket: Bracket,
+        field: Callable[[Lanes, Array, Array], Array],
         size: float,
         spheres: tuple[Sphere, ...],
         order: int = 2,
     ) -> None:
-        super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
+        self.field, self.size, self.stages = field, size, COMPOSITIONS[order]
         self.spheres = spheres
 
     def prepare(self, arc: Arc) -> list[_Scale]:
@@ -73,12 +73,12 @@ class SphericalMidpoint(LiePoisson):
 
     def confirm(self, kept: list[_Scale]) -> Mask | bool:
         """As `LiePoisson.confirm`: quotients are roots, and positive."""
-        return np.asarray(np.logical_and.reduce([each.is_root() for each in kept]))
+        roots = np.concatenate([np.atleast_2d(each.is_root()) for each in kept])
+        return np.asarray(roots.all(axis=0))
 
     def sweep(self, arc: Arc, middle: Array, kept: list[_Scale]) -> Sweep:
         """As `LiePoisson.sweep`."""
-        xi = self.gradient(arc.lanes, arc.middle, middle)
-        rates = self.bracket(arc.lanes, arc.middle, middle, xi)
+        rates = self.field(arc.lanes, arc.middle, middle)
         following = arc.state + 0.5 * arc.length * rates
         for each in kept:
             each.apply(following)
