@@ -15,7 +15,7 @@ from coadjoint.spec.reader import read_spec_text
 from tests.families import DRIVEN, VORTICES, write_driven
 
 TIMES = np.linspace(0.0, 10.0, 6)
-RK4, TAYLOR = Choice("rk4", 4), Choice("taylor", 6)
+RK4, TAYLOR, MIDPOINT = Choice("rk4", 4), Choice("taylor", 6), Choice("midpoint4", 4)
 RUNS = [("rk4", 0.01, 1e-9), ("dop853", None, 1e-9), ("taylor", None, 1e-9)]
 
 
@@ -103,12 +103,12 @@ def test_series_know_the_time(driven):
     assert repr(driven).endswith("; time t>")
 
 
-@pytest.mark.parametrize("method", ["rk4", "dop853", "taylor"])
+@pytest.mark.parametrize("method", ["rk4", "dop853", "taylor", "midpoint4"])
 def test_steps_of_trajectories_are_those_of_the_twin(driven, method):
     """Nine at a time, begun at another time than 0; steps that nobody records are made in C."""
     system, source = driven.resize({"i": 3}), np.random.default_rng(3)
     given = source.normal(size=(6, 9)), np.linspace(0.25, 3.0, 4)
-    step = 0.0625 if method == "rk4" else None
+    step = 0.0625 if method in ("rk4", "midpoint4") else None
     found, expected = (
         system.simulate(*given, method=method, step=step, target=target)
         for target in ("c", "numpy")
@@ -141,6 +141,8 @@ SPOILED_STEPS = [
     ("solver.c", "- 1, l, time, 1.0", "- 1, l, 0.5 * time, 1.0", RK4),
     ("solver.c", "to[1][w] = run->slopes[place]", "to[1][w] = 0.0", TAYLOR),
     ("solver.py", "driving[:, k] = ", "driving[:, k] = (1 - k) * ", TAYLOR),
+    ("solver.c", "begun[l] + 0.5 * search.length[l]", "begun[l]", MIDPOINT),
+    ("solver.c", "begun[l] = begun[l] +", "begun[l] = 0.0 * begun[l] +", MIDPOINT),
 ]
 
 
