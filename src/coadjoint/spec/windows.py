@@ -38,6 +38,7 @@ from coadjoint.spec.core.totals import find_alone, has_sum, split_sums, without_
 from coadjoint.spec.core.tree import Index as Subscript
 from coadjoint.spec.core.tree import Name, Node, walk
 from coadjoint.spec.core.values import read_default
+from coadjoint.spec.counted import count_out, find_counted
 from coadjoint.spec.looped import find_ends, find_misfit, list_texts
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.indices import make_index
@@ -65,9 +66,13 @@ def read_windows(
         SpecError: A size is unknown, a table or a variable does not go with an index.
         LimitError: There are too many members.
     """
-    index = _choose(source, file, sizes)
+    counted = list(find_counted(file))
+    index = _choose(source, file, sizes, is_counted=bool(counted))
+    misfit = "a size in the name of an algebra or in a shape counts them" if counted else ""
+    if counted and index.size is not None:
+        file = count_out(source, file, index, file.index[index.name].size)
     _check(source, file, index)
-    misfit = find_misfit(file, index)
+    misfit = misfit or find_misfit(file, index)
     if misfit:
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
@@ -291,7 +296,7 @@ def _first_window(index: Index, reach: int, width: int, ends: int, *, pairs: boo
     return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
 
 
-def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
+def _choose(source: Source, file: Any, sizes: Mapping[str, int], *, is_counted: bool) -> Index:
     """The index with the size that is chosen."""
     name, part = next(iter(file.index.items()))
     for other, size in sizes.items():
@@ -302,7 +307,8 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
             problem = f"the size {size!r} is chosen for {name!r}"
             raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
     size = sizes.get(name, part.size)
-    if size != part.size and not any(each.index for _, _, each in _list_quantities(file)):
+    varies = is_counted or any(each.index for _, _, each in _list_quantities(file))
+    if size != part.size and not varies:
         problem = f"a size is chosen for {name!r}, which counts components"
         expected = f"the size {part.size} of the spec"
         raise source.fault(("index", name), problem, size, expected)

@@ -27,9 +27,9 @@ from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import (
     Block,
-    Length,
     Numbers,
     Prose,
+    Side,
     Unit,
     misfit_form,
     read_default,
@@ -101,7 +101,7 @@ class VariablePart(Part):
         description="how the algebra acts on an advected quantity: 'vector', 'adjoint', "
         "'coadjoint' and others, or a declared one",
     )
-    shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
+    shape: Annotated[list[Side], Field(max_length=1)] | None = Field(
         None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
     )
     of: str | None = Field(
