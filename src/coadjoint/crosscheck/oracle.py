@@ -20,7 +20,7 @@ from typing import Any, Final, Protocol, TypeVar
 
 from mpmath import MPContext
 
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 from coadjoint.elementary import ELEMENTARY, Arithmetic, domain_of, jump_of, slopes_of
 
 Value = TypeVar("Value")
@@ -118,6 +118,8 @@ def call(function: str, *arguments: Bounded) -> Bounded:
     """
     if function == SETTLE:
         return arguments[0].settled()
+    if function == SETTLE_LAST:
+        return arguments[0]
     if function == "sqrt" and arguments[0].value == arguments[0].envelope == 0:
         return arguments[0]
     if not is_inside(function, arguments):

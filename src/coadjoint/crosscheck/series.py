@@ -26,7 +26,7 @@ from coadjoint.crosscheck.oracle import (
     is_inside,
     to_digits,
 )
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 
 #: Evaluates rates in any arithmetic: values by name, numbers, functions.
 Rates = Callable[
@@ -76,7 +76,7 @@ def apply(function: str, *arguments: Series) -> Series:
     Raises:
         OutsideDomain: It has no value there, or no slope.
     """
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return arguments[0]
     if not is_inside(function, tuple(Bounded(each.of[0], Decimal(0)) for each in arguments)):
         raise OutsideDomain

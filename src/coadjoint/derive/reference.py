@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST, STEPS
 from coadjoint.derive.sloped import Sloped, add_slopes, scale
 from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.exact import Element
@@ -128,9 +128,9 @@ class Reference:
         return [rate.slopes.get(j, zero) for rate in rates for j in range(columns)]
 
 
-def _settle(call: Apply[Value], _step: int, _place: int, value: Value) -> Value:
+def _settle(call: Apply[Value], step: int, _place: int, value: Value) -> Value:
     """A value that is taken as it is, however it came about."""
-    return call(SETTLE, value)
+    return call(SETTLE if step < STEPS else SETTLE_LAST, value)
 
 
 def _apply(
@@ -142,7 +142,7 @@ def _apply(
     """``f(u)`` with the slopes ``f'(u) u'``."""
     values = tuple(argument.value for argument in arguments)
     value = call(function, *values)
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return Sloped(value, {})
     slopes = slopes_of(function, values, value, Arithmetic(number=number, call=call))
     parts = (scale(each.slopes, slope) for each, slope in zip(arguments, slopes, strict=True))

@@ -14,7 +14,7 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import rows_of
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
@@ -162,6 +162,6 @@ def call_residue(function: str, *arguments: Residue, prime: int) -> Residue:
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return arguments[0]
     return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import Literal, TypeVar
 
-from coadjoint.derive.mechanics.iteration import is_guess
+from coadjoint.derive.mechanics.iteration import is_step
 from coadjoint.elementary import ELEMENTARY
 
 Value = TypeVar("Value")
@@ -344,11 +344,11 @@ def evaluate(
 
 
 def settled(name: str, value: Value) -> Value:
-    """A value by its name: what an iteration finds is taken as it is, however it came about.
+    """A value by its name: steps of an iteration are taken as they are, however they came about.
 
     Arithmetics that know where a value came from, such as those of errors, forget it.
     """
-    settle = getattr(value, "settled", None) if is_guess(name) else None
+    settle = getattr(value, "settled", None) if is_step(name) else None
     return value if settle is None else settle()
 
 

@@ -40,8 +40,9 @@ SHORTER = 0.8
 SMALL, NOTHING = Fraction(1, 2**76), Fraction(1, 2**92)
 #: What the squares of what is left before the last step and of the momenta may have as a ratio.
 LEFT = Fraction(1, 2**40)
-#: What arithmetics call to forget how a value came about: its slopes, or its envelope.
-SETTLE = "settle"
+#: What arithmetics call to forget how a value came about: its slopes and its envelope, or, of what
+#: the last step gives, its slopes alone. How rounding came into that one shows where it is near 0.
+SETTLE, SETTLE_LAST = "settle", "settle last"
 
 Call = Callable[..., Any]
 Number = Callable[[Fraction], Any]
@@ -64,6 +65,12 @@ def iterate_name(place: int, step: int) -> str:
 def is_guess(name: str) -> bool:
     """Whether a name is that of a guess, or of a step towards one."""
     return name.startswith("_x") and name[2:3].isdigit()
+
+
+def is_step(name: str) -> bool:
+    """Whether a name is that of a step towards a guess, but the last."""
+    step = name.partition("_x")[2].partition("_")[2]
+    return is_guess(name) and step.isdigit() and int(step) < STEPS
 
 
 def rate_name(place: int) -> str:

@@ -111,11 +111,12 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
 def _write_out(setting: Setting, transform: LegendreTransform) -> Element:
     """The energy in momenta alone, where velocities are not linear in them."""
     field, curved = setting.field, dict(transform.curved)
-    velocities = {name: curved.pop(name) for name in setting.velocities if name in curved}
+    names = [xi for xi, _, _ in setting.conjugates]
+    velocities = {name: curved.pop(name) for name in names if name in curved}
     still = momenta_at_rest(setting, transform.momenta)
     momenta = {
         mu: (field[y] + rest) * w
-        for i, (mu, w, rest) in enumerate(zip(setting.momenta, setting.weights, still, strict=True))
+        for i, ((_, mu, w), rest) in enumerate(zip(setting.conjugates, still, strict=True))
         if (y := forward_name(i)) in curved
     }
     h = field.substitute(field.substitute(transform.energy, momenta), velocities)
@@ -130,7 +131,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
         LimitError: l couples more velocities than docs/limits.md allows.
     """
     setting, mass = of.setting, of.mass
-    field, names = setting.field, setting.velocities
+    field, names = setting.field, of.frame.velocities
     try:
         known = known_side(setting, of.momenta)
     except ZeroDivisionError as error:  # a root of 0 at rest
@@ -153,8 +154,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
             solves.append(
                 Solve(matrix=own, known=rest, block=block, names=[names[i] for i in block])
             )
-    pairs = zip(setting.momenta, names, setting.weights, strict=True)
-    products = [field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs]
+    products = [field[mu] * field[xi] * (1 / w) for xi, mu, w in setting.conjugates]
     energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
@@ -173,13 +173,13 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
 def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
     """``mu - dl/dxi`` at rest: the right side of ``mass * xi = known``."""
     still = momenta_at_rest(setting, momenta)
-    pairs = zip(setting.momenta, still, setting.weights, strict=True)
-    return [setting.field[mu] * (1 / w) - slope for mu, slope, w in pairs]
+    pairs = zip(setting.conjugates, still, strict=True)
+    return [setting.field[mu] * (1 / w) - slope for (_, mu, w), slope in pairs]
 
 
 def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
     """``dl/dxi`` at rest."""
-    rest = dict.fromkeys(setting.velocities, setting.field.zero)
+    rest = dict.fromkeys((xi for xi, _, _ in setting.conjugates), setting.field.zero)
     return [setting.field.substitute(slope, rest) for slope in momenta]
 
 
@@ -196,7 +196,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     names = list[str]()
     for block in coupled_blocks(known.mass):
-        if any(known.setting.velocities[i] in known.bending for i in block):
+        if any(known.frame.velocities[i] in known.bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
             driven = sum(len(each.components) for each in spec.inputs)
             names += [*map(slope_name, range(driven))]
@@ -209,7 +209,7 @@ def _invert_block(
     setting: Setting, matrix: Matrix, known: list[Element], block: tuple[int, ...]
 ) -> dict[str, Element]:
     """Velocities of one block from ``mass * xi = known``, by name."""
-    names = [setting.velocities[i] for i in block]
+    names = [setting.conjugates[i][0] for i in block]
     if witness_regular(setting.field, matrix) is None:
         raise _singular(setting, matrix, names)
     products = (zip(row, known, strict=True) for row in inverse(matrix))
@@ -223,7 +223,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     Raises:
         DerivationError: The Hessian of the block at rest is not positive for certain.
     """
-    setting, names = of.setting, of.setting.velocities
+    setting, names = of.setting, of.frame.velocities
     _check_count(setting, block)
     own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
@@ -235,7 +235,8 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         minor = determinant(tuple(row[:size] for row in still[:size]))
         if not _is_positive(setting, minor):
             raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
-    mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
+    pairs = [setting.conjugates[i] for i in block]
+    mu = [setting.field[p] * (1 / w) for _, p, w in pairs]
     products = [
         field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
         for row in hessian
@@ -262,7 +263,7 @@ def _solve_radially(
 
     They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
     """
-    setting, names = of.setting, [of.setting.velocities[i] for i in block]
+    setting, names = of.setting, [of.frame.velocities[i] for i in block]
     field, still = setting.field, momenta_at_rest(setting, of.momenta)
     moving = [of.momenta[i] - still[i] for i in block]
     parts = [(forward_name(i), known[i]) for i in block if len(field.terms(known[i])) > 1]
@@ -288,7 +289,7 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
-    names = [setting.velocities[i] for i in block]
+    names = [setting.conjugates[i][0] for i in block]
     _check_count(setting, block)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
@@ -306,7 +307,7 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
 
 def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
     """A block is not too large for the kernel."""
-    names = [setting.velocities[i] for i in block]
+    names = [setting.conjugates[i][0] for i in block]
     if len(block) > COUPLED_VELOCITIES:
         refused = _refusal(
             setting,
