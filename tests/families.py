@@ -156,6 +156,49 @@ h = "sum(i, p[i]^2/2 + k*q[i]^2/2 - F*cos(w*t)*q[i]) + sum(i, c*(q[i+1] - q[i])^
 [observables]
 P = "sum(i, p[i])"
 """
+PULLED = """
+title = "Beads that repel each other, each pulled by an input of its own, all by another one"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+[inputs]
+u = { index = "i", default = "0.5" }
+g = { default = 1 }
+f = { default = 0 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2 + k[i]*q[i]^2/2 - g*q[i]) + sum(i, u[i+1]*q[i]*q[i+1])
+    + sum(i, j, i < j, u[i]*u[j]/(1 + (q[i] - q[j])^2))'''
+[forces]
+p = "f*p[i] - u[i]^2*p[i]"
+[observables]
+P = "sum(i, p[i])"
+"""
+
+
+def write_pulled(n):
+    """So many of these beads."""
+    terms = [f"p_{k}^2/2 + k_{k}*q_{k}^2/2 - g*q_{k}" for k in range(n)]
+    terms += [f"u_{k + 1}*q_{k}*q_{k + 1}" for k in range(n - 1)]
+    terms += [f"u_{i}*u_{j}/(1 + (q_{i} - q_{j})^2)" for i, j in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "P"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"k_{k} = {{ default = 1 }}" for k in range(n)),
+            "[inputs]",
+            *(f'u_{k} = {{ default = "0.5" }}' for k in range(n)),
+            "g = { default = 1 }\nf = { default = 0 }",
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"\n[forces]',
+            *(f'p_{k} = "f*p_{k} - u_{k}^2*p_{k}"' for k in range(n)),
+        ]
+    )
 
 
 def write_driven(n):

@@ -8,7 +8,8 @@ loop over i. Comes in: nothing. Goes out: the records that `coadjoint.derive` ma
 State in memory: component after component, and within each the member fastest. With the members'
 components ``S1, S2, S3`` a state has shape ``(3*N, *batch)`` and its rows are ``S1`` of members 0
 to N-1, then ``S2`` of them, then ``S3``: ``state.reshape(3, N, *batch)[c, i]`` is component c of
-member i. Indexed parameters lie likewise, after all shared ones; a row is called ``S1[0]``. In
+member i. Indexed parameters and inputs lie likewise, after all shared ones; a row is called
+``S1[0]``. In
 formulas members are counted from 0, as in the names of rows.
 Read next: `coadjoint.derive.indexed`.
 """
@@ -87,10 +88,10 @@ class Family:
         states: Symbols of the components of member i, in the order of the state.
         shifts: Which neighbours the rates read, in order and without 0, e.g. ``(-1, 1)``.
         neighbours: By component symbol and shift, the symbol of that component of member i+shift,
-            of states and of indexed parameters; for every shift that any rate or total reads.
+            of states, indexed parameters and inputs; for every shift that any rate or total reads.
         shared: Symbols of the parameters that all members share.
         indexed: Symbols of the parameters of member i.
-        partners: By component symbol, that of member j of a pair; of states and indexed parameters.
+        partners: By component symbol, that of member j of a pair; of all that it has.
         rates: Rate of each component of member i, in these symbols and those of pair sums.
         pair_sums: Sums over the partners j of member i, which the rates name; empty without pairs.
         ends: Of an open chain, the rates of the members that lack a neighbour, by member: 0, 1, ...
@@ -101,6 +102,9 @@ class Family:
         turned: The state of member i with its attitudes moved back to rotations; empty without any.
         residuals: What is zero where they are rotations.
         time: The symbol of the time, which all members share, if the equations name it.
+        shared_inputs: Symbols of the inputs that all members share.
+        indexed_inputs: Symbols of the inputs of member i, which have neighbours and partners as
+            parameters have.
     """
 
     index: Index
@@ -118,3 +122,10 @@ class Family:
     turned: tuple[Tree, ...] = ()
     residuals: tuple[Tree, ...] = ()
     time: tuple[Symbol, ...] = ()
+    shared_inputs: tuple[Symbol, ...] = ()
+    indexed_inputs: tuple[Symbol, ...] = ()
+
+    @property
+    def own(self) -> tuple[Symbol, ...]:
+        """Symbols of all that member i has: its state, parameters and inputs."""
+        return (*self.states, *self.indexed, *self.indexed_inputs)

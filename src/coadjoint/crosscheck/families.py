@@ -74,6 +74,16 @@ BATCHES: Final = ((), (9,))
 
 
 @dataclass(frozen=True)
+class _Point:
+    """Where a function is evaluated."""
+
+    state: Array
+    parameters: Array
+    inputs: Array
+    time: float
+
+
+@dataclass(frozen=True)
 class _Window:
     """A system that is written out, in the names of its rows as kernels have them.
 
@@ -85,6 +95,7 @@ class _Window:
         totals: Names of the rows of the function ``observables``.
         residuals: Those of the function ``constraint_residual``.
         time: Of the time, if there is one.
+        inputs: Names of the rows of the inputs.
     """
 
     reference: Reference
@@ -94,12 +105,14 @@ class _Window:
     totals: tuple[str, ...]
     residuals: tuple[str, ...]
     time: tuple[str, ...]
+    inputs: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        quantities = (*spec.variables, *spec.parameters, *spec.inputs)
+        known = {each.name: each for each in quantities}
         turning = {each.name: each for each in spec.turning}
         size = len(spec.state) // len(declared.variables)
 
@@ -113,12 +126,15 @@ class _Window:
                 for name in same
             )
 
-        shared = tuple(c for each in declared.shared for c in known[each].components)
+        def alike(names: Sequence[str]) -> tuple[str, ...]:
+            return tuple(c for each in names for c in known[each].components)
+
         return cls(
             reference=Reference(equations),
             size=size,
             state=rows(declared.variables),
-            parameters=(*shared, *rows(declared.indexed)),
+            parameters=(*alike(declared.shared), *rows(declared.indexed)),
+            inputs=(*alike(declared.shared_inputs), *rows(declared.indexed_inputs)),
             totals=tuple(each.name for each in family.totals),
             residuals=tuple(
                 name
@@ -133,14 +149,13 @@ class _Window:
             time=tuple(map(str, family.time)),
         )
 
-    def evaluate(
-        self, function: str, state: Array, parameters: Array, time: float | None
-    ) -> list[Any]:
+    def evaluate(self, function: str, point: _Point) -> list[Any]:
         """A function at a point to 50 digits, its rows in the order of a family."""
-        own = self.reference.state
-        inputs = dict(zip(self.parameters, parameters.tolist(), strict=True))
+        own, state = self.reference.state, point.state
+        inputs = dict(zip(self.parameters, point.parameters.tolist(), strict=True))
         inputs |= zip(self.state, state.tolist(), strict=False)
-        inputs |= dict.fromkeys(self.time, time)
+        inputs |= zip(self.inputs, point.inputs.tolist(), strict=True)
+        inputs |= dict.fromkeys(self.time, point.time)
         if function == "jacobian_vector":
             place = {name: n for n, name in enumerate(own, 1)}
             vector = state[len(self.state) :].tolist()
@@ -198,7 +213,7 @@ def crosscheck_family(
         for name, each in loops.items():
             _check_window(window, name, each, system, chosen, figures[name])
         sized = system.resize({system.index.name: window.size})
-        names = (window.state, window.parameters, (), window.time)
+        names = (window.state, window.parameters, window.inputs, window.time)
         made = {"c", "numpy"} & set(chosen)
         if made:
             check_series(window.reference, names, sized, sorted(made))
@@ -262,19 +277,18 @@ def _check_window(
     largest = _threshold(loops, window.size)
     states = list(_points(source, rows, POINTS))
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
-    times = source.normal(size=POINTS).tolist() if window.time else [None] * POINTS
-    exact = {
-        n: value
-        for n in range(POINTS)
-        for value in _evaluate(window, name, states[n], parameters[n], times[n])
-    }
+    times = source.normal(size=POINTS).tolist()
+    inputs = source.normal(size=(POINTS, len(window.inputs)))
+    points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
+    exact = {n: v for n, each in enumerate(points) for v in _evaluate(window, name, each)}
     if not exact:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
         k = ulp = 0.0
         for n, expected in exact.items():
-            given = states[n], parameters[n]
-            computed = sized.evaluate(name, *given, time=times[n], target=target)
+            given = states[n], parameters[n], inputs[n] if window.inputs else None
+            now = times[n] if window.time else None
+            computed = sized.evaluate(name, *given, time=now, target=target)
             for row, (value, bounded) in enumerate(zip(np.ravel(computed), expected, strict=True)):
                 error = error_in_envelopes(float(value), bounded)
                 k, ulp = max(k, error), max(ulp, error_in_ulp(float(value), bounded))
@@ -290,12 +304,10 @@ def _check_window(
         figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(exact))
 
 
-def _evaluate(
-    window: _Window, name: str, state: Array, parameters: Array, time: float | None
-) -> list[list[Any]]:
+def _evaluate(window: _Window, name: str, point: _Point) -> list[list[Any]]:
     """The exact rows at a point; none where the equations have no value."""
     try:
-        return [window.evaluate(name, state, parameters, time)]
+        return [window.evaluate(name, point)]
     except OutsideDomain:
         return []
 
@@ -317,10 +329,12 @@ def _compare_targets(
             for shape in dict.fromkeys(((), batch)):
                 parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
                 time = source.normal(size=shape) if sized.TIME else None
-                one = sized.evaluate(name, state, parameters, time=time, target="numpy")
+                inputs = source.normal(size=(sized.INPUTS.size, *shape)) if sized.INPUTS else None
+                given = (state, parameters, inputs)
+                one = sized.evaluate(name, *given, time=time, target="numpy")
                 one = np.reshape(one, (-1, *batch))  # the energy has no rows
                 for target in equal:
-                    other = sized.evaluate(name, state, parameters, time=time, target=target)
+                    other = sized.evaluate(name, *given, time=time, target=target)
                     exact = target in BUILDS[target].exact and not calls
                     different = _find_differences(one, np.reshape(other, one.shape), exact=exact)
                     if different.any():

@@ -59,7 +59,7 @@ def _name_at(family: Family, end: int) -> Names:
 
 def _name_around(family: Family, own: str, near: Mapping[int, str]) -> Names:
     """How symbols are written; those of the member itself come first."""
-    names = {s: member(symbol(s.name), own) for s in (*family.states, *family.indexed)}
+    names = {s: member(symbol(s.name), own) for s in family.own}
     names |= {s: member(symbol(of.name), near[n]) for (of, n), s in family.neighbours.items()}
     names |= {s: member(symbol(of.name), _other(family)) for of, s in family.partners.items()}
     return names | {each.symbol: member(symbol(each.symbol.name), own) for each in family.pair_sums}

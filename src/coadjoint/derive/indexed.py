@@ -76,6 +76,8 @@ def derive_family(equations: Equations) -> Family:
         turned=reader.turned,
         residuals=reader.residuals,
         time=reader.time,
+        shared_inputs=reader.shared_inputs,
+        indexed_inputs=reader.indexed_inputs,
     )
 
 
@@ -110,7 +112,7 @@ class _Reader:
             index=declared.index.name,
             count=count,
             periodic=declared.index.periodic,
-            names=frozenset((*moving, *declared.indexed)),
+            names=frozenset((*moving, *declared.indexed, *declared.indexed_inputs)),
         )
 
     @cached_property
@@ -126,21 +128,36 @@ class _Reader:
         return () if time is None else (sympy.Symbol(time.name),)
 
     @cached_property
+    def shared_inputs(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the inputs that all members share."""
+        known = {each.name: each for each in self.equations.spec.inputs}
+        names = self.declared.shared_inputs
+        return tuple(sympy.Symbol(c) for name in names for c in known[name].components)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Generic names of all that a member has."""
+        declared = self.declared
+        return (*declared.variables, *declared.indexed, *declared.indexed_inputs)
+
+    @cached_property
+    def known(self) -> dict[str, Any]:
+        """All quantities of the window by name."""
+        spec = self.equations.spec
+        return {each.name: each for each in (*spec.variables, *spec.parameters, *spec.inputs)}
+
+    @cached_property
     def components(self) -> dict[str, tuple[str, ...]]:
         """The components of what a member has, of its generic name, by component."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
         generic = dict[str, tuple[str, ...]]()
-        for name in (*self.declared.variables, *self.declared.indexed):
-            each = known[member_name(name, 0)]
+        for name in self.names:
+            each = self.known[member_name(name, 0)]
             generic[name] = component_names(name, each.shape, each.form)
         return generic
 
     def names_of(self, names: Sequence[str], member: int) -> list[str]:
         """Components of quantities of one member of the window."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        return [c for name in names for c in known[member_name(name, member)].components]
+        return [c for name in names for c in self.known[member_name(name, member)].components]
 
     def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
         """Symbols of the components of generic quantities."""
@@ -157,12 +174,21 @@ class _Reader:
         return self.generic(self.declared.indexed)
 
     @cached_property
+    def indexed_inputs(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the inputs of member i."""
+        return self.generic(self.declared.indexed_inputs)
+
+    @cached_property
+    def own(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of all that member i has."""
+        return self.generic(self.names)
+
+    @cached_property
     def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
         """Symbols of member j of a pair."""
         if not self.declared.pairs:
             return {}
-        own = (*self.states, *self.indexed)
-        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
+        return {each: sympy.Symbol(f"{each.name}[j]") for each in self.own}
 
     @cached_property
     def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
@@ -172,21 +198,19 @@ class _Reader:
             (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
             for shift in range(-most, most + 1)
             if shift
-            for each in (*self.states, *self.indexed)
+            for each in self.own
         }
 
     # -- expressions of a member --------------------------------------------------------
 
     def rename(self, member: int, before: int, after: int) -> dict[sympy.Symbol, sympy.Symbol]:
         """The generic symbols by those of the window, seen from one of its members."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict[sympy.Symbol, sympy.Symbol]()
+        own, new = self.own, dict[sympy.Symbol, sympy.Symbol]()
         for shift in range(-before, after + 1):
             at = self.members.place(member + shift)
             if at is not None:
                 seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
-                old = map(sympy.Symbol, self.names_of(names, at))
+                old = map(sympy.Symbol, self.names_of(self.names, at))
                 new |= zip(old, seen, strict=True)
         return new
 
@@ -213,7 +237,8 @@ class _Reader:
 
     def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
         """An expression in generic symbols."""
-        left = value.free_symbols - {*new, *map(sympy.Symbol, self.shared), *self.time}
+        alike = {*map(sympy.Symbol, self.shared), *self.shared_inputs, *self.time}
+        left = value.free_symbols - {*new, *alike}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
             raise DerivationError(
@@ -357,11 +382,9 @@ class _Reader:
 
     def _see_pair(self, value: Element) -> sympy.Expr:
         """An element of the first two members in the symbols of a member and its partner."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
-        others = [self.partners[each] for each in own]
-        new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
+        new = dict(zip(map(sympy.Symbol, self.names_of(self.names, 0)), self.own, strict=True))
+        others = [self.partners[each] for each in self.own]
+        new |= zip(map(sympy.Symbol, self.names_of(self.names, 1)), others, strict=True)
         return self.see([self.write(value)], new)[0]
 
     @cached_property

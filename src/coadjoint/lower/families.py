@@ -52,7 +52,7 @@ class Read:
 
     Attributes:
         name: In texts.
-        array: ``state``, ``parameters`` or ``time``.
+        array: ``state``, ``parameters``, ``inputs`` or ``time``.
         rows: Rows before it that do not depend on N.
         blocks: Rows before it for each member.
         shift: How far behind member i the member is that it belongs to; None if all members share
@@ -199,6 +199,11 @@ class _Lowering:
             symbol: Read(name="", array="parameters", rows=len(family.shared), blocks=n)
             for n, symbol in enumerate(family.indexed)
         }
+        before = len(family.shared_inputs)
+        rows |= {
+            symbol: Read(name="", array="inputs", rows=before, blocks=n)
+            for n, symbol in enumerate(family.indexed_inputs)
+        }
         #: Symbols of member i, and not of its partner or of all.
         self._own = frozenset((*rows, *family.neighbours.values()))
         naming = _Names()
@@ -208,6 +213,9 @@ class _Lowering:
         for n, symbol in enumerate(family.shared):
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="parameters", rows=n, blocks=0, shift=None)
+        for n, symbol in enumerate(family.shared_inputs):
+            name = naming.find(symbol.name)
+            self._reads[symbol] = Read(name=name, array="inputs", rows=n, blocks=0, shift=None)
         for symbol in family.time:
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="time", rows=0, blocks=0, shift=None)
@@ -321,7 +329,8 @@ class _Lowering:
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
             of_pair: Whether both members of a pair have them: those of member j follow.
         """
-        own, shared = self.family.states, (*self.family.shared, *self.family.time)
+        family = self.family
+        own, shared = family.states, (*family.shared, *family.shared_inputs, *family.time)
         is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
         ways = (leave,) if is_long else (factor_whole, factor, leave)
         forms = ([form(tree, own, shared) for tree in trees] for form in ways)

@@ -61,11 +61,14 @@ class _Symbols:
         count = len(family.states)
         if read.array == "time":
             return family.time[read.rows]
-        if read.array == "parameters":
+        if read.array != "state":
+            inputs = family.shared_inputs, family.indexed_inputs
+            found = {"inputs": inputs, "parameters": (family.shared, family.indexed)}
+            shared, indexed = found[read.array]
             if read.shift is None:
-                return family.shared[read.rows]
-            assert read.rows == len(family.shared), read
-            return self._place(family.indexed[read.blocks], read)
+                return shared[read.rows]
+            assert read.rows == len(shared), read
+            return self._place(indexed[read.blocks], read)
         assert read.rows == 0, read
         below, row = divmod(read.blocks, count)
         symbol = self._place(family.states[row], read)

@@ -93,7 +93,8 @@ def family_context(
     declared = spec.family
     assert declared is not None, spec.name
     first, *others = spec.routes
-    known: dict[str, Any] = {each.name: each for each in (*spec.variables, *spec.parameters)}
+    quantities = (*spec.variables, *spec.parameters, *spec.inputs)
+    known: dict[str, Any] = {each.name: each for each in quantities}
     kept = {each.name: each for each in equations.exact.emitted}
 
     def name_generic(name: str) -> Quantity:
@@ -118,6 +119,8 @@ def family_context(
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),
+        shared_inputs=tuple(_quantity(known[name]) for name in declared.shared_inputs),
+        indexed_inputs=tuple(map(name_generic, declared.indexed_inputs)),
         defaults={
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
@@ -159,7 +162,7 @@ def family_lines(family: Family) -> tuple[str, ...]:
     >>> family_lines(ring)
     ('dq[i]/dt = q[i-1] - q[i]',)
     """
-    i, own = family.index.name, (*family.states, *family.indexed)
+    i, own = family.index.name, family.own
 
     def name(member: str) -> dict[Any, Any]:
         """Symbols of a member and those next to it, as they are shown."""

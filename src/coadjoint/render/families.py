@@ -157,6 +157,8 @@ def _c_place(read: Read, is_periodic: bool) -> str:
         return "_run.time + _run.n * _run.timed"
     if read.array == "state":
         return f"_run.state + ({row}) * _run.stride + _run.n"
+    if read.array == "inputs":
+        return f"_run.inputs + ({row}) * _run.inputs_row + _run.n * _run.driven"
     return f"_run.parameters + ({row}) * _run.row + _run.n * _run.own"
 
 
@@ -166,6 +168,9 @@ def _c_step(read: Read) -> str:
         return "_run.timed"
     if read.array == "state":
         return "_batch" if read.of_partner else ""
+    if read.array == "inputs":
+        alike = read.shift is None or read.of_partner
+        return "_run.driven" if alike else "!_batch || _run.driven"
     return "_shared" if read.shift is None or read.of_partner else "_indexed"
 
 
@@ -272,6 +277,8 @@ class FamilyContext:
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
         time: The time, if the functions take it.
+        shared_inputs: Quantities of the inputs that members share, in order.
+        indexed_inputs: Quantities of the inputs of a member, in order.
     """
 
     name: str
@@ -291,13 +298,16 @@ class FamilyContext:
     supported: int = 0
     unit_of_time: str = "s"
     time: tuple[Quantity, ...] = ()
+    shared_inputs: tuple[Quantity, ...] = ()
+    indexed_inputs: tuple[Quantity, ...] = ()
 
     @property
     def counts(self) -> Counts:
         """How many rows of parameters there are, and of what drives members."""
-        groups = (self.shared, self.indexed)
-        shared, indexed = (sum(len(each.components) for each in group) for group in groups)
-        return Counts(shared=shared, indexed=indexed, time=len(self.time))
+        groups = (self.shared, self.indexed, self.shared_inputs, self.indexed_inputs)
+        rows = (sum(len(each.components) for each in group) for group in groups)
+        shared, indexed, inputs_before, inputs = rows
+        return Counts(shared, indexed, inputs_before, inputs, time=len(self.time))
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
@@ -331,6 +341,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     programs = [part.program for loops in context.loops.values() for part in loops.parts]
     shared, table = rows_of(context.shared), dop853()
     indexed = rows_of(context.indexed, len(shared))
+    shared_inputs = rows_of(context.shared_inputs)
+    has_inputs = context.shared_inputs or context.indexed_inputs
+    inputs, time = ", inputs" if has_inputs else "", ", time" if context.time else ""
     values: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
@@ -339,8 +352,11 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "lanes": LANES,
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
-        "inputs": "",
-        "time": ", time" if context.time else "",
+        "inputs": inputs,
+        "time": time,
+        "driving": inputs + time,
+        "input_rows": shared_inputs,
+        "indexed_input_rows": rows_of(context.indexed_inputs, len(shared_inputs)),
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
         "state": rows_of(context.state),
@@ -357,7 +373,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "SHARED": list(map(declaration, context.shared)),
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
-            **({"TIME": list(map(declaration, context.time))} if context.time else {}),
+            **_declare_driving(context),
         },
         "shapes": [
             f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
@@ -369,7 +385,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
-            *(["time=TIME"] * bool(context.time)),
+            *(f"{name.lower()}={name}" for name in _declare_driving(context)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
@@ -384,6 +400,16 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     if "solver" in names:
         values["solver"] = arrange_family(context.loops["rhs"], context.counts)
     return render_templates((template,), {name: values[name] for name in names})[template]
+
+
+def _declare_driving(context: FamilyContext) -> dict[str, list[Call]]:
+    """What drives the members, by its names in the package, as far as there is any."""
+    groups = {
+        "SHARED_INPUTS": context.shared_inputs,
+        "INDEXED_INPUTS": context.indexed_inputs,
+        "TIME": context.time,
+    }
+    return {name: list(map(declaration, group)) for name, group in groups.items() if group}
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

@@ -41,7 +41,7 @@ class FamilySystem(System):
 
     Rows of the state are the first component of members 0 to N-1, then the second one of them, and
     so on: ``state.reshape(components, N, *batch)``. A row is called ``S1[0]``. Parameters are those
-    that all members share, then those of each member in the same order.
+    that all members share, then those of each member in the same order, and so are inputs.
 
     Attributes:
         index: The index, with N as its size.
@@ -67,13 +67,17 @@ class FamilySystem(System):
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
         repeating: Sequence[str] = (),
         time: Quantities | None = None,
+        shared_inputs: Quantities | None = None,
+        indexed_inputs: Quantities | None = None,
     ) -> None:
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
+        alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
+        self._inputs = {"shared_inputs": alike, "indexed_inputs": own}
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
         size = self.index.size or self.small
-        check_memory(name, self.index, size * (state.size + indexed.size))
+        check_memory(name, self.index, size * (state.size + indexed.size + own.size))
         self.members = size
         super().__init__(
             name,
@@ -89,6 +93,9 @@ class FamilySystem(System):
             },
             elementary,
             identity,
+            inputs=Quantities(
+                *alike.values(), *(self._repeat(each, size) for each in own.values())
+            ),
             time=time,
             unit_of_time=unit_of_time,
         )
@@ -155,6 +162,7 @@ class FamilySystem(System):
             defaults=self._defaults,
             repeating=self._repeating,
             time=self.TIME,
+            **self._inputs,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
@@ -185,7 +193,9 @@ class FamilySystem(System):
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
         told = f"{members}; state {state}; parameters {parameters or 'none'}"
-        return f"<System {self.name}: {told}{'; time ' * bool(self.TIME)}{', '.join(self.TIME)}>"
+        driving = {"inputs": self.INPUTS, "time": self.TIME}
+        told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
+        return f"<System {self.name}: {told}>"
 
 
 def lacks_size(system: System) -> bool:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
+    from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.steps import Lanes, Method
@@ -115,10 +116,13 @@ class FamilyTwin(StepwiseStepper):
         system: Whose steps they are.
         choice: A generated method.
         target: Who computes the rates.
+        inputs: Inputs as a function of time; None where they are lines, as in every ensemble.
     """
 
-    def __init__(self, system: FamilySystem, choice: Choice, target: str) -> None:
-        super().__init__(system, choice, target, None)
+    def __init__(
+        self, system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+    ) -> None:
+        super().__init__(system, choice, target, inputs)
         self._members = system.fixed["sizes"]
         #: Rows of inputs, and the time below them.
         self.driving_rows = system.INPUTS.size + system.TIME.size
@@ -396,8 +400,19 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
     return ""
 
 
-def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """Who makes the steps of a family: C, or its twin where that is asked for or C fails."""
+def find_stepper(
+    system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+) -> FamilyTwin:
+    """Who makes the steps of a family: C, or its twin where that is asked for or C fails.
+
+    Args:
+        system: The family.
+        choice: A generated method.
+        target: Who computes the rates.
+        inputs: A function of Python, which only the twin can call.
+    """
+    if inputs is not None:
+        return FamilyTwin(system, choice, target, inputs)
     if (choice, target) not in system.steppers:
         system.steppers[choice, target] = _find_stepper(system, choice, target)
     return system.steppers[choice, target]

@@ -29,6 +29,7 @@ TABLES = (
     "poisson",
     "variables",
     "parameters",
+    "inputs",
     "time",
     "definitions",
     "lagrangian",
@@ -58,10 +59,10 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     for name, part in file.variables.items():
         if part.index is None:
             yield f"the variable {name} has no index"
-    if file.time is not None:
+    for driving in ("time", "inputs"):
         for table in ("lagrangian", "lax"):
-            if getattr(file, table) is not None:
-                yield f"there are tables [time] and [{table}]"
+            if getattr(file, driving) and getattr(file, table) is not None:
+                yield f"there are tables [{driving}] and [{table}]"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:

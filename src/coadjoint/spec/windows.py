@@ -94,13 +94,15 @@ def read_windows(
         if file.lax is not None
     )
     state = {each.name for each in small.state}
-    parameters = {name: part.index is not None for name, part in file.parameters.items()}
-    shapes = {each.name: each.shape for each in (*small.variables, *small.parameters)}
+    quantities = (*small.variables, *small.parameters, *small.inputs)
+    shapes = {each.name: each.shape for each in quantities}
     family = Windows(
         index=index,
         variables=tuple(name for name in file.variables if member_name(name, 0) in state),
-        shared=tuple(name for name, own in parameters.items() if not own),
-        indexed=tuple(name for name, own in parameters.items() if own),
+        shared=_select_names(file.parameters, indexed=False),
+        indexed=_select_names(file.parameters, indexed=True),
+        shared_inputs=_select_names(file.inputs, indexed=False),
+        indexed_inputs=_select_names(file.inputs, indexed=True),
         defaults={
             name: _read_defaults(source, (table, name), part, shapes[member_name(name, 0)])
             for table, name, part in _list_quantities(file)
@@ -116,6 +118,11 @@ def read_windows(
         lax=lax,
     )
     return _with_family(source, bare, read, family)
+
+
+def _select_names(parts: Mapping[str, Any], *, indexed: bool) -> tuple[str, ...]:
+    """The names of quantities that each member has, or that all share."""
+    return tuple(name for name, part in parts.items() if (part.index is not None) == indexed)
 
 
 def _write_all(
