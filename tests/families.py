@@ -201,6 +201,53 @@ def write_pulled(n):
     )
 
 
+SHAKEN = """
+title = "Spins in a row, shaken each by itself and all together"
+routes = ["lie-poisson"]
+[index]
+i = { size = 5 }
+[algebra]
+name = "so(3)"
+[variables]
+S = { role = "momentum", index = "i", default = [0, "0.6", "0.8"] }
+[parameters]
+J = { default = 1 }
+s = { index = "i", default = "0.5" }
+z = { default = "0.2" }
+[noise]
+dZ = "z*sum(i, S[i, 3])"
+dX = "s[i]*S[i, 1]"
+dY = "s[i]*S[i, 2]"
+[hamiltonian]
+h = "J*sum(i, dot(S[i], S[i+1]))"
+[observables]
+M = "sum(i, S[i, 3])"
+[claims]
+casimirs = ["dot(S[i], S[i])"]
+"""
+
+
+def write_shaken(n):
+    """So many of these spins, with the processes in the order of a family."""
+    spins = range(n)
+    bonds = " + ".join(f"dot(S_{k}, S_{k + 1})" for k in range(n - 1))
+    parts = ", ".join(['"so(3)"'] * n)
+    total = " + ".join(f"S_{k}[3]" for k in spins)
+    return "\n".join(
+        [
+            f'title = "S"\nroutes = ["lie-poisson"]\n[algebra]\ndirect_sum = [{parts}]',
+            "[variables]",
+            *(f'S_{k} = {{ role = "momentum", block = "rotation_{k + 1}" }}' for k in spins),
+            "[parameters]\nJ = { default = 1 }",
+            *(f's_{k} = {{ default = "0.5" }}' for k in spins),
+            f'z = {{ default = "0.2" }}\n[noise]\ndZ = "z*({total})"',
+            *(f'dX_{k} = "s_{k}*S_{k}[1]"' for k in spins),
+            *(f'dY_{k} = "s_{k}*S_{k}[2]"' for k in spins),
+            f'[hamiltonian]\nh = "J*({bonds})"',
+        ]
+    )
+
+
 def write_driven(n):
     """So many of these oscillators."""
     terms = [f"p_{k}^2/2 + k*q_{k}^2/2 - F*cos(w*t)*q_{k}" for k in range(n)]

@@ -17,7 +17,7 @@ Read next: `coadjoint.derive.indexed`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -105,6 +105,11 @@ class Family:
         shared_inputs: Symbols of the inputs that all members share.
         indexed_inputs: Symbols of the inputs of member i, which have neighbours and partners as
             parameters have.
+        noise: What increments of Wiener processes do to each component of member i, linear in these
+            increments; empty without noise.
+        noise_ends: The same of members that lack a neighbour, as in ``ends``.
+        shared_noise: Symbols of the increments of processes that move all members.
+        indexed_noise: Symbols of those of member i; its neighbours have others.
     """
 
     index: Index
@@ -124,6 +129,10 @@ class Family:
     time: tuple[Symbol, ...] = ()
     shared_inputs: tuple[Symbol, ...] = ()
     indexed_inputs: tuple[Symbol, ...] = ()
+    noise: tuple[Tree, ...] = ()
+    noise_ends: Mapping[int, tuple[Tree, ...]] = field(default_factory=dict)
+    shared_noise: tuple[Symbol, ...] = ()
+    indexed_noise: tuple[Symbol, ...] = ()
 
     @property
     def own(self) -> tuple[Symbol, ...]:

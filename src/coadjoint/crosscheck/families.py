@@ -19,6 +19,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import localcontext
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -30,9 +31,11 @@ from coadjoint.crosscheck.family_sums import MEMBERS, check_blocks
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
+    CONTEXT,
     OutsideDomain,
     error_in_envelopes,
     error_in_ulp,
+    exact,
     oracle,
 )
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
@@ -69,6 +72,8 @@ METHODS: Final = (
     Choice(name="dop853", order=8),
     Choice(name="taylor", order=ORDER),
 )
+#: The same for motions with noise, besides.
+NOISY: Final = tuple(Choice(name=name, order=2, is_noisy=True) for name in ("heun", "midpoint"))
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
 
@@ -96,6 +101,8 @@ class _Window:
         residuals: Those of the function ``constraint_residual``.
         time: Of the time, if there is one.
         inputs: Names of the rows of the inputs.
+        noise: Names of the Wiener processes; those that no member has in a window are missing in
+            its equations.
     """
 
     reference: Reference
@@ -106,6 +113,7 @@ class _Window:
     residuals: tuple[str, ...]
     time: tuple[str, ...]
     inputs: tuple[str, ...]
+    noise: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
@@ -147,6 +155,10 @@ class _Window:
                 for name in same
             ),
             time=tuple(map(str, family.time)),
+            noise=(
+                *declared.shared_noise,
+                *(member_name(each, k) for each in declared.indexed_noise for k in range(size)),
+            ),
         )
 
     def evaluate(self, function: str, point: _Point) -> list[Any]:
@@ -160,6 +172,8 @@ class _Window:
             place = {name: n for n, name in enumerate(own, 1)}
             vector = state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
+        if function == "noise_vector":
+            return self._move_by_noise(inputs, state[len(self.state) :].tolist())
         values = oracle(self.reference, function, inputs)
         if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
@@ -173,6 +187,18 @@ class _Window:
             by_name = dict(zip((name for name, _ in rows), values, strict=True))
             values = [by_name[name] for name in self.residuals]
         return values
+
+    def _move_by_noise(self, inputs: Mapping[str, float], numbers: Sequence[float]) -> list[Any]:
+        """What each process does to the state, times a number, one after the other."""
+        given = dict(zip(self.noise, numbers, strict=True))
+        processes = [each.name for each in self.reference.equations.spec.noise]
+        values = iter(oracle(self.reference, "noise", inputs))
+        moved = dict[str, Any]()
+        with localcontext(CONTEXT):
+            for name in self.reference.state:
+                parts = [next(values) * exact(given[process]) for process in processes]
+                moved[name] = sum(parts[1:], parts[0])
+        return [moved[name] for name in self.state]
 
 
 def crosscheck_family(
@@ -227,7 +253,7 @@ def crosscheck_family(
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if BUILDS[each].needs_compiler):
-        for choice in METHODS:
+        for choice in (*METHODS, *(NOISY if family.noise else ())):
             compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):
@@ -273,19 +299,19 @@ def _check_window(
     """A function of all targets for the members of a window, against 50 digits."""
     sized = system.resize({system.index.name: window.size})
     source = np.random.default_rng(window.size)
-    rows = loops.blocks * window.size
+    rows = loops.blocks * window.size + loops.rows
     largest = _threshold(loops, window.size)
     states = list(_points(source, rows, POINTS))
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
     times = source.normal(size=POINTS).tolist()
     inputs = source.normal(size=(POINTS, len(window.inputs)))
     points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
-    exact = {n: v for n, each in enumerate(points) for v in _evaluate(window, name, each)}
-    if not exact:
+    known = {n: v for n, each in enumerate(points) for v in _evaluate(window, name, each)}
+    if not known:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
         k = ulp = 0.0
-        for n, expected in exact.items():
+        for n, expected in known.items():
             given = states[n], parameters[n], inputs[n] if window.inputs else None
             now = times[n] if window.time else None
             computed = sized.evaluate(name, *given, time=now, target=target)
@@ -301,7 +327,7 @@ def _check_window(
                         4,
                     )
         old = figures.get(target, Figures(0.0, 0.0, 0))
-        figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(exact))
+        figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(known))
 
 
 def _evaluate(window: _Window, name: str, point: _Point) -> list[list[Any]]:

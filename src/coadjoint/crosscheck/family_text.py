@@ -178,7 +178,7 @@ def _check_place(read: Read, found: _Text, is_periodic: bool, file: str, name: s
         step = "_shared" if alike else "_indexed"
     elif read.array == "inputs":
         step = "_run.driven" if alike else "(!_batch || _run.driven)"
-    elif read.of_partner:
+    elif read.array == "state" and alike:
         step = "_batch"
     if file == "kernel.c" and found.steps.get(read.name, "") != step:
         raise failure(f"{file}: the lanes of {name} read {read.name} in other steps", name)

@@ -26,6 +26,7 @@ import sympy
 from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
 from coadjoint.derive.written import Written, choose
 from coadjoint.errors import DerivationError
@@ -57,7 +58,9 @@ def derive_family(equations: Equations) -> Family:
     rates = reader.rates_of(reader.middle)
     totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
-    every = (*rates, *(rate for end in reader.ends.values() for rate in end))
+    noise, noise_ends = reader.noise_of(reader.middle), reader.noise_ends
+    ends = (*reader.ends.values(), *noise_ends.values())
+    every = (*rates, *noise, *(rate for end in ends for rate in end))
     named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
     return Family(
@@ -78,6 +81,10 @@ def derive_family(equations: Equations) -> Family:
         time=reader.time,
         shared_inputs=reader.shared_inputs,
         indexed_inputs=reader.indexed_inputs,
+        noise=noise,
+        noise_ends=noise_ends,
+        shared_noise=tuple(map(sympy.Symbol, declared.shared_noise)),
+        indexed_noise=reader.increments,
     )
 
 
@@ -184,6 +191,11 @@ class _Reader:
         return self.generic(self.names)
 
     @cached_property
+    def increments(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the increments of the Wiener processes of member i."""
+        return tuple(map(sympy.Symbol, self.declared.indexed_noise))
+
+    @cached_property
     def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
         """Symbols of member j of a pair."""
         if not self.declared.pairs:
@@ -198,7 +210,7 @@ class _Reader:
             (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
             for shift in range(-most, most + 1)
             if shift
-            for each in self.own
+            for each in (*self.own, *self.increments)
         }
 
     # -- expressions of a member --------------------------------------------------------
@@ -212,6 +224,9 @@ class _Reader:
                 seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
                 old = map(sympy.Symbol, self.names_of(self.names, at))
                 new |= zip(old, seen, strict=True)
+                for name, each in zip(self.declared.indexed_noise, self.increments, strict=True):
+                    process = sympy.Symbol(member_name(name, at))
+                    new[process] = self.neighbours[each, shift] if shift else each
         return new
 
     def see(
@@ -237,7 +252,8 @@ class _Reader:
 
     def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
         """An expression in generic symbols."""
-        alike = {*map(sympy.Symbol, self.shared), *self.shared_inputs, *self.time}
+        shared = (*self.shared, *self.declared.shared_noise)
+        alike = {*map(sympy.Symbol, shared), *self.shared_inputs, *self.time}
         left = value.free_symbols - {*new, *alike}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
@@ -283,6 +299,36 @@ class _Reader:
         reach, count = self.declared.reach, self.members.count
         starts = {k: self.rates_of(k) for k in range(reach)}
         return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+
+    # -- noise --------------------------------------------------------------------------
+
+    def noise_of(self, member: int) -> tuple[sympy.Expr, ...]:
+        """What increments of Wiener processes do to a member; nothing without noise."""
+        fields = noise_fields(self.equations.setting)
+        if not fields:
+            return ()
+        reach, state = self.declared.reach, self.equations.variables
+        zero = self.equations.setting.field.is_zero
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
+        moved = (
+            sympy.Add(
+                *(
+                    self.write(each.field[row]) * sympy.Symbol(each.name)
+                    for each in fields
+                    if not zero(each.field[row])
+                )
+            )
+            for row in rows
+        )
+        return self.see(moved, self.rename(member, reach, reach))
+
+    @cached_property
+    def noise_ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
+        """The same of the members of an open chain that lack neighbours."""
+        if not self.equations.spec.noise:
+            return {}
+        count = self.members.count
+        return {end: self.noise_of(end if end >= 0 else count + end) for end in self.ends}
 
     # -- attitudes ----------------------------------------------------------------------
 

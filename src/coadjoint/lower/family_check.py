@@ -55,10 +55,16 @@ class _Symbols:
             )
         }
 
-    def find(self, read: Read) -> Symbol:
+    def find(self, read: Read, function: str) -> Symbol:
         """The symbol that stands in the row of a name."""
         family = self._family
         count = len(family.states)
+        if function == "noise_vector" and read.blocks >= count:
+            if read.shift is None:
+                assert (read.array, read.blocks) == ("state", count), read
+                return family.shared_noise[read.rows]
+            assert (read.array, read.rows) == ("state", len(family.shared_noise)), read
+            return self._place(family.indexed_noise[read.blocks - count], read)
         if read.array == "time":
             return family.time[read.rows]
         if read.array != "state":
@@ -126,6 +132,11 @@ def _list_parts(
     if loops.name in ("constraint_residual", "projection"):
         yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
         return
+    if loops.name == "noise_vector":
+        yield loops.member, family.noise, ()
+        yield from ((part, family.noise_ends[member], ()) for member, part in loops.ends)
+        assert len(loops.ends) == len(family.noise_ends), loops.name
+        return
     sums = [each.symbol for each in family.pair_sums]
     terms = [each.term for each in family.pair_sums]
     places = [(loops.member, family.rates)]
@@ -151,7 +162,7 @@ def _check_part(
     name: str, part: Part, trees: Sequence[Tree], symbols: _Symbols, sums: Sequence[Symbol]
 ) -> None:
     """A part computes trees."""
-    values = {read.name: symbols.find(read) for read in part.reads}
+    values = {read.name: symbols.find(read, name) for read in part.reads}
     for each in part.program.state[len(part.reads) :]:
         values[each] = sums[int(each.removeprefix(SUM))]
     computed = run(part.program, values, _number, _call)

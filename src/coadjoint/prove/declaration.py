@@ -121,6 +121,8 @@ def family_context(
         indexed=tuple(map(name_generic, declared.indexed)),
         shared_inputs=tuple(_quantity(known[name]) for name in declared.shared_inputs),
         indexed_inputs=tuple(map(name_generic, declared.indexed_inputs)),
+        shared_noise=tuple(map(_name_process, declared.shared_noise)),
+        indexed_noise=tuple(map(_name_process, declared.indexed_noise)),
         defaults={
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
@@ -138,6 +140,11 @@ def family_context(
         unit_of_time=spec.units.time,
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
     )
+
+
+def _name_process(name: str) -> Quantity:
+    """A Wiener process as the generated package declares it."""
+    return Quantity(name=name, shape=(), unit="", components=(name,))
 
 
 def family_lines(family: Family) -> tuple[str, ...]:
@@ -162,7 +169,7 @@ def family_lines(family: Family) -> tuple[str, ...]:
     >>> family_lines(ring)
     ('dq[i]/dt = q[i-1] - q[i]',)
     """
-    i, own = family.index.name, family.own
+    i, own = family.index.name, (*family.own, *family.indexed_noise)
 
     def name(member: str) -> dict[Any, Any]:
         """Symbols of a member and those next to it, as they are shown."""
@@ -187,6 +194,10 @@ def family_lines(family: Family) -> tuple[str, ...]:
             f"d{each}[{member}]/dt = {rate.xreplace(shown)}".replace("**", "^")
             for each, rate in zip(family.states, rates, strict=True)
         ]
+    if family.noise:
+        lines.append("with noise, in the sense of Stratonovich:")
+    for each, moved in zip(family.states, family.noise, strict=False):
+        lines.append(f"d{each}[{i}] = ... + {moved.xreplace(generic)}".replace("**", "^"))
     return tuple(lines)
 
 

@@ -15,6 +15,7 @@ from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
+from coadjoint.lower.normals import SWEEPS
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.render.environment import names_read, render_templates
@@ -31,6 +32,7 @@ from coadjoint.render.kernels import (
     tuple_text,
     wrap,
 )
+from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
 
 
@@ -98,6 +100,7 @@ class FamilyFunction:
         costs: Its operations, as lines.
         shape: Of its result where that does not depend on N.
         blocks: Rows of its first argument for each member.
+        rows: Further rows of it, which all members share.
         reach: Members at both ends of which each is computed alone.
         ends_before: Members at the beginning that have rates of their own.
         ends_after: Such members at the end.
@@ -111,6 +114,7 @@ class FamilyFunction:
     costs: list[str]
     shape: str
     blocks: int
+    rows: int
     reach: int
     ends_before: int
     ends_after: int
@@ -133,7 +137,7 @@ def _row(read: Read, member: str) -> str:
 def _python_place(read: Read, is_periodic: bool) -> str:
     """Where Python and NumPy read."""
     if read.shift is None:
-        return f"{read.array}[{read.rows}]"
+        return f"{read.array}[{_row(read, '')}]"
     member = "j" if read.of_partner else "i"
     if read.shift:
         sign = "+" if read.shift > 0 else "-"
@@ -144,7 +148,7 @@ def _python_place(read: Read, is_periodic: bool) -> str:
 
 def _c_place(read: Read, is_periodic: bool) -> str:
     """Where C reads, the address of the first lane."""
-    row = str(read.rows)
+    row = _row(read, "").replace("size", "_run.size")
     if read.shift is not None:
         member = "_j" if read.of_partner else "_run.i"
         if read.shift:
@@ -167,7 +171,7 @@ def _c_step(read: Read) -> str:
     if read.array == "time":
         return "_run.timed"
     if read.array == "state":
-        return "_batch" if read.of_partner else ""
+        return "_batch" if read.of_partner or read.shift is None else ""
     if read.array == "inputs":
         alike = read.shift is None or read.of_partner
         return "_run.driven" if alike else "!_batch || _run.driven"
@@ -202,6 +206,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         costs=costs,
         shape="" if loops.shape is None else str(loops.shape),
         blocks=loops.blocks,
+        rows=loops.rows,
         reach=max(edges),
         ends_before=len(loops.first_ends),
         ends_after=len(loops.last_ends),
@@ -279,6 +284,8 @@ class FamilyContext:
         time: The time, if the functions take it.
         shared_inputs: Quantities of the inputs that members share, in order.
         indexed_inputs: Quantities of the inputs of a member, in order.
+        shared_noise: Wiener processes that move all members, in order.
+        indexed_noise: Those of each member, in order.
     """
 
     name: str
@@ -300,6 +307,8 @@ class FamilyContext:
     time: tuple[Quantity, ...] = ()
     shared_inputs: tuple[Quantity, ...] = ()
     indexed_inputs: tuple[Quantity, ...] = ()
+    shared_noise: tuple[Quantity, ...] = ()
+    indexed_noise: tuple[Quantity, ...] = ()
 
     @property
     def counts(self) -> Counts:
@@ -355,6 +364,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "inputs": inputs,
         "time": time,
         "driving": inputs + time,
+        "noise": bool(context.shared_noise or context.indexed_noise),
         "input_rows": shared_inputs,
         "indexed_input_rows": rows_of(context.indexed_inputs, len(shared_inputs)),
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
@@ -399,15 +409,19 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     names = names_read(template)
     if "solver" in names:
         values["solver"] = arrange_family(context.loops["rhs"], context.counts)
+    if "normals" in names:
+        values |= {"normals": list_normals(), "sweeps": SWEEPS}
     return render_templates((template,), {name: values[name] for name in names})[template]
 
 
-def _declare_driving(context: FamilyContext) -> dict[str, list[Call]]:
+def _declare_driving(context: FamilyContext) -> dict[str, list[list[str]]]:
     """What drives the members, by its names in the package, as far as there is any."""
     groups = {
         "SHARED_INPUTS": context.shared_inputs,
         "INDEXED_INPUTS": context.indexed_inputs,
         "TIME": context.time,
+        "SHARED_NOISE": context.shared_noise,
+        "INDEXED_NOISE": context.indexed_noise,
     }
     return {name: list(map(declaration, group)) for name, group in groups.items() if group}
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
 from coadjoint.families import Index
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
 
@@ -46,6 +47,7 @@ class FamilySystem(System):
     Attributes:
         index: The index, with N as its size.
         small: The fewest members for which the equations hold.
+        NOISE: The Wiener processes, those that move all members before those of each.
         steppers: Who makes its steps, by method and target, as far as that was asked for.
     """
 
@@ -69,16 +71,24 @@ class FamilySystem(System):
         time: Quantities | None = None,
         shared_inputs: Quantities | None = None,
         indexed_inputs: Quantities | None = None,
+        shared_noise: Quantities | None = None,
+        indexed_noise: Quantities | None = None,
     ) -> None:
         self.index, self.small = index
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
-        self._inputs = {"shared_inputs": alike, "indexed_inputs": own}
+        noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
+        self._driving = {"shared_inputs": alike, "indexed_inputs": own}
+        self._driving |= {"shared_noise": noise, "indexed_noise": own_noise}
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
         size = self.index.size or self.small
-        check_memory(name, self.index, size * (state.size + indexed.size + own.size))
+        counted = state.size + indexed.size + own.size + own_noise.size
+        check_memory(name, self.index, size * counted)
         self.members = size
+        self.NOISE = Quantities(
+            *noise.values(), *(self._repeat(each, size) for each in own_noise.values())
+        )
         super().__init__(
             name,
             file,
@@ -99,6 +109,12 @@ class FamilySystem(System):
             time=time,
             unit_of_time=unit_of_time,
         )
+
+    def rows(self, function: str) -> Quantities:
+        """What the rows of the first argument of a function are."""
+        if KERNEL_FUNCTIONS[function].below == "noise":
+            return Quantities(*self.STATE.values(), *self.NOISE.values())
+        return super().rows(function)
 
     @property
     def size(self) -> int:
@@ -162,7 +178,7 @@ class FamilySystem(System):
             defaults=self._defaults,
             repeating=self._repeating,
             time=self.TIME,
-            **self._inputs,
+            **self._driving,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
@@ -193,7 +209,7 @@ class FamilySystem(System):
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
         told = f"{members}; state {state}; parameters {parameters or 'none'}"
-        driving = {"inputs": self.INPUTS, "time": self.TIME}
+        driving = {"inputs": self.INPUTS, "noise": self.NOISE, "time": self.TIME}
         told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
         return f"<System {self.name}: {told}>"
 

@@ -34,6 +34,7 @@ TABLES = (
     "definitions",
     "lagrangian",
     "hamiltonian",
+    "noise",
     "forces",
     "dissipation",
     "lax",
@@ -59,7 +60,7 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     for name, part in file.variables.items():
         if part.index is None:
             yield f"the variable {name} has no index"
-    for driving in ("time", "inputs"):
+    for driving in ("time", "inputs", "noise"):
         for table in ("lagrangian", "lax"):
             if getattr(file, driving) and getattr(file, table) is not None:
                 yield f"there are tables [{driving}] and [{table}]"
@@ -73,7 +74,8 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     forces = read(file.forces)
     others = [tree for each in (file.poisson, file.lax, file.claims) for tree in read(each)]
     friction = read(file.dissipation)
-    others += [*forces, *friction]
+    noise = read(file.noise)
+    others += [*forces, *friction, *noise]
     for tree in (*energy, *observables, *others):
         yield from _examine(tree, members)
     for tree in (*energy, *observables):
@@ -83,6 +85,8 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
         yield "Rayleigh's function is not linear in sums over members"
     if any(isinstance(n, Sum) and len(n.indices) > 1 for t in friction for n in walk(t)):
         yield "Rayleigh's function has a sum over pairs"
+    for tree in noise:
+        yield from _examine_noise(tree, members)
     if any(map(has_sum, forces)):
         yield "a force has a sum over members"
     for tree in observables:
@@ -94,6 +98,16 @@ def _list_misfits(file: Any, members: Members) -> Iterator[str]:
     pairs = any(len(each.indices) > 1 for each in sums)
     if pairs and any(reach(tree) != (0, 0) for tree in friction):
         yield "Rayleigh's function couples neighbours, and there are sums over pairs"
+
+
+def _examine_noise(tree: Node, members: Members) -> Iterator[str]:
+    """Why a Hamiltonian of noise is neither that of each member nor a sum over members."""
+    if has_sum(tree) and (find_free(tree, members) or not _is_total(tree)):
+        yield "a Hamiltonian of noise is not linear in sums over members"
+    if any(isinstance(node, Sum) and len(node.indices) > 1 for node in walk(tree)):
+        yield "a Hamiltonian of noise has a sum over pairs"
+    if not has_sum(tree) and not find_free(tree, members):
+        yield "a Hamiltonian of noise names no members"
 
 
 def _examine_lagrangian(file: Any, trees: list[Node], members: Members) -> Iterator[str]:

@@ -72,6 +72,8 @@ def read_windows(
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
     first = _first_window(index, reach, width, pairs=pairs)
+    if file.noise:  # what a process of one member does to a sum names so many members
+        first = max(first, reach + 2 * width)
     least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
@@ -94,6 +96,7 @@ def read_windows(
         if file.lax is not None
     )
     state = {each.name for each in small.state}
+    processes = {each.name for each in small.noise}
     quantities = (*small.variables, *small.parameters, *small.inputs)
     shapes = {each.name: each.shape for each in quantities}
     family = Windows(
@@ -103,6 +106,8 @@ def read_windows(
         indexed=_select_names(file.parameters, indexed=True),
         shared_inputs=_select_names(file.inputs, indexed=False),
         indexed_inputs=_select_names(file.inputs, indexed=True),
+        shared_noise=tuple(name for name in file.noise if name in processes),
+        indexed_noise=tuple(name for name in file.noise if name not in processes),
         defaults={
             name: _read_defaults(source, (table, name), part, shapes[member_name(name, 0)])
             for table, name, part in _list_quantities(file)
@@ -367,6 +372,7 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
 
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
+    energy += list_texts(file.noise)
     acting = [text for each in (file.forces, file.dissipation) for text in list_texts(each)]
     reach = span([*energy, *list_texts(file.lagrangian), *acting])
     width = span(
