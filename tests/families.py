@@ -354,6 +354,98 @@ def write_held(n):
     return write_masses(n, terms, [f"c_{k}" for k in range(n)])
 
 
+PULLED = """
+title = "Beads that repel each other, each pulled by an input of its own, all by another one"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+[inputs]
+u = { index = "i", default = "0.5" }
+g = { default = 1 }
+f = { default = 0 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2 + k[i]*q[i]^2/2 - g*q[i]) + sum(i, u[i+1]*q[i]*q[i+1])
+    + sum(i, j, i < j, u[i]*u[j]/(1 + (q[i] - q[j])^2))'''
+[forces]
+p = "f*p[i] - u[i]^2*p[i]"
+[observables]
+P = "sum(i, p[i])"
+"""
+
+
+def write_pulled(n):
+    """So many of these beads."""
+    terms = [f"p_{k}^2/2 + k_{k}*q_{k}^2/2 - g*q_{k}" for k in range(n)]
+    terms += [f"u_{k + 1}*q_{k}*q_{k + 1}" for k in range(n - 1)]
+    terms += [f"u_{i}*u_{j}/(1 + (q_{i} - q_{j})^2)" for i, j in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "P"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"k_{k} = {{ default = 1 }}" for k in range(n)),
+            "[inputs]",
+            *(f'u_{k} = {{ default = "0.5" }}' for k in range(n)),
+            "g = { default = 1 }\nf = { default = 0 }",
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"\n[forces]',
+            *(f'p_{k} = "f*p_{k} - u_{k}^2*p_{k}"' for k in range(n)),
+        ]
+    )
+
+
+SHAKEN = """
+title = "Spins in a row, shaken each by itself and all together"
+routes = ["lie-poisson"]
+[index]
+i = { size = 5 }
+[algebra]
+name = "so(3)"
+[variables]
+S = { role = "momentum", index = "i", default = [0, "0.6", "0.8"] }
+[parameters]
+J = { default = 1 }
+s = { index = "i", default = "0.5" }
+z = { default = "0.2" }
+[noise]
+dZ = "z*sum(i, S[i, 3])"
+dX = "s[i]*S[i, 1]"
+dY = "s[i]*S[i, 2]"
+[hamiltonian]
+h = "J*sum(i, dot(S[i], S[i+1]))"
+[observables]
+M = "sum(i, S[i, 3])"
+[claims]
+casimirs = ["dot(S[i], S[i])"]
+"""
+
+
+def write_shaken(n):
+    """So many of these spins, with the processes in the order of a family."""
+    spins = range(n)
+    bonds = " + ".join(f"dot(S_{k}, S_{k + 1})" for k in range(n - 1))
+    parts = ", ".join(['"so(3)"'] * n)
+    total = " + ".join(f"S_{k}[3]" for k in spins)
+    return "\n".join(
+        [
+            f'title = "S"\nroutes = ["lie-poisson"]\n[algebra]\ndirect_sum = [{parts}]',
+            "[variables]",
+            *(f'S_{k} = {{ role = "momentum", block = "rotation_{k + 1}" }}' for k in spins),
+            "[parameters]\nJ = { default = 1 }",
+            *(f's_{k} = {{ default = "0.5" }}' for k in spins),
+            f'z = {{ default = "0.2" }}\n[noise]\ndZ = "z*({total})"',
+            *(f'dX_{k} = "s_{k}*S_{k}[1]"' for k in spins),
+            *(f'dY_{k} = "s_{k}*S_{k}[2]"' for k in spins),
+            f'[hamiltonian]\nh = "J*({bonds})"',
+        ]
+    )
+
+
 def write_driven(n):
     """So many of these oscillators."""
     terms = [f"p_{k}^2/2 + k*q_{k}^2/2 - F*cos(w*t)*q_{k}" for k in range(n)]

@@ -106,8 +106,8 @@ class KernelFunction:
         turning: The summary of a system whose attitudes are moved back, where it is another one.
         turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
-        below: What follows the rows of the state in its first argument: what is reconstructed, or
-            a vector with a row for each of them.
+        below: What follows the rows of the state in its first argument: what is reconstructed,
+            a vector with a row for each of them, or one with a row for each Wiener process.
         looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
@@ -119,7 +119,7 @@ class KernelFunction:
     turning: str = ""
     turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: Literal["", "reconstructed", "vector"] = ""
+    below: Literal["", "reconstructed", "vector", "noise"] = ""
     looped: Literal["", "only", "never"] = ""
 
 

@@ -8,7 +8,8 @@ loop over i. Comes in: nothing. Goes out: the records that `coadjoint.derive` ma
 State in memory: component after component, and within each the member fastest. With the members'
 components ``S1, S2, S3`` a state has shape ``(3*N, *batch)`` and its rows are ``S1`` of members 0
 to N-1, then ``S2`` of them, then ``S3``: ``state.reshape(3, N, *batch)[c, i]`` is component c of
-member i. Indexed parameters lie likewise, after all shared ones; a row is called ``S1[0]``. In
+member i. Indexed parameters and inputs lie likewise, after all shared ones; a row is called
+``S1[0]``. In
 formulas members are counted from 0, as in the names of rows.
 Read next: `coadjoint.derive.indexed`.
 """
@@ -94,10 +95,10 @@ class Family:
         states: Symbols of the components of member i, in the order of the state.
         shifts: Which neighbours the rates read, in order and without 0, e.g. ``(-1, 1)``.
         neighbours: By component symbol and shift, the symbol of that component of member i+shift,
-            of states and of indexed parameters; for every shift that any rate or total reads.
+            of states, indexed parameters and inputs; for every shift that any rate or total reads.
         shared: Symbols of the parameters that all members share.
         indexed: Symbols of the parameters of member i.
-        partners: By component symbol, that of member j of a pair; of states and indexed parameters.
+        partners: By component symbol, that of member j of a pair; of all that it has.
         rates: Rate of each component of member i, in these symbols and those of pair sums.
         pair_sums: Sums over the partners j of member i, which the rates name; empty without pairs.
         ends: Of an open chain, the rates of the members that lack a neighbour, or that stand alone
@@ -113,6 +114,14 @@ class Family:
             component of a member at an end, as far as totals name it.
         wraps: Whether places of neighbours go on round: in a ring, and in a chain of which members
             at one end push those at the other.
+        shared_inputs: Symbols of the inputs that all members share.
+        indexed_inputs: Symbols of the inputs of member i, which have neighbours and partners as
+            parameters have.
+        noise: What increments of Wiener processes do to each component of member i, linear in these
+            increments; empty without noise.
+        noise_ends: The same of members that lack a neighbour, as in ``ends``.
+        shared_noise: Symbols of the increments of processes that move all members.
+        indexed_noise: Symbols of those of member i; its neighbours have others.
     """
 
     index: Index
@@ -132,3 +141,14 @@ class Family:
     time: tuple[Symbol, ...] = ()
     singles: Mapping[tuple[Symbol, int], Symbol] = field(default_factory=dict)
     wraps: bool = False
+    shared_inputs: tuple[Symbol, ...] = ()
+    indexed_inputs: tuple[Symbol, ...] = ()
+    noise: tuple[Tree, ...] = ()
+    noise_ends: Mapping[int, tuple[Tree, ...]] = field(default_factory=dict)
+    shared_noise: tuple[Symbol, ...] = ()
+    indexed_noise: tuple[Symbol, ...] = ()
+
+    @property
+    def own(self) -> tuple[Symbol, ...]:
+        """Symbols of all that member i has: its state, parameters and inputs."""
+        return (*self.states, *self.indexed, *self.indexed_inputs)

@@ -113,6 +113,16 @@ those of the commutator of the two; the isospectral midpoint calls both.""",
 ``dx = rhs dt + noise o dW``, in the sense of Stratonovich.""",
     ),
     KernelFunction(
+        name="noise_vector",
+        summary="What the noise does to the state, for a number of each Wiener process",
+        shape="(n, *batch)",
+        doc="""Only systems of equal members with [noise] have it, in the place of `noise`: this is
+``noise`` times a vector. Its first argument is the state with these numbers below it, those of
+processes that move all members, then those of members, process by process.""",
+        below="noise",
+        looped="only",
+    ),
+    KernelFunction(
         name="constraint_residual",
         summary="Left minus right sides of the constraints",
         turning="How far attitudes are from rotations, products and determinants minus 1",

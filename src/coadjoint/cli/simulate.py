@@ -169,7 +169,9 @@ def command(
     start = find_start(loaded, state, given, driven)
     run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
-    if "noise" in loaded.functions:
+    from coadjoint.solve.noisy import has_noise  # which needs NumPy
+
+    if has_noise(loaded):
         spaces = max(1, options["samples"] - 1)
         steps = spaces * -(-LEAST_STEPS // spaces)
         options |= {"seed": seed, "step": options["step"] or time / steps}

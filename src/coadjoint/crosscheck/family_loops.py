@@ -28,7 +28,7 @@ class _Members:
     """The arrays of so many members, in an arithmetic.
 
     Attributes:
-        arrays: Rows of ``state``, ``parameters`` and ``time``.
+        arrays: Rows of ``state``, ``parameters``, ``inputs`` and ``time``.
         size: N.
         number: How the arithmetic makes numbers.
         call: How it calls functions.
@@ -91,7 +91,7 @@ def evaluate_loops(
 
     Args:
         loops: The function.
-        arrays: Rows of ``state``, ``parameters`` and ``time``; doubles, taken as exact.
+        arrays: Rows of ``state``, ``parameters``, ``inputs`` and ``time``; doubles, taken as exact.
         size: N.
     """
     with localcontext(CONTEXT):

@@ -29,8 +29,15 @@ from coadjoint.render.targets.python.reader import read_expression as read_pytho
 #: Numbers of members for which places are compared.
 _SIZES = (1, 2, 3, 5)
 _C_PLACE = re.compile(
-    r"_run\.(state|parameters) \+ \((.*)\) \* _run\.(stride|row) \+ _run\.n( \* _run\.own)?"
+    r"_run\.(state|parameters|inputs) \+ \((.*)\) \* _run\.(stride|row|inputs_row)"
+    r" \+ _run\.n( \* _run\.(?:own|driven))?"
 )
+#: How rows of each array, and trajectories in a row, are apart.
+_C_STRIDES = {
+    "state": ("stride", None),
+    "parameters": ("row", " * _run.own"),
+    "inputs": ("inputs_row", " * _run.driven"),
+}
 _C_TIME = "_run.time + _run.n * _run.timed"
 
 #: Lines of a tile that add terms to sums, and say where sums are.
@@ -170,10 +177,13 @@ def _check_place(read: Read, found: _Text, wraps: bool, file: str, name: str) ->
             if array != read.array or _evaluate(text, {"i": i, "j": j, "size": size}) != row:
                 raise failure(f"{file}: {name} reads {read.name} at {array}[{text}]", name)
     step = "_run.timed" if read.array == "time" else ""
+    alike = read.shift is None or read.of_partner
     if read.array == "parameters":
-        alike = read.shift is None and read.single is None
-        step = "_shared" if alike or read.of_partner else "_indexed"
-    elif read.of_partner:
+        alike = (read.shift is None and read.single is None) or read.of_partner
+        step = "_shared" if alike else "_indexed"
+    elif read.array == "inputs":
+        step = "_run.driven" if alike else "(!_batch || _run.driven)"
+    elif read.array == "state" and alike:
         step = "_batch"
     if file == "kernel.c" and found.steps.get(read.name, "") != step:
         raise failure(f"{file}: the lanes of {name} read {read.name} in other steps", name)
@@ -253,15 +263,14 @@ def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
             read.places[place[1]] = ("time", "0")
             return
         where = _C_PLACE.fullmatch(place[2])
-        if (
-            not where
-            or (where[1] == "state") != (where[3] == "stride")
-            or ((where[1] == "parameters") != bool(where[4]))
-        ):
+        if not where or (where[3], where[4]) != _C_STRIDES[where[1]]:
             raise failure(f"kernel.c: {part}: {line!r} is no place", name)
         row = where[2].replace("_run.", "").replace("_j", "j")
         read.places[place[1]] = (where[1], row)
-    elif step := re.fullmatch(r"const double (\w+) = ([\w.]+) \? _at_\1\[_l\] : _one_\1", line):
+    elif step := re.fullmatch(
+        r"const double (\w+) = ([\w.]+|\(!_batch \|\| _run\.driven\)) \? _at_\1\[_l\] : _one_\1",
+        line,
+    ):
         read.steps[step[1]] = step[2]
     elif value := re.fullmatch(r"const double (\w+) = _at_(\w+)\[_l\]", line):
         if value[1] != value[2]:

@@ -160,6 +160,10 @@ def noise(equations: Equations) -> Rows | None:
     return _rows(equations, entries, (len(state), len(fields)))
 
 
+def noise_vector(equations: Equations) -> None:
+    """Of equal members alone, whose noise is read off from `noise` of a few of them."""
+
+
 def constraint_residual(equations: Equations) -> Rows | None:
     """What vanishes on the constraints, then what vanishes where attitudes are rotations."""
     residuals = [*equations.exact.residuals, *turning_residuals(equations.setting)]

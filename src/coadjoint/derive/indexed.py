@@ -27,6 +27,7 @@ from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
 from coadjoint.derive.mechanics.configuration import mechanics
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
 from coadjoint.derive.symmetries import evaluate_map, share_of
 from coadjoint.derive.window import Window
@@ -62,7 +63,9 @@ def derive_family(equations: Equations) -> Family:
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
     rates = reader.rates_of(reader.middle)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
-    every = (*rates, *(rate for end in reader.ends.values() for rate in end))
+    noise, noise_ends = reader.noise_of(reader.middle), reader.noise_ends
+    ends = (*reader.ends.values(), *noise_ends.values())
+    every = (*rates, *noise, *(rate for end in ends for rate in end))
     named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
     return Family(
@@ -81,6 +84,12 @@ def derive_family(equations: Equations) -> Family:
         turned=reader.turned,
         residuals=reader.residuals,
         time=reader.time,
+        shared_inputs=reader.shared_inputs,
+        indexed_inputs=reader.indexed_inputs,
+        noise=noise,
+        noise_ends=noise_ends,
+        shared_noise=tuple(map(sympy.Symbol, declared.shared_noise)),
+        indexed_noise=reader.increments,
         singles=reader.singles_of(totals),
         wraps=declared.index.periodic or reader.is_closed,
     )
@@ -120,7 +129,9 @@ class _Reader(Window):
 
     def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
         """An expression in generic symbols."""
-        left = value.free_symbols - {*new, *map(sympy.Symbol, self.shared), *self.time}
+        shared = (*self.shared, *self.declared.shared_noise)
+        alike = {*map(sympy.Symbol, shared), *self.shared_inputs, *self.time}
+        left = value.free_symbols - {*new, *alike}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
             raise DerivationError(
@@ -167,6 +178,36 @@ class _Reader(Window):
             if min([0, *shifts]) < -end <= 0 or max([0, *shifts]) >= -end > 0:
                 return True
         return False
+
+    # -- noise --------------------------------------------------------------------------
+
+    def noise_of(self, member: int) -> tuple[sympy.Expr, ...]:
+        """What increments of Wiener processes do to a member; nothing without noise."""
+        fields = noise_fields(self.equations.setting)
+        if not fields:
+            return ()
+        reach, state = self.declared.reach, self.equations.variables
+        zero = self.equations.setting.field.is_zero
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
+        moved = (
+            sympy.Add(
+                *(
+                    self.write(each.field[row]) * sympy.Symbol(each.name)
+                    for each in fields
+                    if not zero(each.field[row])
+                )
+            )
+            for row in rows
+        )
+        return self.see(moved, self.rename(member, reach, reach))
+
+    @cached_property
+    def noise_ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
+        """The same of the members of an open chain that lack neighbours."""
+        if not self.equations.spec.noise:
+            return {}
+        count = self.members.count
+        return {end: self.noise_of(end if end >= 0 else count + end) for end in self.ends}
 
     # -- attitudes ----------------------------------------------------------------------
 
@@ -345,11 +386,9 @@ class _Reader(Window):
 
     def _see_pair(self, value: Element) -> sympy.Expr:
         """An element of the first two members in the symbols of a member and its partner."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
-        others = [self.partners[each] for each in own]
-        new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
+        new = dict(zip(map(sympy.Symbol, self.names_of(self.names, 0)), self.own, strict=True))
+        others = [self.partners[each] for each in self.own]
+        new |= zip(map(sympy.Symbol, self.names_of(self.names, 1)), others, strict=True)
         return self.see([self.write(value)], new)[0]
 
     def pair_energy(self, i: int, j: int) -> Element:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import sympy
 
@@ -47,7 +48,7 @@ class Window:
             index=declared.index.name,
             count=count,
             periodic=declared.index.periodic,
-            names=frozenset((*moving, *declared.indexed)),
+            names=frozenset((*moving, *declared.indexed, *declared.indexed_inputs)),
             first=declared.index.first,
             number=declared.index.count,
             from_zero=True,
@@ -66,21 +67,35 @@ class Window:
         return () if time is None else (sympy.Symbol(time.name),)
 
     @cached_property
+    def shared_inputs(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the inputs that all members share."""
+        names = self.declared.shared_inputs
+        return tuple(sympy.Symbol(c) for name in names for c in self.known[name].components)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Generic names of all that a member has."""
+        declared = self.declared
+        return (*declared.variables, *declared.indexed, *declared.indexed_inputs)
+
+    @cached_property
+    def known(self) -> dict[str, Any]:
+        """All quantities of the window by name."""
+        spec = self.equations.spec
+        return {each.name: each for each in (*spec.variables, *spec.parameters, *spec.inputs)}
+
+    @cached_property
     def components(self) -> dict[str, tuple[str, ...]]:
         """The components of what a member has, of its generic name, by component."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
         generic = dict[str, tuple[str, ...]]()
-        for name in (*self.declared.variables, *self.declared.indexed):
-            each = known[member_name(name, 0)]
+        for name in self.names:
+            each = self.known[member_name(name, 0)]
             generic[name] = component_names(name, each.shape, each.form)
         return generic
 
     def names_of(self, names: Sequence[str], member: int) -> list[str]:
         """Components of quantities of one member of the window."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        return [c for name in names for c in known[member_name(name, member)].components]
+        return [c for name in names for c in self.known[member_name(name, member)].components]
 
     def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
         """Symbols of the components of generic quantities."""
@@ -97,12 +112,26 @@ class Window:
         return self.generic(self.declared.indexed)
 
     @cached_property
+    def indexed_inputs(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the inputs of member i."""
+        return self.generic(self.declared.indexed_inputs)
+
+    @cached_property
+    def own(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of all that member i has."""
+        return self.generic(self.names)
+
+    @cached_property
+    def increments(self) -> tuple[sympy.Symbol, ...]:
+        """Symbols of the increments of the Wiener processes of member i."""
+        return tuple(map(sympy.Symbol, self.declared.indexed_noise))
+
+    @cached_property
     def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
         """Symbols of member j of a pair."""
         if not self.declared.pairs:
             return {}
-        own = (*self.states, *self.indexed)
-        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
+        return {each: sympy.Symbol(f"{each.name}[j]") for each in self.own}
 
     @cached_property
     def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
@@ -112,7 +141,7 @@ class Window:
             (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
             for shift in range(-most, most + 1)
             if shift
-            for each in (*self.states, *self.indexed)
+            for each in (*self.own, *self.increments)
         }
 
     @cached_property
@@ -122,7 +151,7 @@ class Window:
         return {
             (each, number): sympy.Symbol(f"{each.name}[{'N' * (number < 0)}{number}]")
             for number in range(-most, most)
-            for each in (*self.states, *self.indexed)
+            for each in self.own
         }
 
     def rename(
@@ -136,15 +165,17 @@ class Window:
             after: How many are seen after it.
             around: Whether those before the first are the last ones, and the other way round.
         """
-        names = (*self.declared.variables, *self.declared.indexed)
-        own, count = (*self.states, *self.indexed), self.members.count
+        own, count = self.own, self.members.count
         new = dict[sympy.Symbol, sympy.Symbol]()
         for shift in range(-before, after + 1):
             at = (member + shift) % count if around else self.members.place(member + shift)
             if at is not None:
                 seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
-                old = map(sympy.Symbol, self.names_of(names, at))
+                old = map(sympy.Symbol, self.names_of(self.names, at))
                 new |= zip(old, seen, strict=True)
+                for name, each in zip(self.declared.indexed_noise, self.increments, strict=True):
+                    process = sympy.Symbol(member_name(name, at))
+                    new[process] = self.neighbours[each, shift] if shift else each
         return new
 
     @property

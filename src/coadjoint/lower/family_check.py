@@ -55,17 +55,26 @@ class _Symbols:
             )
         }
 
-    def find(self, read: Read) -> Symbol:
+    def find(self, read: Read, function: str) -> Symbol:
         """The symbol that stands in the row of a name."""
         family = self._family
         count = len(family.states)
+        if function == "noise_vector" and read.blocks >= count:
+            if read.shift is None:
+                assert (read.array, read.blocks) == ("state", count), read
+                return family.shared_noise[read.rows]
+            assert (read.array, read.rows) == ("state", len(family.shared_noise)), read
+            return self._place(family.indexed_noise[read.blocks - count], read)
         if read.array == "time":
             return family.time[read.rows]
-        if read.array == "parameters":
+        if read.array != "state":
+            inputs = family.shared_inputs, family.indexed_inputs
+            found = {"inputs": inputs, "parameters": (family.shared, family.indexed)}
+            shared, indexed = found[read.array]
             if read.shift is None and read.single is None:
-                return family.shared[read.rows]
-            assert read.rows == len(family.shared), read
-            return self._place(family.indexed[read.blocks], read)
+                return shared[read.rows]
+            assert read.rows == len(shared), read
+            return self._place(indexed[read.blocks], read)
         assert read.rows == 0, read
         below, row = divmod(read.blocks, count)
         symbol = self._place(family.states[row], read)
@@ -125,6 +134,11 @@ def _list_parts(
     if loops.name in ("constraint_residual", "projection"):
         yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
         return
+    if loops.name == "noise_vector":
+        yield loops.member, family.noise, ()
+        yield from ((part, family.noise_ends[member], ()) for member, part in loops.ends)
+        assert len(loops.ends) == len(family.noise_ends), loops.name
+        return
     sums = [each.symbol for each in family.pair_sums]
     terms = [each.term for each in family.pair_sums]
     places = [(loops.member, family.rates)]
@@ -150,7 +164,7 @@ def _check_part(
     name: str, part: Part, trees: Sequence[Tree], symbols: _Symbols, sums: Sequence[Symbol]
 ) -> None:
     """A part computes trees."""
-    values = {read.name: symbols.find(read) for read in part.reads}
+    values = {read.name: symbols.find(read, name) for read in part.reads}
     for each in part.program.state[len(part.reads) :]:
         values[each] = sums[int(each.removeprefix(SUM))]
     computed = run(part.program, values, _number, _call)

@@ -101,7 +101,8 @@ def family_context(
     declared = spec.family
     assert declared is not None, spec.name
     first, *others = spec.routes
-    known: dict[str, Any] = {each.name: each for each in (*spec.variables, *spec.parameters)}
+    quantities = (*spec.variables, *spec.parameters, *spec.inputs)
+    known: dict[str, Any] = {each.name: each for each in quantities}
     kept = {each.name: each for each in equations.exact.emitted}
 
     def name_generic(name: str) -> Quantity:
@@ -126,6 +127,10 @@ def family_context(
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),
+        shared_inputs=tuple(_quantity(known[name]) for name in declared.shared_inputs),
+        indexed_inputs=tuple(map(name_generic, declared.indexed_inputs)),
+        shared_noise=tuple(map(_name_process, declared.shared_noise)),
+        indexed_noise=tuple(map(_name_process, declared.indexed_noise)),
         defaults={
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
@@ -147,6 +152,11 @@ def family_context(
         spheres={} if facts is None else {facts.radii[s.rows[0]]: s.rows for s in facts.spheres},
         positions=() if facts is None else facts.positions,
     )
+
+
+def _name_process(name: str) -> Quantity:
+    """A Wiener process as the generated package declares it."""
+    return Quantity(name=name, shape=(), unit="", components=(name,))
 
 
 def family_lines(family: Family) -> tuple[str, ...]:
@@ -171,7 +181,7 @@ def family_lines(family: Family) -> tuple[str, ...]:
     >>> family_lines(ring)
     ('dq[i]/dt = q[i-1] - q[i]',)
     """
-    i, own = family.index.name, (*family.states, *family.indexed)
+    i, own = family.index.name, (*family.own, *family.indexed_noise)
 
     def name(member: str) -> dict[Any, Any]:
         """Symbols of a member and those next to it, as they are shown."""
@@ -196,6 +206,10 @@ def family_lines(family: Family) -> tuple[str, ...]:
             f"d{each}[{member}]/dt = {rate.xreplace(shown)}".replace("**", "^")
             for each, rate in zip(family.states, rates, strict=True)
         ]
+    if family.noise:
+        lines.append("with noise, in the sense of Stratonovich:")
+    for each, moved in zip(family.states, family.noise, strict=False):
+        lines.append(f"d{each}[{i}] = ... + {moved.xreplace(generic)}".replace("**", "^"))
     return tuple(lines)
 
 

@@ -237,8 +237,8 @@ def judge_family(
     if facts.has_kinks:
         reason = "its rates have kinks, at which explicit methods end their steps"
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), reason)
-    if family.time:
-        refusals |= dict.fromkeys(SPLITTINGS, "its energy depends on time")
+    if facts.is_driven:
+        refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
     return facts, judge(facts, refusals, {}, rules)
 

@@ -30,9 +30,11 @@ from coadjoint.derive import derive
 from coadjoint.exact.dense import commutator
 from coadjoint.exact.text import WHILE
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.noise import tell_kept
 from coadjoint.prove.zero import Decision, decide_zero, make_entry
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.core.totals import has_sum
 from coadjoint.spec.model import Lax, Spec, Windows
 from coadjoint.spec.spatial import describe_gram, gram_name
 
@@ -183,8 +185,9 @@ def _keep_general(family: Windows, window: Spec, certificate: Certificate) -> It
     for claim in certificate.claims:
         if claim.kind == "algebra":
             yield replace(claim, statement=_ALGEBRA)
-        elif claim.kind in ("conserved", "attitude"):
-            yield replace(claim, statement=_say_of_member(claim.statement, words))
+        elif claim.kind in ("conserved", "attitude", "noise"):
+            if not (claim.kind == "noise" and " commute" in claim.statement):  # of some members
+                yield replace(claim, statement=_say_of_member(claim.statement, words))
         elif claim.kind in ("jacobi", "equivalence") or claim.statement in casimirs:
             yield claim
         elif claim.kind == "symmetry" and not claim.statement.startswith("the flow of "):
@@ -203,7 +206,12 @@ def _list_words(family: Windows, window: Spec) -> dict[str, str]:
             words[gram_name(each)] = describe_gram(window, each).replace(
                 each.name, f"{generic}[{i}]"
             )
-    return words
+    own = family.indexed_noise
+    return words | {
+        each.name: f"{generic}[{i}]"
+        for each in window.noise
+        if (generic := each.name.rpartition("_")[0]) in own and each.name not in family.shared_noise
+    }
 
 
 def _say_of_member(statement: str, words: Mapping[str, str]) -> str:
@@ -250,14 +258,22 @@ def _generalise(method: str) -> str:
     return f"{head}{WHILE}no function of any members jumps" if jumps else head
 
 
+def _list_of_members(family: Windows) -> frozenset[str]:
+    """Statements of what each member conserves, and keeps where there is noise."""
+    casimirs = family.windows[0].casimirs if family.windows[0].noise else ()
+    own = (each for each in casimirs if each.sums is not None and not has_sum(each.sums))
+    return family.of_members.union(map(tell_kept, own))
+
+
 def _reason(family: Windows, claim: Claim) -> str:
     """Why so many numbers of members are enough."""
-    if claim.statement.startswith("the energy") and not family.windows[0].is_forced:
-        if family.windows[0].hamiltonian is None:
+    small = family.windows[0]
+    if claim.statement.startswith("the energy") and not (small.is_forced or small.noise):
+        if small.hamiltonian is None:
             return "the Lagrangian does not name the time"
         return "the bracket of each member is antisymmetric"
     is_total = claim.kind == "conserved" or _NOETHER in claim.statement
-    if not is_total or claim.statement in family.of_members:
+    if not is_total or claim.statement in _list_of_members(family):
         if family.pairs:
             if len(family.windows) > 2:
                 return "each of its terms reads members next to each other, or those and a partner"

@@ -34,6 +34,7 @@ from coadjoint.render.kernels import (
     tuple_text,
     wrap,
 )
+from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
 from coadjoint.solve.methods import spherical_midpoint
 from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
@@ -103,6 +104,7 @@ class FamilyFunction:
         costs: Its operations, as lines.
         shape: Of its result where that does not depend on N.
         blocks: Rows of its first argument for each member.
+        rows: Further rows of it, which all members share.
         reach: Members at both ends of which each is computed alone.
         ends_before: Members at the beginning that have rates of their own.
         ends_after: Such members at the end.
@@ -116,6 +118,7 @@ class FamilyFunction:
     costs: list[str]
     shape: str
     blocks: int
+    rows: int
     reach: int
     ends_before: int
     ends_after: int
@@ -138,7 +141,7 @@ def _row(read: Read, member: str) -> str:
 def _fixed_row(read: Read) -> str:
     """The row of what does not depend on i: of all members, or of one at an end."""
     if read.single is None:
-        return str(read.rows)
+        return _row(read, "")
     if read.single >= 0:
         return _row(replace(read, rows=read.rows + read.single), "")
     return f"{_row(replace(read, blocks=read.blocks + 1), '')} - {-read.single}"
@@ -171,6 +174,8 @@ def _c_place(read: Read, wraps: bool) -> str:
         return "_run.time + _run.n * _run.timed"
     if read.array == "state":
         return f"_run.state + ({row}) * _run.stride + _run.n"
+    if read.array == "inputs":
+        return f"_run.inputs + ({row}) * _run.inputs_row + _run.n * _run.driven"
     return f"_run.parameters + ({row}) * _run.row + _run.n * _run.own"
 
 
@@ -179,7 +184,10 @@ def _c_step(read: Read) -> str:
     if read.array == "time":
         return "_run.timed"
     if read.array == "state":
-        return "_batch" if read.of_partner else ""
+        return "_batch" if read.of_partner or read.shift is None else ""
+    if read.array == "inputs":
+        alike = read.shift is None or read.of_partner
+        return "_run.driven" if alike else "!_batch || _run.driven"
     if read.single is not None:
         return "_indexed"
     return "_shared" if read.shift is None or read.of_partner else "_indexed"
@@ -213,6 +221,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         costs=costs,
         shape="" if loops.shape is None else str(loops.shape),
         blocks=loops.blocks,
+        rows=loops.rows,
         reach=max(edges),
         ends_before=len(loops.first_ends),
         ends_after=len(loops.last_ends),
@@ -287,6 +296,10 @@ class FamilyContext:
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
         time: The time, if the functions take it.
+        shared_inputs: Quantities of the inputs that members share, in order.
+        indexed_inputs: Quantities of the inputs of a member, in order.
+        shared_noise: Wiener processes that move all members, in order.
+        indexed_noise: Those of each member, in order.
         methods: Methods that keep structure and apply, as they are judged.
         spheres: The components of a member that are a vector on a sphere, by the name of the square
             of its radius.
@@ -310,6 +323,10 @@ class FamilyContext:
     supported: int = 0
     unit_of_time: str = "s"
     time: tuple[Quantity, ...] = ()
+    shared_inputs: tuple[Quantity, ...] = ()
+    indexed_inputs: tuple[Quantity, ...] = ()
+    shared_noise: tuple[Quantity, ...] = ()
+    indexed_noise: tuple[Quantity, ...] = ()
     methods: tuple[JudgedMethod, ...] = ()
     spheres: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     positions: tuple[int, ...] = ()
@@ -317,9 +334,10 @@ class FamilyContext:
     @property
     def counts(self) -> Counts:
         """How many rows of parameters there are, and of what drives members."""
-        groups = (self.shared, self.indexed)
-        shared, indexed = (sum(len(each.components) for each in group) for group in groups)
-        return Counts(shared=shared, indexed=indexed, time=len(self.time))
+        groups = (self.shared, self.indexed, self.shared_inputs, self.indexed_inputs)
+        rows = (sum(len(each.components) for each in group) for group in groups)
+        shared, indexed, inputs_before, inputs = rows
+        return Counts(shared, indexed, inputs_before, inputs, time=len(self.time))
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
@@ -353,6 +371,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     programs = [part.program for loops in context.loops.values() for part in loops.parts]
     shared, table = rows_of(context.shared), dop853()
     indexed = rows_of(context.indexed, len(shared))
+    shared_inputs = rows_of(context.shared_inputs)
+    has_inputs = context.shared_inputs or context.indexed_inputs
+    inputs, time = ", inputs" if has_inputs else "", ", time" if context.time else ""
     values: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
@@ -361,8 +382,12 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "lanes": LANES,
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
-        "inputs": "",
-        "time": ", time" if context.time else "",
+        "inputs": inputs,
+        "time": time,
+        "driving": inputs + time,
+        "noise": bool(context.shared_noise or context.indexed_noise),
+        "input_rows": shared_inputs,
+        "indexed_input_rows": rows_of(context.indexed_inputs, len(shared_inputs)),
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
         "state": rows_of(context.state),
@@ -379,7 +404,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "SHARED": list(map(declaration, context.shared)),
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
-            **({"TIME": list(map(declaration, context.time))} if context.time else {}),
+            **_declare_driving(context),
         },
         "shapes": [
             f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
@@ -391,7 +416,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
-            *(["time=TIME"] * bool(context.time)),
+            *(f"{name.lower()}={name}" for name in _declare_driving(context)),
             *(["methods=METHODS"] * bool(context.methods)),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
@@ -410,7 +435,21 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     names = names_read(template)
     if "solver" in names:
         values["solver"] = arrange_family(context.loops["rhs"], context.counts)
+    if "normals" in names:
+        values |= {"normals": list_normals(), "sweeps": normals.SWEEPS}
     return render_templates((template,), {name: values[name] for name in names})[template]
+
+
+def _declare_driving(context: FamilyContext) -> dict[str, list[list[str]]]:
+    """What drives the members, by its names in the package, as far as there is any."""
+    groups = {
+        "SHARED_INPUTS": context.shared_inputs,
+        "INDEXED_INPUTS": context.indexed_inputs,
+        "TIME": context.time,
+        "SHARED_NOISE": context.shared_noise,
+        "INDEXED_NOISE": context.indexed_noise,
+    }
+    return {name: list(map(declaration, group)) for name, group in groups.items() if group}
 
 
 def describe_steps(context: FamilyContext) -> dict[str, Any]:

@@ -319,12 +319,17 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
         programs: As `select_programs` has them.
     """
     program = programs.get("noise")
-    names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
     return {
         "noise": 0 if program is None else len(program.outputs) // len(program.state),
         "sweeps": normals.SWEEPS,
-        "normals": {name: getattr(normals, name) for name in names},
+        "normals": list_normals(),
     }
+
+
+def list_normals() -> dict[str, Any]:
+    """The tables of random words and normal numbers by their names."""
+    names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
+    return {name: getattr(normals, name) for name in names}
 
 
 def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
+    from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.steps import Lanes, Method
@@ -45,7 +46,13 @@ if TYPE_CHECKING:
 #: Numbers that a first call works on, about: it ends within some hundredths of a second.
 FIRST_NUMBERS: Final = 1 << 14
 #: What the objects of methods have in addition to what all have.
-FUNCTIONS: Final = {"dop853": ("try",), "taylor": ("expand", "room")}
+FUNCTIONS: Final = {
+    "rk4": (),
+    "dop853": ("try",),
+    "taylor": ("expand", "room"),
+    "heun": (),
+    "midpoint": (),
+}
 #: What two runs have alike.
 COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
 #: And of implicit methods.
@@ -103,6 +110,8 @@ _ENSEMBLE: Final = (
     ("low", _PLACE),
     ("sweeps", _PLACE),
 )
+#: What moves members with noise.
+_NOISE: Final = (("processes", _SIZE), ("seed", ctypes.c_uint64), ("bound", _DOUBLE))
 #: Likewise, and the lines of inputs.
 _DRIVEN: Final = (("driving_rows", _SIZE),)
 _INPUTS: Final = (
@@ -125,10 +134,13 @@ class FamilyTwin(StepwiseStepper):
         system: Whose steps they are.
         choice: A generated method.
         target: Who computes the rates.
+        inputs: Inputs as a function of time; None where they are lines, as in every ensemble.
     """
 
-    def __init__(self, system: FamilySystem, choice: Choice, target: str) -> None:
-        super().__init__(system, choice, target, None)
+    def __init__(
+        self, system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+    ) -> None:
+        super().__init__(system, choice, target, inputs)
         self._members, self._family = system.fixed["sizes"], system
         #: Rows of inputs, and the time below them.
         self.driving_rows = system.INPUTS.size + system.TIME.size
@@ -136,6 +148,14 @@ class FamilyTwin(StepwiseStepper):
             module = system.series
             self._series = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
+
+    @property
+    def _noise(self) -> dict[str, Any]:
+        """As `NumpyStepper` has it: of equal members all processes act together."""
+        return {
+            "along": partial(self._evaluate, ("noise_vector",)),
+            "processes": self._family.NOISE.size,
+        }
 
     def _method(self, run: Ensemble) -> Method:
         """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
@@ -185,11 +205,13 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        called = {"rates": "rhs"} | {n: n for n in ("projection",) if n in system.functions}
+        others = ("projection", "noise_vector")
+        called = {"rates": "rhs"} | {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
         self._run_type = _make_structure(tuple(called), (*_RUN, *_DRIVEN_RUN * is_driven))
-        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs)
+        has_noise = bool(system.NOISE)
+        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
         self._ensemble_type = _make_structure(tuple(called), fields)
         names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
@@ -228,6 +250,9 @@ class FamilyStepper(FamilyTwin):
         )
         if self.driving_rows:
             given.driving_rows = self.driving_rows
+        if self._family.NOISE:
+            given.processes = self._family.NOISE.size
+            given.seed, given.bound = run.seed, run.bound
         if len(run.inputs.values):
             given.pieces = run.inputs.pieces
             given.inputs_stride = run.inputs.values.shape[1] if run.inputs.own else 0
@@ -354,7 +379,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
     # where roundings differ, one may decide on the length of a step
     exact = target == "c" and (choice.name != "taylor" or not system.elementary)
     lengths = [(3, 2.0**-7), (15, 2.0**-7)]
-    if exact and choice.name in FUNCTIONS:
+    if exact and choice.name in ("dop853", "taylor"):
         lengths += [(1, 0.0), (15, 0.0)]
     structured = choice.is_structured
     if structured and exact:  # other roundings have other sweeps, and other rests of sums
@@ -402,6 +427,8 @@ def _probe(
         atol=1e-12,
         size=step,
         max_steps=1000,
+        seed=1,
+        bound=2.0,
         is_structured=is_structured,
     )
     run.begin(0.0)
@@ -440,8 +467,19 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
     return ""
 
 
-def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """Who makes the steps of a family: C, or its twin where that is asked for or C fails."""
+def find_stepper(
+    system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+) -> FamilyTwin:
+    """Who makes the steps of a family: C, or its twin where that is asked for or C fails.
+
+    Args:
+        system: The family.
+        choice: A generated method.
+        target: Who computes the rates.
+        inputs: A function of Python, which only the twin can call.
+    """
+    if inputs is not None:
+        return FamilyTwin(system, choice, target, inputs)
     if (choice, target) not in system.steppers:
         system.steppers[choice, target] = _find_stepper(system, choice, target)
     return system.steppers[choice, target]

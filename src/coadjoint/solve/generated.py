@@ -146,6 +146,8 @@ def find_series_obstacle(
         is_auto: Whether a method that is slower does not apply either.
     """
     if isinstance(system, FamilySystem):
+        if stepwise and stepwise != system.stepwise:
+            return f"it needs rates of all orders, and {stepwise}"
         return tell_series_obstacle(system, choose_order(rtol), members, is_auto=is_auto)
     return f"it needs rates of all orders, and {stepwise}" if stepwise else ""
 
@@ -226,12 +228,12 @@ def _make_recording(
 
 def _find_stepper(system: System, request: Request, signal: Signal | Array | None) -> Stepper:
     """Who makes the steps."""
+    function = signal if isinstance(signal, Function) else None
     if isinstance(system, FamilySystem):
-        return find_stepper(system, request.choice, request.target)
+        return find_stepper(system, request.choice, request.target, function)
     if not request.stepwise:
         members = math.prod(request.state.shape[1:])
         return system._solvers.get(request.choice, request.target, members)
-    function = signal if isinstance(signal, Function) else None
     return StepwiseStepper(system, request.choice, request.target, function)
 
 

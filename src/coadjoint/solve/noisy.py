@@ -33,7 +33,7 @@ _NEAR = 1e-6
 
 def has_noise(system: System) -> bool:
     """Whether Wiener processes move the state."""
-    return "noise" in system.functions
+    return not {"noise", "noise_vector"}.isdisjoint(system.functions)
 
 
 def choose_noisy(

@@ -48,7 +48,9 @@ class _Noisy:
 
     Args:
         rates: Stratonovich's drift, ``(n, N)``.
-        fields: What each Wiener process does, ``(n, w, N)``.
+        fields: What each Wiener process does, ``(n, w, N)``; None where ``along`` says it.
+        along: What all do for a number of each, which stand below the state, ``(n, N)``.
+        processes: How many there are, for ``along``.
         size: The step.
         seed: Of the noise.
         bound: The largest size of a normal number.
@@ -61,17 +63,20 @@ class _Noisy:
         self,
         *,
         rates: Function,
-        fields: Function,
+        fields: Function | None = None,
+        along: Function | None = None,
+        processes: int = 0,
         size: float,
         seed: int,
         bound: float,
         branches: bool = False,
     ) -> None:
-        self.rates, self.fields, self.size = rates, fields, size
+        self.rates, self.fields, self.along, self.size = rates, fields, along, size
+        self.processes = np.arange(processes, dtype=np.uint64)[:, np.newaxis]
         self.seed, self.bound, self.branches = seed, bound, branches
 
-    def find_noise(self, lanes: Lanes, h: Array, process: int) -> Array:
-        """The increment of a Wiener process over the length of the step."""
+    def find_noise(self, lanes: Lanes, h: Array, process: int | NDArray[np.uint64]) -> Array:
+        """The increment of a Wiener process over the length of the step, or those of some."""
         normal = draw_normals(self.seed, lanes.member, lanes.steps, process)
         normal = np.where(normal > -self.bound, normal, -self.bound)
         normal = np.where(normal < self.bound, normal, self.bound)
@@ -80,9 +85,17 @@ class _Noisy:
     def move(self, lanes: Lanes, h: Array) -> Callable[[Array, Array], Array]:
         """The rates with the noise of a step."""
         noise: list[Array] = []
+        fields_of, along = self.fields, self.along
+        if along is not None:
+            numbers = self.find_noise(lanes, h, self.processes)
+            return lambda after, state: (
+                self.rates(lanes, after, state)
+                + along(lanes, after, np.concatenate([state, numbers]))
+            )
+        assert fields_of is not None, "one of the two"
 
         def rates(after: Array, state: Array) -> Array:
-            rows, fields = self.rates(lanes, after, state), self.fields(lanes, after, state)
+            rows, fields = self.rates(lanes, after, state), fields_of(lanes, after, state)
             while len(noise) < fields.shape[1]:
                 noise.append(self.find_noise(lanes, h, len(noise)))
             for process, each in enumerate(noise):

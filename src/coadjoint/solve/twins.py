@@ -55,7 +55,7 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise", *ASKED)
+        functions = (*choice.kind.rates, "domain", "projection", "noise", "noise_vector", *ASKED)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
         self._held, kinks, self._spheres = None, None, ()
@@ -118,7 +118,7 @@ class NumpyStepper:
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
-            fields=self._fields,
+            **self._noise,
             size=run.size,
             seed=run.seed,
             bound=run.bound,
@@ -157,6 +157,11 @@ class NumpyStepper:
     ) -> Array:
         """What the sides of kinks are those of."""
         return find(state, lanes.parameters, self._drive(lanes, after))
+
+    @property
+    def _noise(self) -> dict[str, Any]:
+        """What moves the state with noise, as methods for it take it."""
+        return {"fields": self._fields}
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """What each Wiener process does to the state."""

@@ -148,7 +148,7 @@ class _Writer:
                     name: self._write_moves((table, name, key), part)
                     for name, part in getattr(file, table).items()
                 }
-        for table in ("constraints", "domain"):
+        for table in ("constraints", "domain", "noise"):
             if getattr(file, table, None):
                 update[table] = dict(self._write_relations(table))
         source = replace(self.source, positions=self.places.all, members=self.members)
@@ -229,7 +229,7 @@ class _Writer:
         return part.model_copy(update={key[-1]: self._write_keyed(key, moves)})
 
     def _write_relations(self, table: str) -> Iterator[tuple[str, Any]]:
-        """Constraints and conditions; those of a member are there for each."""
+        """Constraints, conditions and noise; those of a member are there for each."""
         for name, text in getattr(self.file, table).items():
             trees = list(self._read_sides(text)) if isinstance(text, str) else []
             if not any(self.index.name in find_free(tree, self.members) for tree in trees):
@@ -240,7 +240,7 @@ class _Writer:
             for k in range(max(a for a, _ in ends), self.count - max(b for _, b in ends)):
                 own = member_name(name, self.index.first_name + k)
                 self._bind((table, name), (table, own), k)
-                plain = text if table == "domain" else self._write_text(text, k)
+                plain = self._write_text(text, k) if table == "constraints" else text
                 if plain != text:
                     self.places.forget_characters((table, own))
                 yield own, plain

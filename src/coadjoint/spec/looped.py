@@ -49,10 +49,12 @@ TABLES = (
     "poisson",
     "variables",
     "parameters",
+    "inputs",
     "time",
     "definitions",
     "lagrangian",
     "hamiltonian",
+    "noise",
     "forces",
     "dissipation",
     "lax",
@@ -80,10 +82,10 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
     for name, part in file.variables.items():
         if part.index is None:
             yield f"the variable {name} has no index"
-    if file.time is not None:
+    for driving in ("time", "inputs", "noise"):
         for table in ("lagrangian", "lax"):
-            if getattr(file, table) is not None:
-                yield f"there are tables [time] and [{table}]"
+            if getattr(file, driving) and getattr(file, table) is not None:
+                yield f"there are tables [{driving}] and [{table}]"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:
@@ -92,8 +94,9 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
     energy = read(file.hamiltonian)
     observables = [tree for part in file.observables.values() for tree in read(part.expression)]
     forces, friction, claims = read(file.forces), read(file.dissipation), read(file.claims)
+    noise = read(file.noise)
     others = [tree for each in (file.poisson, file.lax) for tree in read(each)]
-    for tree in (*energy, *observables, *forces, *friction, *claims, *others):
+    for tree in (*energy, *observables, *forces, *friction, *noise, *claims, *others):
         yield from _examine(tree, members)
     for tree in (*forces, *others, *(claims if members.periodic else ())):
         yield from _refuse_alone(tree, members)
@@ -105,6 +108,8 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         yield from _examine_total(tree, members, "Rayleigh's function")
     if any(isinstance(n, Sum) and len(n.indices) > 1 for t in friction for n in walk(t)):
         yield "Rayleigh's function has a sum over pairs"
+    for tree in noise:
+        yield from _examine_noise(tree, members)
     if any(map(has_sum, forces)):
         yield "a force has a sum over members"
     for tree in observables:
@@ -124,6 +129,19 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         yield f"a member stands alone that is not among the first or last {limits.NEIGHBOURS}"
     if pairs and any(reach(each.term) != (0, 0) for each in rubbing):
         yield "Rayleigh's function couples neighbours, and there are sums over pairs"
+
+
+def _examine_noise(tree: Node, members: Members) -> Iterator[str]:
+    """Why a Hamiltonian of noise is neither that of each member nor a sum over members."""
+    if has_sum(tree):
+        yield from _examine_total(tree, members, "a Hamiltonian of noise")
+        if find_free(tree, members):
+            yield "a Hamiltonian of noise is not linear in sums over members"
+    yield from _refuse_alone(tree, members)
+    if any(isinstance(node, Sum) and len(node.indices) > 1 for node in walk(tree)):
+        yield "a Hamiltonian of noise has a sum over pairs"
+    if not has_sum(tree) and not find_free(tree, members):
+        yield "a Hamiltonian of noise names no members"
 
 
 def _examine_lagrangian(file: Any, trees: list[Node], members: Members) -> Iterator[str]:

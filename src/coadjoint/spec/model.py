@@ -129,6 +129,10 @@ class Windows:
         variables: Names of the variables of the state that each member has, in declared order.
         shared: Names of the parameters that all members share.
         indexed: Names of the parameters that each member has.
+        shared_inputs: Names of the inputs that all members share.
+        indexed_inputs: Names of the inputs that each member has.
+        shared_noise: Names of the Wiener processes that move all members.
+        indexed_noise: Names of those of which each member has one of its own.
         defaults: Defaults of quantities that differ from member to member: of each
             component those of all members.
         repeating: Names of those that have a default for some members, which are taken again.
@@ -156,6 +160,10 @@ class Windows:
     pairs: bool
     least: int
     windows: tuple[Spec, ...]
+    shared_inputs: tuple[str, ...] = ()
+    indexed_inputs: tuple[str, ...] = ()
+    shared_noise: tuple[str, ...] = ()
+    indexed_noise: tuple[str, ...] = ()
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
     lax: tuple[tuple[Spec, Lax], ...] = ()

@@ -79,6 +79,8 @@ def read_windows(
     acting, claimed = find_ends(file, index)
     ends = max([0, *(n + 1 if n >= 0 else -n for n in acting | claimed)])
     first = _first_window(index, reach, width, ends, pairs=pairs)
+    if file.noise:  # what a process of one member does to a sum names so many members
+        first = max(first, reach + 2 * width)
     least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
@@ -103,13 +105,18 @@ def read_windows(
         if file.lax is not None
     )
     state = {each.name for each in small.state}
-    parameters = {name: part.index is not None for name, part in file.parameters.items()}
-    shapes = {each.name: each.shape for each in (*small.variables, *small.parameters)}
+    processes = {each.name for each in small.noise}
+    quantities = (*small.variables, *small.parameters, *small.inputs)
+    shapes = {each.name: each.shape for each in quantities}
     family = Windows(
         index=index,
         variables=tuple(name for name in file.variables if member_name(name, 0) in state),
-        shared=tuple(name for name, own in parameters.items() if not own),
-        indexed=tuple(name for name, own in parameters.items() if own),
+        shared=_select_names(file.parameters, indexed=False),
+        indexed=_select_names(file.parameters, indexed=True),
+        shared_inputs=_select_names(file.inputs, indexed=False),
+        indexed_inputs=_select_names(file.inputs, indexed=True),
+        shared_noise=tuple(name for name in file.noise if name in processes),
+        indexed_noise=tuple(name for name in file.noise if name not in processes),
         defaults={
             name: _read_defaults(source, (table, name), part, shapes[member_name(name, 0)])
             for table, name, part in _list_quantities(file)
@@ -126,6 +133,11 @@ def read_windows(
         lax=lax,
     )
     return _with_family(source, bare, read, family)
+
+
+def _select_names(parts: Mapping[str, Any], *, indexed: bool) -> tuple[str, ...]:
+    """The names of quantities that each member has, or that all share."""
+    return tuple(name for name, part in parts.items() if (part.index is not None) == indexed)
 
 
 def _write_all(
@@ -386,6 +398,7 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
     energy += list_texts(file.lagrangian)
+    energy += list_texts(file.noise)
     acting = [text for each in (file.forces, file.dissipation) for text in list_texts(each)]
     reach = span([*energy, *acting])
     width = span(
