@@ -316,6 +316,7 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
         atol=1e-12,
         size=step,
         max_steps=1000,
+        has_clock=False,
     )
     run.begin(0.0)
     return run

@@ -254,7 +254,9 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
-        is_structured=request.choice.is_structured,
+        remembered=request.choice.count_memory(rows),
+        is_implicit=request.choice.is_structured,
+        has_clock=not isinstance(system, FamilySystem),
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)
