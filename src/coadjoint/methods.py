@@ -13,6 +13,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+#: What is kept of each search for the next step: an offset and its first two differences.
+TERMS: Final = 3
+#: Of how many steps one is composed, by its order.
+_LENGTHS: Final = MappingProxyType({2: 1, 4: 5, 6: 9})
+
 
 @dataclass(frozen=True)
 class Sphere:
@@ -58,6 +63,26 @@ class StructuredMethod:
     def macro(self) -> str:
         """What chooses it in C."""
         return self.name.upper()
+
+    @property
+    def stages(self) -> int:
+        """How many states are searched for in a step; 0 of maps."""
+        if self.file == "sequence":
+            return 0
+        return self.order // 2 if self.file == "gauss" else _LENGTHS[self.order]
+
+    def count_memory(self, rows: int) -> int:
+        """How many numbers a step of a state of so many rows leaves for the next one.
+
+        First what rounding took of the state; then, for each stage, where it was searched for with
+        success, as far from the state, and how this changed.
+        """
+        return rows * self.parts
+
+    @property
+    def parts(self) -> int:
+        """How many numbers of each row that are; sums of maps that keep nothing are plain."""
+        return 0 if self.name == "kahan" else 1 + TERMS * self.stages
 
 
 @dataclass(frozen=True)

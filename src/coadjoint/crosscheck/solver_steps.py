@@ -69,7 +69,8 @@ _KEPT: Final = (
     "steps",
     "rejected",
     "status",
-    "low",
+    "late",
+    "memory",
     "sweeps",
 )
 #: What is kept of kinks in addition, where there are some.

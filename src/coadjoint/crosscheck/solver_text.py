@@ -18,7 +18,7 @@ from itertools import zip_longest
 
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.derive.setting import STEP
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved, list_schedules
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.render.environment import render_templates
@@ -293,6 +293,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "maps": dict.fromkeys(list_maps(texts.programs), nothing),
+            "moved": list_moved(texts.programs[name] for name in list_maps(texts.programs)),
             "schedules": list_schedules(list_maps(texts.programs)),
             "exact_maps": not elementary_functions(
                 texts.programs[name] for name in list_maps(texts.programs)

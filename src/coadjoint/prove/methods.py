@@ -283,7 +283,8 @@ def _keeps(facts: Facts, each: Kept, program: Program) -> bool:
         return False
 
     def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
-        there = at | dict(zip(facts.state, run(program, at, number, call_modulo), strict=True))
+        rises = zip(facts.state, run(program, at, number, call_modulo), strict=True)
+        there = at | {name: at[name] + rise for name, rise in rises}
         for value in each.values:
             start, end = (field.evaluate(value, dict(x), number, call_modulo) for x in (at, there))
             yield start + -end

@@ -475,6 +475,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "positions": [int(n in context.positions) for n in range(count)],
         "sweeps": normals.SWEEPS,
         "near": spherical_midpoint.NEAR,
+        "roundings": spherical_midpoint.ROUNDINGS,
     }
 
 

@@ -19,7 +19,7 @@ from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved, list_schedules
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -228,6 +228,7 @@ def describe_solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
         **arrange_sides(solved),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
+        "moved": list_moved(solved[name] for name in list_maps(solved)),
         "schedules": list_schedules(list_maps(solved)),
         "exact_maps": not elementary_functions(solved[name] for name in list_maps(solved)),
         "refusals": dict(context.refusals) if kind == SOLVER else {},

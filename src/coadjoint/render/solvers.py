@@ -39,7 +39,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, list_structured
+from coadjoint.methods import ACTION, ASKED, TERMS, list_structured
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -355,6 +355,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
             "near": spherical_midpoint.NEAR,
+            "roundings": spherical_midpoint.ROUNDINGS,
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
             "gradients": {
@@ -367,6 +368,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
             },
             "sweeps": normals.SWEEPS,
+            "terms": TERMS,
         }
     }
 

@@ -56,7 +56,7 @@ FUNCTIONS: Final = {
 #: What two runs have alike.
 COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
 #: And of implicit methods.
-LEFT: Final = ("low", "sweeps")
+LEFT: Final = ("memory", "sweeps")
 #: Arrays of an ensemble that are handed over.
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
 #: How near states are whose functions have other roundings.
@@ -107,7 +107,7 @@ _ENSEMBLE: Final = (
     ("max_steps", _SIZE),
     ("work", _SIZE),
     ("scratch", _PLACE),
-    ("low", _PLACE),
+    ("memory", _PLACE),
     ("sweeps", _PLACE),
 )
 #: What moves members with noise.
@@ -168,22 +168,19 @@ class FamilyTwin(StepwiseStepper):
             count = len(family.STATE.components) // family.size
             moving = set(family.positions), set(range(count)).difference(family.positions)
             flows = {
-                f"flow{n}": partial(self._shift, family.rows_of(sorted(own)))
-                for n, own in enumerate(moving, 1)
+                f"flow{n}": tuple(family.rows_of(sorted(own))) for n, own in enumerate(moving, 1)
             }
-            steps = [(flows[flow], part) for flow, part in list_schedules(flows)[choice.name]]
-            return Maps(steps, self._rates, run.size, branches=self._branches)
+            steps = [
+                (self._shift, h, flows[flow]) for flow, h in list_schedules(flows)[choice.name]
+            ]
+            return Maps(steps, self._rates, run.size, is_compensated=False, branches=self._branches)
         return super()._method(run)
 
-    def _shift(self, rows: list[slice], state: Array, parameters: Array, after: Array) -> Array:
-        """A flow that moves some rows by their rates, which the other rows alone decide."""
+    def _shift(self, state: Array, parameters: Array, after: Array) -> Array:
+        """What a flow adds to the rows that it moves, by their rates, which the others decide."""
         there, given = map(np.ascontiguousarray, (state, parameters))
         call = Call(there, given, np.empty(state.shape), {"sizes": self._members})
-        rates = self._find_values("rhs", call)
-        moved = state.copy()
-        for own in rows:
-            moved[own] = state[own] + after * rates[own]
-        return moved
+        return np.asarray(after * self._find_values("rhs", call))
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
@@ -260,7 +257,7 @@ class FamilyStepper(FamilyTwin):
             for name, array in (lines | {"input_slopes": run.inputs.slopes}).items():
                 assert array.flags.c_contiguous, name
                 setattr(given, name, array.ctypes.data)
-        for name in (*ARRAYS, *(LEFT if run.is_structured else ())):
+        for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
@@ -385,7 +382,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
     if structured and exact:  # other roundings have other sweeps, and other rests of sums
         lengths += [(1, 2.0**-7), (1, 64.0)]  # the last one has no solution
     for members, step in lengths:
-        found, expected = (_probe(sized, members, step, is_structured=structured) for _ in range(2))
+        found, expected = (_probe(sized, choice, members, step) for _ in range(2))
         for stepper, run in ((fresh, found), (twin, expected)):
             while stepper.advance(run, 0, members, 5):
                 pass
@@ -403,9 +400,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
                 )
 
 
-def _probe(
-    system: FamilySystem, members: int, step: float, *, is_structured: bool = False
-) -> Ensemble:
+def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> Ensemble:
     """A few trajectories at the start of twelve steps, with two samples on the way."""
     source = np.random.default_rng(0)
     end = 12 * (step or 2.0**-7)
@@ -429,7 +424,9 @@ def _probe(
         max_steps=1000,
         seed=1,
         bound=2.0,
-        is_structured=is_structured,
+        remembered=choice.count_memory(system.STATE.size, searches=False),
+        is_implicit=choice.is_structured,
+        has_clock=False,
     )
     run.begin(0.0)
     return run

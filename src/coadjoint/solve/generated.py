@@ -243,6 +243,7 @@ def _find_stepper(system: System, request: Request, signal: Signal | Array | Non
 def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array | None]:
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
+    is_family = isinstance(system, FamilySystem)
     rows, members = count_rows(system, request.choice), math.prod(batch)
     quick = system._solvers.pack(request.parameters)
     parameters = pack_parameters(system, request.parameters) if quick is None else np.array(quick)
@@ -265,7 +266,9 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
-        is_structured=request.choice.is_structured,
+        remembered=request.choice.count_memory(rows, searches=not is_family),
+        is_implicit=request.choice.is_structured,
+        has_clock=not is_family,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)

@@ -108,7 +108,14 @@ class NumpyStepper:
         if self._choice.name in MAPPED:
             module = KernelModule(self._system, self._choice.kind.files[2])
             maps = make_maps(module, self._choice.name)
-            return Maps(maps, self._rates, run.size, branches=self._branches)
+            compensated = MAPPED[self._choice.name].parts > 0
+            return Maps(
+                maps,
+                self._rates,
+                run.size,
+                is_compensated=compensated,
+                branches=self._branches,
+            )
         if self._choice.is_structured:
             gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}

@@ -78,7 +78,7 @@ class DiscreteGradient(AverageGradient):
         super().__init__(**given)
         self.energy = energy
 
-    def prepare(self, arc: Arc) -> Corrected:
+    def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`."""
         return Corrected(arc.state)
 

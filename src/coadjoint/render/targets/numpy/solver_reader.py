@@ -153,7 +153,7 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
             return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS", "EXACT")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
-            return name in ("REFUSALS", "SCHEDULES")
+            return name in ("REFUSALS", "SCHEDULES", "MOVED")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
             return name in ("KINKS", "STRUCTURED", "SPHERES") or name.startswith(
                 ("TABLE_", "STAR_")
