@@ -141,6 +141,7 @@ class KernelContext:
         domain: What the rows of the function ``domain`` are; empty where there is none.
         reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
             where there is none.
+        reconstructed_observables: What the function of this name returns, in order.
         inputs: Quantities of the inputs, in order; empty where there are none.
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
@@ -164,6 +165,7 @@ class KernelContext:
     supported: int = 0
     domain: tuple[Bound, ...] = ()
     reconstructed: tuple[Quantity, ...] = ()
+    reconstructed_observables: tuple[Quantity, ...] = ()
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"

@@ -155,6 +155,14 @@ state: ``(n + r, *batch)``, or a mapping that names them all.""",
         below="reconstructed",
     ),
     KernelFunction(
+        name="reconstructed_observables",
+        summary="Observables of what is reconstructed; state holds the state, then its rows",
+        shape="(o, *batch)",
+        doc="""Rows are the components of ``RECONSTRUCTED_OBSERVABLES``. The first argument is the
+same as that of ``reconstruction``.""",
+        below="reconstructed",
+    ),
+    KernelFunction(
         name="domain",
         summary="What is positive where the system is defined, one row for each entry of DOMAIN",
         shape="(d, *batch)",

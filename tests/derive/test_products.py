@@ -234,3 +234,15 @@ def test_a_coordinate_of_a_lagrangian_needs_its_velocity():
         spec(BOTH, *changes)
     assert line.strip() in str(caught.value)
     spec(BOTH, changes[1])
+
+
+@pytest.mark.parametrize("role", ["attitude", "quaternion"])
+def test_an_attitude_may_stand_in_the_state_too(role):
+    """The momentum in space is that of the algebra alone, and the weight of the mass turns it."""
+    text = BOTH.replace("[variables]", f'[variables]\nR = {{ role = "{role}" }}')
+    up = "R[3, 3]" if role == "attitude" else "rotate(R, vector(0, 0, 1))[3]"
+    text = text.replace('- k*q^2/2"', f'- k*q^2/2 - {up}*q"').split("[claims]")[0]
+    assert set(verdicts(text).values()) == {Verdict.PROVED}
+    names = derive(spec(text)).observables
+    assert {"Pi_spatial1", "Pi_spatial2", "Pi_spatial3"} <= set(names)
+    assert not any(name.startswith("p_spatial") for name in names)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.derive import sandwich as products
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.emitted import list_following
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import turning_residuals
@@ -186,6 +187,17 @@ def reconstruction(equations: Equations) -> Rows | None:
         return None
     state = (*equations.setting.state, *(name for name, _ in followed))
     return _rows(equations, [(f"d{name}/dt", rate) for name, rate in followed], state=state)
+
+
+def reconstructed_observables(equations: Equations) -> Rows | None:
+    """The observables of what is reconstructed, which follows the state in the first argument."""
+    values = [
+        line
+        for each in list_following(equations.setting)
+        for line in zip(each.components, each.values, strict=True)
+    ]
+    state = (*equations.setting.state, *(name for name, _ in equations.followed))
+    return _rows(equations, values, state=state) if values else None
 
 
 def domain(equations: Equations) -> Rows | None:

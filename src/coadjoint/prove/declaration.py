@@ -18,6 +18,7 @@ from coadjoint.declared import KernelContext, Quantity
 from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.emitted import list_following
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
@@ -66,6 +67,7 @@ def kernel_context(
         programs=tuple(programs.values()),
         supported=supported,
         reconstructed=tuple(_declare_followed(spec, each) for each in spec.reconstruction),
+        reconstructed_observables=tuple(map(_quantity, list_following(equations.setting))),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         unit_of_time=spec.units.time,

@@ -171,7 +171,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
         "driving": {
             array: rows_of(quantities)
             for array, quantities in _optional(context).items()
-            if array != "reconstructed"
+            if not array.startswith("reconstructed")
         },
     }
     texts = _render_files(
@@ -294,7 +294,7 @@ def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
 
 def _optional(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
     """The quantities that only some systems have, as far as this one has them."""
-    names = ("reconstructed", "inputs", "time")
+    names = ("reconstructed", "reconstructed_observables", "inputs", "time")
     return {name: getattr(context, name) for name in names if getattr(context, name)}
 
 

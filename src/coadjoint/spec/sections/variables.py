@@ -194,6 +194,8 @@ def _read_variable(
         count = prod(part.shape or [1])
         flat = bool(part.shape)
     elif part.of is not None:
+        if part.of in parts:  # a coordinate, which these routes do not move
+            _check_role(source, ("variables", part.of), parts[part.of], algebra)
         raise _alien_key(source, (*key, "of"), part)
     elif part.role == "advected":
         representation = _representation(
@@ -318,6 +320,7 @@ def _check_role(
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
         hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
+        hint += " With momenta it may on the routes euler-poincare and lie-poisson."
     elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:
