@@ -96,6 +96,7 @@ class Field(Rationals):
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
+        self._rests: dict[str, frozenset[str]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Assume further conditions."""
@@ -397,11 +398,20 @@ class Field(Rationals):
         return self._replace(element, new)
 
     def reach(self, element: Element) -> frozenset[str]:
-        """Symbols that occur in an element or in the arguments of its functions."""
+        """Symbols that occur in an element or in the arguments of its functions.
+
+        With a symbol come those on which it rests: see `rest`.
+        """
         names = self.names_in(element) - self.adjoined.keys()
         for generator in self._calls_in(element):
             names = names.union(*map(self.reach, self.adjoined[generator].arguments))
-        return names
+        return names.union(*(self._rests[each] for each in names & self._rests.keys()))
+
+    def rest(self, name: str, elements: Iterable[Element]) -> Element:
+        """A symbol for what a kernel computes of some elements by a loop, without a formula."""
+        known = self._rests.get(name, frozenset())
+        self._rests[name] = known.union(*map(self.reach, elements))
+        return self[name]
 
     def write_in_sines(self, p: PolyElement) -> PolyElement:
         """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""

@@ -14,7 +14,9 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, Field
+from coadjoint.exact.factored import place_of
 from coadjoint.exact.rationals import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, list_products, nest
@@ -78,7 +80,10 @@ class Lowering:
         self._numbers = equations.numbers
         self._kept: list[Element] = []
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
-        for element in elements:
+        written = list(elements)
+        self._loops = loops_under(equations, written)
+        self._solved: dict[str, int] = {}
+        for element in (*written, *(e for each in self._loops for e in (*each.entries, *each.known))):
             self._form(element, _MEMBER)
         self._coefficients_by_name = dict(self._coefficients.values())
         self._shared: dict[int, dict[Product, Product]] = {}
@@ -302,10 +307,32 @@ class Lowering:
             return self.graph.multiply(lead, self._factor(component))
         known = self.field.adjoined.get(name)
         if known is None:
+            for each in self._loops:
+                if name in each.loop_symbols:
+                    return self._item(each, name)
             return self.graph.node_of_name(name, self._numbers)
         levels = [(argument, self._level(argument)) for argument in known.arguments]
         arguments = (self._build(self._form(each, level), level) for each, level in levels)
         return self.graph.call(known.function, *arguments)
+
+    def _item(self, solve: Solve, name: str) -> int:
+        """The node of what a loop gives."""
+        if name not in self._solved:
+            factors = self.graph.factors(list(map(self.node, solve.entries)))
+            solution = self.graph.solution(factors, list(map(self.node, solve.known)))
+            size = range(len(solve.block))
+            nodes = [self.graph.item(factors, place_of(n, n)) for n in size]
+            nodes += [self.graph.item(solution, n) for n in size]
+            self._solved |= zip(solve.loop_symbols, nodes, strict=True)
+        return self._solved[name]
+
+
+def loops_under(equations: Equations, elements: Iterable[Element]) -> list[Solve]:
+    """The loops whose symbols elements have."""
+    if not equations.loops:
+        return []
+    names = frozenset[str]().union(*map(equations.setting.field.names_in, elements))
+    return [each for each in equations.exact.solves if names.intersection(each.loop_symbols)]
 
 
 def _mark(element: Element) -> Any:

@@ -42,7 +42,7 @@ from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import generic_rank
 from coadjoint.exact.roots import simplify_roots
-from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.limits import OPERATIONS
 
 
 @dataclass(frozen=True)
@@ -253,20 +253,15 @@ def _check_regular(
 ) -> None:
     """The leading minors of a block, of which the pivots are quotients, vanish nowhere generic."""
     setting = motion.frame.setting
-    if len(solve.block) > COUPLED_VELOCITIES:
-        bound = bool(setting.spec.constraints)
-        what = "accelerations and multipliers" if bound else "accelerations"
-        way = (
-            "Write constraints as Y == ..., which gives velocities"
-            if bound
-            else "Choose coordinates that decouple them"
-        )
+    if solve.operations > OPERATIONS:
         raise LimitError(
-            f"{setting.spec.path}: {'constraints and ' * bound}kinetic energy couple"
-            f"{'s' * (not bound)} {len(solve.block)} {what}; at most {COUPLED_VELOCITIES} "
-            f"(COUPLED_VELOCITIES) are solved for in the kernel. {way}.",
+            f"{setting.spec.path}: constraints, kinetic energy and forces that name reactions "
+            f"couple {len(solve.block)} accelerations and multipliers; to solve for them takes "
+            f"about {solve.operations} operations; expected at most {OPERATIONS} (OPERATIONS). "
+            "Write constraints as Y == ..., which gives velocities.",
             path=str(setting.spec.path),
-            found=len(solve.block),
+            found=solve.operations,
+            limit=OPERATIONS,
         )
     known: dict[str, Element] = {}
     entries = [entry for row in solve.matrix for entry in row]

@@ -15,14 +15,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.mechanics.configuration import sampled_mechanics
+from coadjoint.derive.mechanics.configuration import coupled_blocks, sampled_mechanics
 from coadjoint.derive.mechanics.contact import contact_names
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.frames import Frame
 from coadjoint.derive.mechanics.parts import part_names, parts
-from coadjoint.derive.mechanics.solver import Definition, solver_names
+from coadjoint.derive.mechanics.solver import (
+    WRITTEN,
+    Definition,
+    loop_names,
+    names_for,
+    solver_names,
+)
 from coadjoint.derive.setting import Setting, make_setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -70,12 +76,24 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         *(f"_c{n + 1}" for n in range(len(known.solved))),
         *(f"_k{n + 1}" for n in range(len(of.frame.velocities))),
         *map(rate_name, of.frame.velocities),
-        *solver_names(range(len(of.independent) + len(of.kept))),
+        *_names_of_solves(spec, len(of.independent) + len(of.kept)),
         *map(multiplier_name, range(len(of.kept))),
         *map(shift_name, range(len(of.independent) if of.kept else 0)),
         *(moved_names(spec).values() if of.kept or of.frame.touch else ()),
         *(equation.reaction for equation in of.equations),
     )
+
+
+def _names_of_solves(spec: Spec, count: int) -> list[str]:
+    """The names that the solves of so many unknowns need, whose blocks are known without a frame.
+
+    Every name of the field slows down all that is computed in it.
+    """
+    if spec.in_frame:
+        loops = loop_names(range(count)) if count > WRITTEN else []
+        return list(dict.fromkeys((*solver_names(range(count)), *loops)))
+    blocks = coupled_blocks(sampled_mechanics(spec).mass)
+    return list(dict.fromkeys(name for block in blocks for name in names_for(block)))
 
 
 def _couples_many(spec: Spec) -> bool:

@@ -31,6 +31,7 @@ from coadjoint.derive.mechanics.solver import (
     Definition,
     Solve,
     forward_name,
+    names_for,
     solve_in_kernel,
     solver_names,
 )
@@ -42,7 +43,7 @@ from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.exact.signs import sign
-from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.limits import OPERATIONS
 from coadjoint.spec import Spec
 
 
@@ -192,9 +193,9 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     for block in coupled_blocks(known.mass):
         if any(known.setting.velocities[i] in known.bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
-        elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
-            names += solver_names(block)
-    return tuple(names)
+        if len(block) > LARGEST_BLOCK:
+            names += names_for(block)
+    return tuple(dict.fromkeys(names))
 
 
 def _invert_block(
@@ -216,7 +217,6 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         DerivationError: The block is driven, or its Hessian at rest not positive for certain.
     """
     setting, names = of.setting, of.setting.velocities
-    _check_count(setting, block)
     own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
@@ -237,7 +237,9 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     ]
     known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
     newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
-    return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+    solve = Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
+    _check_cost(setting, solve)
+    return solve
 
 
 def _is_positive(setting: Setting, element: Element) -> bool:
@@ -285,7 +287,6 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
-    _check_count(setting, block)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -300,18 +301,18 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     )
 
 
-def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
-    """A block is not too large for the kernel."""
-    names = [setting.velocities[i] for i in block]
-    if len(block) > COUPLED_VELOCITIES:
+def _check_cost(setting: Setting, solve: Solve) -> None:
+    """An iteration is not too long for the kernel."""
+    if solve.operations > OPERATIONS:
         refused = _refusal(
             setting,
-            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
-            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            f"that decouple them, or give {_way_out(setting)}.",
-            names[0],
+            f"the Lagrangian couples {len(solve.block)} velocities ({', '.join(solve.names)}) and "
+            f"is not quadratic in them; Newton's iteration takes about {solve.operations} "
+            f"operations; expected at most {OPERATIONS} (OPERATIONS). Choose axes that decouple "
+            f"them, or give {_way_out(setting)}.",
+            solve.names[0],
         )
-        raise LimitError(str(refused), **refused.parts)
+        raise LimitError(str(refused), **refused.parts | {"limit": OPERATIONS})
 
 
 def _way_out(setting: Setting) -> str:
