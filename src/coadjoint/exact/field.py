@@ -96,6 +96,7 @@ class Field(Rationals):
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
+        self._derivatives: dict[tuple[str, str], Element] = {}
         self._rests: dict[str, frozenset[str]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
@@ -103,6 +104,7 @@ class Field(Rationals):
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
         self._slopes.clear()
+        self._derivatives.clear()
 
     def _take_numbers(self, known: Numbers, own: Sequence[str], p: PolyElement) -> Element:
         """A polynomial over algebraic numbers, each written by functions of this field."""
@@ -323,15 +325,22 @@ class Field(Rationals):
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
         here = name in self.names_in(element)
-        result = element.diff(self._position[name]) if here else self.zero
+        parts = [element.diff(self._position[name])] if here else []
         for generator in self._calls_in(element):
-            result += self.slope(element, generator) * self._derivative_of(
-                self.adjoined[generator], name
-            )
-        return result
+            inner = self._derivative_of(self.adjoined[generator], name)
+            if inner != 0:  # most functions are of other symbols where there are many
+                parts.append(self.slope(element, generator) * inner)
+        return self.sum(parts)
 
     def _derivative_of(self, known: Adjoined, name: str) -> Element:
-        """Derivative of an adjoined function by a symbol."""
+        """Derivative of an adjoined function by a symbol, remembered."""
+        place = (known.generator, name)
+        if place not in self._derivatives:
+            self._derivatives[place] = self._differentiate(known, name)
+        return self._derivatives[place]
+
+    def _differentiate(self, known: Adjoined, name: str) -> Element:
+        """The same by the chain rule."""
         inner = [self.derivative(argument, name) for argument in known.arguments]
         if all(each == 0 for each in inner):
             return self.zero

@@ -356,6 +356,22 @@ def children(node: Node) -> tuple[Node, ...]:
     return ()
 
 
+def write_entries(name: str, value: Node) -> list[tuple[str, Node]]:
+    """A statement as texts have it: operands of a loop one by one, then the loop without them.
+
+    >>> write_entries("x", ONE)
+    [('x', Number(value=Fraction(1, 1)))]
+    """
+    match value:
+        case Factors(size=size, entries=entries):
+            last: Node = Factors(size, ())
+        case Solution(factors=factors, known=entries):
+            last = Solution(factors, ())
+        case _:
+            return [(name, value)]
+    return [*((f"{name}[{n}]", each) for n, each in enumerate(entries)), (name, last)]
+
+
 def with_children(node: Node, operands: Iterable[Node]) -> Node:
     """The operation of a node on other operands; a leaf as it is."""
     match node:

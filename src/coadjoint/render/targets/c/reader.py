@@ -7,14 +7,14 @@ Read next: `coadjoint.crosscheck.parse_back`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import isfinite
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Call, Negate, Node, Number, Program, Symbol
-from coadjoint.render.targets.body import Body, failure, join
+from coadjoint.render.targets.body import Body, failure, join, read_loop
 
 _TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/(),\[\]])",
@@ -106,20 +106,32 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     driving = re.fullmatch(
         r"const double (\w+) = (inputs|time)\[(\d+) \* _\2_row \+ _n \* _\2_member\]", line
     )
-    assigned = re.fullmatch(r"const double (\w+) = ([^\[]*)", line)
-    output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = ([^\[]*)", line)
+    assigned = re.fullmatch(r"(?:const double (?=\w+ ))?(\w+(?:\[\d+\])?) = (.*)", line)
+    array = re.fullmatch(r"double (\w+)\[(\d+)\]", line)
+    called = re.fullmatch(r"(coadjoint_\w+)\(([\w, ]*)\)", line)
+    output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = (.*)", line)
     if state:
         body.inputs[state[1]] = ("state", int(state[2]))
     elif given:
         body.inputs[given[1]] = ("parameters", int(given[2]))
     elif driving:
         body.inputs[driving[1]] = (driving[2], int(driving[3]))
-    elif assigned:
-        body.statements.append((assigned[1], read_expression(assigned[2], name)))
     elif output:
         body.outputs.append((int(output[1]), read_expression(output[2], name)))
+    elif assigned and _is_declared(assigned[1], line, body.arrays):
+        body.statements.append((assigned[1], read_expression(assigned[2], name)))
+    elif array:
+        body.arrays[array[1]] = int(array[2])
+    elif called and (loop := read_loop(called[1], called[2].split(", "), body.arrays)):
+        body.statements.append(loop)
     elif line:
         raise failure(f"kernel.c: {line!r} is not a line of our template", name)
+
+
+def _is_declared(name: str, line: str, arrays: Mapping[str, int]) -> bool:
+    """Whether a name is declared where it is assigned, or is an entry of an array that was made."""
+    array, bracket, _ = name.partition("[")
+    return (array in arrays) if bracket else line.startswith("const ")
 
 
 def read_expression(text: str, name: str) -> Node:
@@ -195,6 +207,8 @@ class Reader:
         # An integer would divide as integers do, and 1e999 is not a number.
         if kind == "number" and not text.isdigit() and isfinite(float(text)):
             return Number(Fraction(float(text)))
+        if kind == "name" and self.tokens[self.at][1] == "[":
+            return self._read_item(text)
         if kind == "name" and self.tokens[self.at][1] != "(":
             return Symbol(text)
         called = text.removesuffix(self.suffix)
@@ -206,6 +220,14 @@ class Reader:
                 raise self.refusal()
             return inner
         raise self.refusal()
+
+    def _read_item(self, name: str) -> Node:
+        """An entry of an array over which a loop has run."""
+        self.take()
+        place = self.take()
+        if not place.isdigit() or self.take() != "]" or not name.startswith("_"):
+            raise self.refusal()
+        return Symbol(f"{name}[{place}]")
 
     def read_arguments(self, count: int) -> list[Node]:
         """The arguments of a function, in parentheses."""
