@@ -16,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
 from fractions import Fraction
+from functools import lru_cache
 from operator import add, mul
 from typing import Any, Final, Protocol, TypeVar
 
@@ -178,9 +179,7 @@ def _invert_lower(rows: Sequence[Sequence[Decimal]]) -> list[list[Decimal]]:
     """The inverse of a matrix that has these rows below a diagonal of ones."""
     inverse = list[list[Decimal]]()
     for i, row in enumerate(rows):
-        own = [
-            -sum((row[k] * inverse[k][j] for k in range(j, i)), Decimal(0)) for j in range(i)
-        ]
+        own = [-sum((row[k] * inverse[k][j] for k in range(j, i)), Decimal(0)) for j in range(i)]
         inverse.append([*own, Decimal(1)])
     return inverse
 
@@ -236,6 +235,7 @@ def is_inside(function: str, arguments: tuple[Bounded, ...]) -> bool:
     return not (near and (side is None or side.envelope >= LARGEST_CONDITION * side.value))
 
 
+@lru_cache(maxsize=4096)  # a sine and the slope of a cosine are one value
 def _value(function: str, *arguments: Decimal) -> Decimal:
     """A function of numbers."""
     if function in _BY_DECIMAL:

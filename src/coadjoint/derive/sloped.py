@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from operator import add, mul, truediv
 from typing import Any, Generic, TypeVar
 
-from coadjoint.exact.factored import factor, place_of, rows_of
+from coadjoint.exact.factored import factor as factor_matrix
+from coadjoint.exact.factored import place_of, rows_of
 
 Value = TypeVar("Value")
 
@@ -74,7 +75,7 @@ class SlopedEquations:
 
     def __init__(self, entries: Sequence[Sloped[Any]]) -> None:
         self._entries, self._size = entries, rows_of(len(entries))
-        self._values = factor([each.value for each in entries])
+        self._values = factor_matrix([each.value for each in entries])
 
     def __getitem__(self, place: int) -> Sloped[Any]:
         """A pivot, without its slopes: no function whose slopes are asked for reads one."""

@@ -80,9 +80,7 @@ class Loop:
 
     def __init__(self, entries: Sequence[Any]) -> None:
         self._size = rows_of(len(entries))
-        self._rows = [
-            [entries[place_of(i, j)] for j in range(i + 1)] for i in range(self._size)
-        ]
+        self._rows = [[entries[place_of(i, j)] for j in range(i + 1)] for i in range(self._size)]
         for j in range(self._size):
             self._eliminate(j)
 

@@ -97,6 +97,9 @@ class Field(Rationals):
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
         self._derivatives: dict[tuple[str, str], Element] = {}
+        #: The order in which functions were adjoined, and what they reach.
+        self._turns: dict[str, int] = {}
+        self._reached: dict[str, frozenset[str]] = {}
         self._rests: dict[str, frozenset[str]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
@@ -180,6 +183,7 @@ class Field(Rationals):
 
     def _adjoin(self, function: str, arguments: tuple[Element, ...], partner: str = "") -> Element:
         generator = self._free.pop(0)
+        self._turns[generator] = len(self._turns)
         self.adjoined[generator] = Adjoined(generator, function, arguments, partner)
         if all(map(self._is_plain, arguments)):
             self._called[function, arguments] = generator
@@ -391,8 +395,8 @@ class Field(Rationals):
 
     def _calls_in(self, element: Element) -> list[str]:
         """Adjoined generators that occur, in the order in which they were adjoined."""
-        present = self.names_in(element) if self.adjoined else frozenset()
-        return [generator for generator in self.adjoined if generator in present]
+        present = self.names_in(element) & self.adjoined.keys() if self.adjoined else ()
+        return sorted(present, key=self._turns.__getitem__)
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
@@ -411,15 +415,24 @@ class Field(Rationals):
 
         With a symbol come those on which it rests: see `rest`.
         """
-        names = self.names_in(element) - self.adjoined.keys()
-        for generator in self._calls_in(element):
-            names = names.union(*map(self.reach, self.adjoined[generator].arguments))
+        names = self.names_in(element)
+        called = names & self.adjoined.keys()
+        if called:
+            names = (names - called).union(*map(self._reach_of, called))
         return names.union(*(self._rests[each] for each in names & self._rests.keys()))
+
+    def _reach_of(self, generator: str) -> frozenset[str]:
+        """The same of the arguments of a function, remembered."""
+        if generator not in self._reached:
+            arguments = self.adjoined[generator].arguments
+            self._reached[generator] = frozenset[str]().union(*map(self.reach, arguments))
+        return self._reached[generator]
 
     def rest(self, name: str, elements: Iterable[Element]) -> Element:
         """A symbol for what a kernel computes of some elements by a loop, without a formula."""
         known = self._rests.get(name, frozenset())
         self._rests[name] = known.union(*map(self.reach, elements))
+        self._reached.clear()
         return self[name]
 
     def write_in_sines(self, p: PolyElement) -> PolyElement:

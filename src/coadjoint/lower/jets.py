@@ -16,8 +16,9 @@ Derivatives, 2008, ch. 13)::
     solve     A x = b        A[0] x[k] = b[k] - sum_{m=1..k} A[m] x[k-m]
 
 The table of functions gives p, as ``f`` of ``exp`` and ``cos(a)`` of ``sin``, or d, as ``a`` of
-``log`` and ``sqrt(1 - a*a)`` of ``asin``. Equations that a loop solves have the factors of order 0. The coefficients of the state are the rates,
-``x[k+1] = rate[k] / (k + 1)``. What depends on parameters alone is its own order 0.
+``log`` and ``sqrt(1 - a*a)`` of ``asin``. Equations that a loop solves are factored at order 0
+alone. The coefficients of the state are the rates, ``x[k+1] = rate[k] / (k + 1)``. What depends on
+parameters alone is its own order 0.
 Read next: `coadjoint.render.solvers`.
 """
 

@@ -293,6 +293,11 @@ class Program:
         if self.table is None:
             yield from (output.value for output in self.outputs)
 
+    @property
+    def solves_by_loop(self) -> bool:
+        """Whether a statement is a loop that solves equations."""
+        return any(isinstance(statement.value, Factors) for statement in self.statements)
+
     def names_used(self) -> frozenset[str]:
         """Names that some statement or output reads."""
         nodes = (node for value in self.values() for node in walk(value))
@@ -383,7 +388,8 @@ def with_children(node: Node, operands: Iterable[Node]) -> Node:
             factors, *known = operands
             return Solution(factors, tuple(known))
         case Item(place=place):
-            return Item(*operands, place)
+            (of,) = operands
+            return Item(of, place)
     return node if isinstance(node, Number | Symbol) else type(node)(*operands)
 
 
@@ -421,7 +427,7 @@ def evaluate(
             several: Any = evaluate(of, values, number, call)
             return several[place]  # type: ignore[no-any-return]
         case Factors() | Solution():
-            return _evaluate_several(node, values, number, call)
+            return _evaluate_several(node, values, number, call)  # type: ignore[no-any-return]
     left = evaluate(node.left, values, number, call)
     right = evaluate(node.right, values, number, call)
     match node:

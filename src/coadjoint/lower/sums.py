@@ -77,13 +77,15 @@ class Lowering:
         self._state = self._members.difference(setting.inputs, setting.time)
         self._forms: dict[tuple[int, int], Form] = {}
         self._marks: set[Any] = set()
+        self._factors: dict[tuple[str, int], bool] = {}
+        self._constants: dict[tuple[Fraction, tuple[tuple[str, int], ...]], Element] = {}
         self._numbers = equations.numbers
         self._kept: list[Element] = []
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
         written = list(elements)
         self._loops = loops_under(equations, written)
         self._solved: dict[str, int] = {}
-        for element in (*written, *(e for each in self._loops for e in (*each.entries, *each.known))):
+        for element in (*written, *(side for each in self._loops for side in each.sides)):
             self._form(element, _MEMBER)
         self._coefficients_by_name = dict(self._coefficients.values())
         self._shared: dict[int, dict[Product, Product]] = {}
@@ -210,23 +212,36 @@ class Lowering:
 
     def _is_factor(self, name: str, level: int) -> bool:
         """Whether a generator belongs into products rather than into coefficients."""
-        moving = {_DRIVEN: self._members, _MEMBER: self._state}
-        return level == _FIXED or bool(self.field.reach(self.field[name]) & moving[level])
+        if (name, level) not in self._factors:
+            moving = {_DRIVEN: self._members, _MEMBER: self._state}
+            moves = level == _FIXED or self.field.reach(self.field[name]) & moving[level]
+            self._factors[name, level] = bool(moves)
+        return self._factors[name, level]
 
     def _collect(self, written: Written, level: int) -> dict[Product, Element]:
         """Numerator terms by their product, with the coefficient polynomial of each."""
         parts: dict[Product, Element] = {}
         for term in written.monomials:
             product: list[str] = []
-            coefficient = self.field.number(term.number)
+            rest: list[tuple[str, int]] = []
             for name, power in term.powers:
                 if self._is_factor(name, level):
                     product += [name] * power
                 else:
-                    coefficient = coefficient * self.field[name] ** power
+                    rest.append((name, power))
+            coefficient = self._constant(term.number, tuple(rest))
             known = parts.get(tuple(product))
             parts[tuple(product)] = coefficient if known is None else known + coefficient
         return parts
+
+    def _constant(self, number: Fraction, powers: tuple[tuple[str, int], ...]) -> Element:
+        """A number times powers, remembered: few different ones stand in many terms."""
+        if (number, powers) not in self._constants:
+            made = self.field.number(number)
+            for name, power in powers:
+                made = made * self.field[name] ** power
+            self._constants[number, powers] = made
+        return self._constants[number, powers]
 
     def _split_denominator(
         self, written: Written, level: int

@@ -472,8 +472,8 @@ def arrange_stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> 
         if isinstance(cell.value, Factors):  # those of order 0 serve all orders
             continue
         if isinstance(cell.value, Solution):
-            sums, value = _solve_order(cell, cell.value, jets, arrays)
-            terms |= sums
+            own, value = _solve_order(cell, cell.value, jets, arrays)
+            terms |= own
         elif cell.tail is None:
             total = f"{cell.name}_s"
             terms[total], value = _recurrence(cell, Symbol(total), jets, arrays)

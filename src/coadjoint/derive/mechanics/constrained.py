@@ -23,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
-from coadjoint.derive.mechanics.configuration import coupled_blocks, mechanics
+from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK, coupled_blocks, mechanics
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.frames import Frame
@@ -40,7 +40,7 @@ from coadjoint.derive.records import Exact, Step, write_entries, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
-from coadjoint.exact.ranks import generic_rank
+from coadjoint.exact.ranks import certain_minors, generic_rank
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import OPERATIONS
 
@@ -268,6 +268,8 @@ def _check_regular(
     for name, value in definitions_under(setting.field, definitions, entries):
         known[name] = setting.field.substitute(value, known)
     matrix = [[setting.field.substitute(e, known) for e in row] for row in solve.matrix]
+    if len(matrix) > LARGEST_BLOCK and certain_minors(setting.field, matrix) == len(matrix):
+        return
     for k in range(1, len(matrix) + 1):
         leading = [{j: e for j, e in enumerate(row[:k]) if e != 0} for row in matrix[:k]]
         if generic_rank(setting.field, leading) < k:

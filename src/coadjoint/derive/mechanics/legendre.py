@@ -24,7 +24,13 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.iteration import Newton, guess_name, rate_name, tell_iterations
+from coadjoint.derive.mechanics.iteration import (
+    STEPS,
+    Newton,
+    guess_name,
+    rate_name,
+    tell_iterations,
+)
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
@@ -217,6 +223,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         DerivationError: The block is driven, or its Hessian at rest not positive for certain.
     """
     setting, names = of.setting, of.setting.velocities
+    _check_cost(setting, [names[i] for i in block])
     own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
@@ -237,9 +244,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     ]
     known = [p + m - g for p, m, g in zip(products, mu, moved.values(), strict=True)]
     newton = Newton(block=block, sought=mu, slopes=[*moved.values()], hessian=hessian)
-    solve = Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
-    _check_cost(setting, solve)
-    return solve
+    return Solve(matrix=hessian, known=known, block=block, names=own, newton=newton)
 
 
 def _is_positive(setting: Setting, element: Element) -> bool:
@@ -301,16 +306,17 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     )
 
 
-def _check_cost(setting: Setting, solve: Solve) -> None:
-    """An iteration is not too long for the kernel."""
-    if solve.operations > OPERATIONS:
+def _check_cost(setting: Setting, names: Sequence[str]) -> None:
+    """An iteration, each of whose steps is written out, is not too long for the kernel."""
+    operations = STEPS * len(names) ** 3 // 3
+    if operations > OPERATIONS:
         refused = _refusal(
             setting,
-            f"the Lagrangian couples {len(solve.block)} velocities ({', '.join(solve.names)}) and "
-            f"is not quadratic in them; Newton's iteration takes about {solve.operations} "
-            f"operations; expected at most {OPERATIONS} (OPERATIONS). Choose axes that decouple "
-            f"them, or give {_way_out(setting)}.",
-            solve.names[0],
+            f"the Lagrangian couples {len(names)} velocities ({', '.join(names)}) and is not "
+            f"quadratic in them; Newton's iteration takes about {operations} operations; expected "
+            f"at most {OPERATIONS} (OPERATIONS). Choose axes that decouple them, or give "
+            f"{_way_out(setting)}.",
+            names[0],
         )
         raise LimitError(str(refused), **refused.parts | {"limit": OPERATIONS})
 

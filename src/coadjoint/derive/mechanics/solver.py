@@ -24,7 +24,7 @@ from functools import cached_property
 from typing import Any, Final
 
 from coadjoint.derive.mechanics.decided import Decided
-from coadjoint.derive.mechanics.iteration import STEPS, Newton
+from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.exact import Element, Field
 from coadjoint.exact.factored import factor, place_of
 
@@ -139,16 +139,20 @@ class Solve:
         return [entry for i, row in enumerate(self.matrix) for entry in row[: i + 1]]
 
     @property
+    def sides(self) -> list[Element]:
+        """What a loop reads: A on and below the diagonal, and b."""
+        return [*self.entries, *self.known]
+
+    @property
     def intermediates(self) -> list[str]:
         """The names that stand for what the kernel computes on its way to the unknowns."""
         return loop_names(self.block) if self.is_loop else solver_names(self.block)
 
     @property
     def operations(self) -> int:
-        """About how many operations are written out: none of a loop, and those of each step."""
-        steps = 1 if self.newton is None else STEPS
+        """About how many operations are written out; none of a loop."""
         cubes = 1 if self.symmetric else 2
-        return 0 if self.is_loop else steps * cubes * len(self.block) ** 3 // 3
+        return 0 if self.is_loop else cubes * len(self.block) ** 3 // 3
 
     @property
     def loop_symbols(self) -> list[str]:
@@ -203,7 +207,7 @@ def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) 
 
 def _define_by_loop(field: Field, solve: Solve, decided: Decided) -> list[Definition]:
     """The pivots and the unknowns, which a loop gives."""
-    lines, sides = list[Definition](), [*solve.entries, *solve.known]
+    lines, sides = list[Definition](), solve.sides
     for place in solve.block:
         lines.append((pivot_name(place), field.rest(loop_pivot_name(place), solve.entries)))
     for name, place in zip(solve.names, solve.block, strict=True):
@@ -376,7 +380,7 @@ def solution_defects(
     All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
     In each entry the name that is defined last is replaced by its definition, and reciprocals of
     pivots are: that is enough for a proof, and no closed form is written out. Only where something
-    was left out as identically zero, all definitions are substituted. A loop has no defects here: it
+    was left out as identically zero, all definitions are substituted. A loop has no defects: it
     solves any equations whose leading minors do not vanish.
     """
     if solve.is_loop:

@@ -73,6 +73,23 @@ class Reader:
                         raise self.refusal("is out of place", item)
         return functions
 
+    def check_helpers(self, functions: Functions, helpers: str) -> None:
+        """Functions that the lines of a system call are those of our template.
+
+        Args:
+            functions: All functions of the file.
+            helpers: Those of our template, without docstrings.
+        """
+        for helper in _parse(helpers).body:
+            assert isinstance(helper, ast.FunctionDef), helper
+            found = functions.get(helper.name)
+            if found is None or list(map(ast.dump, found.body[1:])) != list(
+                map(ast.dump, helper.body)
+            ):
+                raise self.refusal(f"{helper.name} is another one than that of our template")
+            if ast.dump(found.args) != ast.dump(helper.args):
+                raise self.refusal(f"{helper.name} takes other arguments")
+
     def read(self, line: ast.stmt, body: Body) -> None:
         """One line of a function: inputs, a statement or an output."""
         loop = self.read_loop(line, body.arrays)
@@ -98,7 +115,9 @@ class Reader:
                 body.statements.append((assigned, self.node(value)))
             case (ast.Subscript(ast.Name("out"), ast.Constant(int(row))), _):
                 body.outputs.append((row, self.node(value)))
-            case (ast.Subscript(ast.Name(array), ast.Constant(int(row))), _) if array in body.arrays:
+            case (ast.Subscript(ast.Name(array), ast.Constant(int(row))), _) if (
+                array in body.arrays
+            ):
                 body.statements.append((f"{array}[{row}]", self.node(value)))
             case _:
                 raise self.refusal("is assigned", target)
@@ -172,15 +191,7 @@ class LoopReader:
             if isinstance(item, ast.Assign) and isinstance(item.targets[0], ast.Name)
         }
         self.loops = Loops(tables={part: self._read_table(tables, part) for part in TABLES})
-        for helper in _parse(helpers).body:
-            assert isinstance(helper, ast.FunctionDef), helper
-            found = functions.get(helper.name)
-            if found is None or list(map(ast.dump, found.body[1:])) != list(
-                map(ast.dump, helper.body)
-            ):
-                raise reader.refusal(f"{helper.name} is another one than that of our template")
-            if ast.dump(found.args) != ast.dump(helper.args):
-                raise reader.refusal(f"{helper.name} takes other arguments")
+        reader.check_helpers(functions, helpers)
 
     def _read_table(self, tables: dict[str, ast.expr], part: str) -> list[float]:
         """One part of the table."""

@@ -31,7 +31,6 @@ class CPrinter(Printer):
         inner[-1] += ";"
         return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
 
-
     def loop(self, node: Several, to: str, column: int) -> str:
         """An array with its entries, and the loop over them that puts its results in their place.
 

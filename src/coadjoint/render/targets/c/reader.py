@@ -34,16 +34,62 @@ _STEPS = re.compile(
 _LOOP = re.compile(
     r"COADJOINT_PARTS\s+COADJOINT_INDEPENDENT\s+for \(size_t _n = _first; _n < _last; \+\+_n\) \{"
 )
+#: The largest number of unknowns that loops solve for, and the loops.
+_COUPLED = re.compile(r"enum \{ COUPLED = (\d+) \};")
+_EQUATIONS = " ".join(
+    """
+    static inline void coadjoint_factor(double *restrict entries, size_t size) {
+        double column[COUPLED], lower[COUPLED];
+        for (size_t j = 0; j < size; ++j) {
+            const double pivot = entries[j * (j + 3) / 2];
+            for (size_t i = j + 1; i < size; ++i) {
+                column[i] = entries[i * (i + 1) / 2 + j];
+                lower[i] = column[i] / pivot;
+                entries[i * (i + 1) / 2 + j] = lower[i];
+            }
+            for (size_t i = j + 1; i < size; ++i) {
+                double *restrict row = entries + i * (i + 1) / 2;
+                for (size_t k = j + 1; k <= i; ++k)
+                    row[k] -= column[i] * lower[k];
+            }
+        }
+    }
+    static inline void coadjoint_solve(
+        const double *restrict entries, double *restrict x, size_t size) {
+        for (size_t i = 1; i < size; ++i)
+            for (size_t j = 0; j < i; ++j)
+                x[i] -= entries[i * (i + 1) / 2 + j] * x[j];
+        for (size_t i = 0; i < size; ++i)
+            x[i] /= entries[i * (i + 3) / 2];
+        for (size_t k = size - 1; k > 0; --k) {
+            const double last = x[k];
+            for (size_t i = 0; i < k; ++i)
+                x[i] -= entries[k * (k + 1) / 2 + i] * last;
+        }
+    }
+    """.replace("(\n        const double", "(const double").split()
+)
 
 
 def read(text: str, program: Program, system: str) -> list[Body]:
     """The branches of the function of a Program."""
     name = f"{system}_{program.name}"
+    if program.solves_by_loop:
+        _check_equations(text, name)
     if program.table is None:
         return read_c(text, name)
     from coadjoint.render.targets.c.loop_reader import read_loops  # which reads expressions here
 
     return [read_loops(text, _find_function(text, name), program)]
+
+
+def _check_equations(text: str, name: str) -> None:
+    """The loops that solve equations are those of our template, and fit into their arrays."""
+    joined = " ".join(re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL).split())
+    found = _COUPLED.findall(joined)
+    sizes = [int(size) for size in re.findall(r"coadjoint_factor\(_\w+, (\d+)\);", joined)]
+    if len(found) != 1 or joined.count(_EQUATIONS) != 1 or max(sizes, default=0) != int(found[0]):
+        raise failure("kernel.c: it solves equations in another way than our template", name)
 
 
 def _find_function(text: str, name: str) -> str:
