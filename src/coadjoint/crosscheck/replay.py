@@ -33,6 +33,7 @@ class Loop:
     place: int
 
     def __call__(self, first: Any, *others: Any) -> Any:
+        """The step done to values: equations and right sides, or what has items."""
         if self.place == FACTOR:
             return factor([first, *others])
         return first.solve(others) if self.place == SOLVE else first[self.place]

@@ -93,7 +93,7 @@ class Reference:
         loops = rows.of.loops
         for name, definition in definitions:
             for symbol in field.names_in(definition) & loops.keys() - known.keys():
-                known |= loops[symbol].run_loop(value) if symbol not in known else {}
+                known |= loops[symbol].run_loop(symbol, value) if symbol not in known else {}
             known[name] = value(definition)
             if name in implied:
                 known |= implied[name].differentiate(known, value)

@@ -36,8 +36,8 @@ class Loop(Protocol):
     def sides(self) -> Sequence[Element]:
         """Both sides."""
 
-    def run_loop(self, value: Callable[[Element], Any]) -> dict[str, Any]:
-        """Values of symbols, given what takes elements into an arithmetic."""
+    def run_loop(self, symbol: str, value: Callable[[Element], Any]) -> dict[str, Any]:
+        """Values of a symbol and others, given what takes elements into an arithmetic."""
 
 
 @dataclass(frozen=True)

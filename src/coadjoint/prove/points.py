@@ -212,7 +212,7 @@ class Points:
         loops = self.ring.region.loops
         for name, element in (*self.branch.solved.items(), *self.definitions.items()):
             for symbol in self.ring.names_in(element) & loops.keys() - numbers.keys():
-                numbers.update(loops[symbol].run_loop(lambda e: self.value(e, numbers)))
+                numbers.update(loops[symbol].run_loop(symbol, lambda e: self.value(e, numbers)))
             numbers[name] = dependent[name] = self.value(element, numbers)
         return {**free, **dependent}
 

@@ -159,12 +159,19 @@ class Solve:
         """The symbols for what a loop gives: the pivots, then the unknowns."""
         return [make(i) for make in (loop_pivot_name, solution_name) for i in self.block]
 
-    def run_loop(self, value: Callable[[Element], Any]) -> dict[str, Any]:
-        """What these symbols stand for, in the arithmetic that ``value`` takes elements to."""
-        factored = factor(list(map(value, self.entries)))
-        pivots = (factored[place_of(n, n)] for n in range(len(self.block)))
-        values = (*pivots, *factored.solve(list(map(value, self.known))))
-        return dict(zip(self.loop_symbols, values, strict=True))
+    def run_loop(self, symbol: str, value: Callable[[Element], Any]) -> dict[str, Any]:
+        """What a symbol stands for, and all pivots or all unknowns with it.
+
+        Args:
+            symbol: Of a pivot, which rests on A alone, or of an unknown.
+            value: Takes elements to an arithmetic.
+        """
+        factored, count = factor(list(map(value, self.entries))), len(self.block)
+        if symbol in self.loop_symbols[:count]:
+            pivots = (factored[place_of(n, n)] for n in range(count))
+            return dict(zip(self.loop_symbols, pivots, strict=False))
+        unknowns = factored.solve(list(map(value, self.known)))
+        return dict(zip(self.loop_symbols[count:], unknowns, strict=True))
 
     @property
     def mirrored(self) -> Rows:
