@@ -36,11 +36,14 @@ from coadjoint.lower.program import (
     Add,
     Call,
     Divide,
+    Factors,
+    Item,
     Multiply,
     Negate,
     Node,
     Number,
     Program,
+    Solution,
     Statement,
     Symbol,
     children,
@@ -94,7 +97,35 @@ class Function:
     divisor: str = ""
 
 
-Meaning = Polynomial | Quotient | Function
+@dataclass(frozen=True)
+class Coupled:
+    """What solves symmetric equations by a loop.
+
+    Attributes:
+        factors: The name of L and D.
+        entries: Of the matrix, on and below the diagonal; each is a name, or does not move.
+        known: The right side.
+    """
+
+    factors: str
+    entries: tuple[Polynomial, ...]
+    known: tuple[Polynomial, ...]
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One of the numbers that solve equations.
+
+    Attributes:
+        of: The name of all of them.
+        place: Which one.
+    """
+
+    of: str
+    place: int
+
+
+Meaning = Polynomial | Quotient | Function | Coupled | Unknown
 
 
 @dataclass(frozen=True)
@@ -194,14 +225,19 @@ class _Planning:
         self._values |= {name: moving(name) for name in driven}
         self._meanings: dict[str, Meaning] = {}
         self._names: dict[object, str] = {}
+        self._matrices: dict[str, tuple[Polynomial, ...]] = {}
 
     def plan(self) -> Plan:
         """All of it."""
         for statement in self.rhs.statements_at("member"):
-            self._values[statement.name] = self._keep(statement)
+            if isinstance(statement.value, Factors | Solution):
+                self._keep_loop(statement.name, statement.value)
+            else:
+                self._values[statement.name] = self._keep(statement)
         rates = tuple(self._polynomial(output.value) for output in self.rhs.outputs)
         meanings = {name: self._meanings[name] for name in self._read(rates)}
         polynomials = [*(m for m in meanings.values() if isinstance(m, dict)), *rates]
+        polynomials += [p for m in meanings.values() if isinstance(m, Coupled) for p in m.known]
         terms = [product for each in polynomials for product, _ in each]
         products = [product for product in terms if len(product) > 1]
         # each of them takes a product of its own, however much they share
@@ -250,6 +286,20 @@ class _Planning:
             return whole
         return self._name(whole, statement.name)
 
+    def _keep_loop(self, name: str, value: Factors | Solution) -> None:
+        """The entries of a matrix under names; the unknowns of equations as values of their own."""
+        wholes = [self._polynomial(each) for each in children(value)[isinstance(value, Solution) :]]
+        if isinstance(value, Factors):
+            moving_ones = ((moving(self._as_name(w)) if _moves(w) else w) for w in wholes)
+            self._matrices[name] = tuple(moving_ones)
+            return
+        assert isinstance(value.factors, Symbol), value
+        factors = value.factors.name
+        self._meanings[name] = Coupled(factors, self._matrices[factors], tuple(wholes))
+        for place in range(len(wholes)):
+            own = f"{name}_{place + 1}"
+            self._meanings[own] = Unknown(name, place)
+
     def _name(self, whole: Polynomial, name: str) -> Polynomial:
         """A polynomial under a name, or under the one that it has."""
         key = frozenset(whole.items())
@@ -285,6 +335,8 @@ class _Planning:
                 if not any(map(_moves, wholes)):
                     return self._fixed(Call(function, *map(_constant_node, wholes)))
                 return self._function(function, tuple(map(self._as_name, wholes)))
+            case Item(of=Symbol(name=of), place=place):
+                return moving(f"{of}_{place + 1}")
         raise AssertionError(node)
 
     def _function(self, function: str, arguments: tuple[str, ...]) -> Polynomial:
@@ -390,6 +442,10 @@ def _names_in(meaning: Meaning) -> Iterator[str]:
     match meaning:
         case Quotient(above=above, below=below):
             yield from filter(None, [above, below])
+        case Unknown(of=of):
+            yield of
+        case Coupled(entries=entries, known=known):
+            yield from (name for each in (*entries, *known) for name in _names_in(each))
         case Function(of=names, factors=factors, divisor=divisor):
             yield from names
             if divisor:  # it does not depend on the value
