@@ -423,6 +423,10 @@ M = "sum(i, S[i, 3])"
 [claims]
 casimirs = ["dot(S[i], S[i])"]
 """
+#: The same with a field along the axis of each, another one that oscillates, and inputs for both.
+MOVED = SHAKEN.replace(
+    "[noise]", '[time]\nname = "t"\n[inputs]\nu = { index = "i" }\nf = { default = 1 }\n[noise]'
+).replace("S[i+1]))", "S[i+1])) + sum(i, (u[i] + f*t)*S[i, 3])")
 
 
 def write_shaken(n):

@@ -154,6 +154,35 @@ def test_the_balance_of_the_energy_is_proved_for_every_number_of_members(rendere
     assert energy in [each.statement for each in found]
 
 
+FRAMES = """
+title = "Free particles, seen from frames that move"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[inputs]
+u = { index = "i", rate = "du" }
+du = { index = "i" }
+[time]
+name = "t"
+[hamiltonian]
+h = "sum(i, p[i]^2/2 - du[i]*p[i])"
+[claims]
+conserved = ["sum(i, q[i] + u[i] - t*p[i])"]
+"""
+
+
+def test_rates_of_inputs_are_known_in_claims():
+    """Of each member that of its own input."""
+    claimed = "sum(i, q[i] + u[i] - t*p[i]) is conserved, for every N >= 1"
+    found = pipeline.render(read_spec_text(FRAMES, "frames.toml")).certificate.claims
+    assert claimed in [each.statement for each in found]
+    with pytest.raises(ClaimError, match="is conserved, for every N"):
+        pipeline.render(read_spec_text(FRAMES.replace("+ u[i]", "+ 2*u[i]"), "frames.toml"))
+
+
 def test_inputs_next_to_a_lagrangian_are_written_out():
     """And the spec says why."""
     text = SPRINGS.replace("[lagrangian]", '[inputs]\nu = { index = "i" }\n[lagrangian]')

@@ -16,10 +16,9 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import sympy
 
@@ -153,6 +152,8 @@ class _Reader(Window):
             if each in groups:
                 groups[each].append(seen)
         return list(groups.values())
+
+    # -- rates --------------------------------------------------------------------------
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
         """The rates of a member in generic symbols, and in those of sums over its partners."""

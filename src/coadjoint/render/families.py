@@ -337,7 +337,13 @@ class FamilyContext:
         groups = (self.shared, self.indexed, self.shared_inputs, self.indexed_inputs)
         rows = (sum(len(each.components) for each in group) for group in groups)
         shared, indexed, inputs_before, inputs = rows
-        return Counts(shared, indexed, inputs_before, inputs, time=len(self.time))
+        return Counts(
+            shared=shared,
+            indexed=indexed,
+            inputs_before=inputs_before,
+            inputs=inputs,
+            time=len(self.time),
+        )
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
