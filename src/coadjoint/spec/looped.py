@@ -84,6 +84,8 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         for table in ("lagrangian", "lax"):
             if getattr(file, table) is not None:
                 yield f"there are tables [time] and [{table}]"
+    if file.poisson is not None and any("[" in key for key in file.poisson.brackets or ()):
+        yield "brackets couple members"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:
