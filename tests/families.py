@@ -274,6 +274,9 @@ algebra = "R^2"
 vector = "a"
 generators = { q = "a" }
 map = "sum(i, dot(a, p[i]))"
+[observables]
+centre = "sum(i, m[i]*q[i])/sum(i, m[i])"
+turning = "sum(i, q[i, 1]*p[i, 2])*sum(i, p[i, 1])^2 - atan2(sum(i, p[i, 1]), sum(i, m[i]))"
 [symmetries.G]
 algebra = "R^2"
 vector = "b"

@@ -211,6 +211,23 @@ def test_momentum_maps_are_sums_over_members():
     assert [values["G1"], values["G2"]] == [sum(x for x, _ in p), -sum(x for x, _ in q)]
 
 
+def test_observables_may_be_functions_of_sums():
+    """A centre of mass, and products and functions of sums; the first component has all sums."""
+    family = family_of(read(PLANAR))
+    totals = {each.name: each for each in family.totals}
+    x, y = totals["centre1"], totals["centre2"]
+    q = [sympy.symbols(f"q_{k}_1 q_{k}_2") for k in range(3)]
+    p = [sympy.symbols(f"p_{k}_1 p_{k}_2") for k in range(3)]
+    m = sympy.symbols("m_:3")
+    for n, each in enumerate((x, replace(y, sums=x.sums))):
+        wanted = sum(w * place[n] for w, place in zip(m, q, strict=True)) / sum(m)
+        assert are_equal(value_of(family, each, 3), wanted)
+    turned = sum(a[0] * b[1] for a, b in zip(q, p, strict=True))
+    along = sum(b[0] for b in p)
+    found = value_of(family, totals["turning"], 3)
+    assert are_equal(found, turned * along**2 - sympy.atan2(along, sum(m)))
+
+
 def test_normal_modes_between_walls_are_those_of_the_book():
     """omega_k = 2 sqrt(k/m) sin(pi k/(2 (N + 1))), with sines as modes (Fermi, Pasta and Ulam)."""
     linear = "k[i]*(q[i+1] - q[i])^3/3)", "c*(q[i+1] - q[i])^2/2)"

@@ -12,6 +12,7 @@ from tests.families import (
     CLOSED,
     HELD,
     PEAKONS,
+    PLANAR,
     RING,
     TOPS,
     VORTICES,
@@ -21,7 +22,7 @@ from tests.families import (
 )
 
 TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "peakons": PEAKONS, "tops": TOPS}
-TEXTS |= {"walls": WALLS, "closed": CLOSED, "held": HELD}
+TEXTS |= {"walls": WALLS, "closed": CLOSED, "held": HELD, "planar": PLANAR}
 #: Operations of a member and of a pair, counted by hand before the kernels were looked at. A spin:
 #: three sums of neighbours, three by J, the anisotropy 2 D S3, a cross product. Vortices: two
 #: differences, the square of the distance, one quotient; for each vortex of a pair its strength by

@@ -169,7 +169,8 @@ MISFITS = [
     (("[dissipation]\nR =", "[forces]\nv ="), "a force has a sum over members"),
     (("[hamiltonian]", "[time]\n[hamiltonian]"), "there are tables [time] and [lagrangian]"),
     (("v[i]^2/2) -", "v[i]^2/2) + v[0]^2 -"), "one member alone has a kinetic energy of its own"),
-    (('P = "sum(i, p[i])"', 'P = "p[0]*sum(i, p[i])"'), "the energy or an observable has a sum"),
+    (("sum(i, p[i]^2/(2*m[i]))", "p[0]*sum(i, p[i]^2/(2*m[i]))"), "the energy is not linear in"),
+    (('P = "sum(i, p[i])"', 'P = "abs(sum(i, p[i]))"'), "an observable asks for the sign of a sum"),
     (('P = "sum(i, p[i])"', 'P = "sum(i, p[0]*p[i])"'), "a sum names one member alone"),
     (('P = "sum(i, p[i])"', 'P = "p[4]"'), "a member stands alone that is not among the first"),
 ]

@@ -16,31 +16,21 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy
 
-from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import entries, interpret
-from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
-from coadjoint.derive.symmetries import evaluate_map, share_of
-from coadjoint.derive.window import Window
-from coadjoint.derive.written import Written, choose
+from coadjoint.derive.totals import TotalsReader
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
-from coadjoint.exact.dense import dot
-from coadjoint.families import Family, Sum, Total
-from coadjoint.spec import Formula
-from coadjoint.spec.core import tree
-from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import member_name, place_at, reach
-from coadjoint.spec.core.totals import find_alone, keep_rest, put_term, split_sums
-from coadjoint.spec.model import Symmetry, Variable
+from coadjoint.families import Family, Sum
+from coadjoint.spec.core.members import member_name
+from coadjoint.spec.model import Variable
 from coadjoint.spec.spatial import turning_rows
 
 
@@ -95,63 +85,8 @@ def derive_family(equations: Equations) -> Family:
 
 
 @dataclass(frozen=True)
-class _Reader(Window):
-    """The reading of one window."""
-
-    @cached_property
-    def written(self) -> Written:
-        """What the spec says, not multiplied out."""
-        return Written(self.equations)
-
-    # -- expressions of a member --------------------------------------------------------
-
-    def see(
-        self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
-    ) -> tuple[sympy.Expr, ...]:
-        """Expressions of the window in generic symbols.
-
-        Args:
-            values: As the exact field has them.
-            new: The generic symbols.
-            written: The same as the spec writes them, if that is known.
-
-        Raises:
-            DerivationError: They depend on members that are not seen.
-        """
-        plain = [self._rename(value, new) for value in values]
-        seen = [value.xreplace(new) for value in written]
-        short = choose(plain, seen, most=0.5)  # to tidy up what is multiplied out takes long
-        if short:
-            return short
-        plain = [tidy(value, self.groups) for value in plain]
-        return choose(plain, seen) or tuple(plain)
-
-    def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
-        """An expression in generic symbols."""
-        shared = (*self.shared, *self.declared.shared_noise)
-        alike = {*map(sympy.Symbol, shared), *self.shared_inputs, *self.time}
-        left = value.free_symbols - {*new, *alike}
-        if left:
-            spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
-            raise DerivationError(
-                f"{spec.path}: the rate of one member depends on {names}, which is none of its "
-                "neighbours; expected an energy that couples neighbours or pairs. Write the energy "
-                "as sums over members.",
-                found=names,
-            )
-        return value.xreplace(new)
-
-    @cached_property
-    def groups(self) -> list[list[sympy.Symbol]]:
-        """Symbols of each component of the state: of member i, its neighbours and its partner."""
-        groups = {each: [each] for each in self.states}
-        for (each, _), seen in self.neighbours.items():
-            if each in groups:
-                groups[each].append(seen)
-        for each, seen in self.partners.items():
-            if each in groups:
-                groups[each].append(seen)
-        return list(groups.values())
+class _Reader(TotalsReader):
+    """The reading of one window: rates of its members."""
 
     # -- rates --------------------------------------------------------------------------
 
@@ -240,157 +175,7 @@ class _Reader(Window):
         rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
         return self.see((self.write(known[name]) for name in rows if known), new)
 
-    # -- sums ---------------------------------------------------------------------------
-
-    def singles_of(self, totals: Iterable[Total]) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
-        """Those that totals name."""
-        named = {s for total in totals for s in total.formula.free_symbols}
-        return {place: symbol for place, symbol in self.singles.items() if symbol in named}
-
-    def value(self, node: tree.Node) -> tuple[Element, ...]:
-        """The components of a tree of the window."""
-        setting = self.equations.setting
-        return entries(interpret(node, setting.values, setting.field))
-
-    def write(self, element: Element) -> sympy.Expr:
-        """An element as SymPy has it."""
-        return self.equations.setting.field.to_sympy(self.equations.close(element))
-
-    def sums_of(self, formula: Formula) -> Iterator[tuple[tree.Sum, tree.Node]]:
-        """The sums of a formula, each with its term and the constant factor before it."""
-        assert formula.sums is not None, formula.key
-        for each, alone in split_sums(formula.sums):
-            yield each, put_term(alone, each)
-
-    @property
-    def totals(self) -> Iterator[Total]:
-        """The energy and the observables."""
-        spec = self.equations.spec
-        if self.energy is not None:
-            yield from self._total("energy", (), self.energy)
-        for each in spec.observables:
-            yield from self._total(each.name, each.shape, each.formula)
-        for symmetry in spec.symmetries:
-            yield from self._momentum_map(symmetry)
-
-    def _momentum_map(self, symmetry: Symmetry) -> Iterator[Total]:
-        """The components of the momentum map of an action that moves each member by itself."""
-        if symmetry.map is not None:
-            shares = self._declared_map(symmetry, symmetry.map)
-        else:
-            names = self.names_of(self.declared.variables, self.middle)
-            shares = share_of(self.equations.setting, symmetry, names)
-        terms = self.see(map(self.write, shares), self.rename(self.middle, 0, 0))
-        for component, term in zip(symmetry.components, terms, strict=True):
-            symbol = sympy.Symbol(f"{component}_sum1_1")
-            yield Total(component, symbol, (Sum(symbol=symbol, term=term),))
-
-    def _declared_map(self, symmetry: Symmetry, formula: Formula) -> tuple[Element, ...]:
-        """The share of the member in the middle, along each basis vector."""
-        setting = self.equations.setting
-
-        def evaluate(known: Mapping[str, Any]) -> Element:
-            places = [
-                place_at(term, {each.indices[0]: self.middle}, self.members)
-                for each, term in self.sums_of(formula)
-            ]
-            values = {**setting.values, **known}
-            return setting.field.sum(interpret(each, values, setting.field) for each in places)
-
-        return evaluate_map(setting, symmetry, evaluate)
-
-    @property
-    def energy(self) -> Formula | None:
-        """The Hamiltonian, or the Lagrangian of which it is the Legendre transform."""
-        spec = self.equations.spec
-        return spec.lagrangian if spec.hamiltonian is None else spec.hamiltonian
-
-    def transform(self, formula: Formula, values: Iterable[Element]) -> list[Element]:
-        """``v . dl/dv - l`` of parts of a Lagrangian, in the state; else parts as they are."""
-        setting = self.equations.setting
-        if formula is not setting.spec.lagrangian:
-            return list(values)
-        field, names = setting.field, mechanics(setting).frame.velocities
-        v = setting.elements(names)
-        return [dot(field.gradient(part, names), v) - part for part in values]
-
-    def _total(self, name: str, shape: tuple[int, ...], formula: Formula) -> Iterator[Total]:
-        """The components of a total."""
-        sums, rest = list[list[Sum]](), self._see_rest(formula)
-        for number, (each, term) in enumerate(self.sums_of(formula), 1):
-            sums.append([])
-            for place, value in enumerate(self._terms(formula, each, term)):
-                symbol = sympy.Symbol(f"{name}_sum{number}_{place + 1}")
-                before, after = reach(each.term)
-                sums[-1].append(
-                    Sum(
-                        symbol=symbol,
-                        term=value,
-                        over="members" if len(each.indices) == 1 else "pairs",
-                        before=before,
-                        after=after,
-                    )
-                )
-        for n, component in enumerate(component_names(name, shape)):
-            parts = tuple(each[n] for each in sums)
-            values = [*(each.symbol for each in parts), *rest[n : n + 1]]
-            yield Total(component, sympy.Add(*values), parts)
-
-    def _place_rest(self, formula: Formula) -> tree.Node | None:
-        """What a total has outside of its sums, in the window."""
-        assert formula.sums is not None, formula.key
-        rest = keep_rest(formula.sums)
-        return None if rest is None else place_at(rest, {}, self.members)
-
-    def _see_rest(self, formula: Formula) -> tuple[sympy.Expr, ...]:
-        """The components of what a total has outside of its sums, in symbols of single members."""
-        placed = self._place_rest(formula)
-        if placed is None:
-            return ()
-        assert formula.sums is not None, formula.key
-        new = dict[sympy.Symbol, sympy.Symbol]()
-        names = (*self.declared.variables, *self.declared.indexed)
-        for number in sorted(find_alone(formula.sums, self.members)):
-            own = map(sympy.Symbol, self.names_of(names, number % self.members.count))
-            seen = (self.singles[each, number] for each in (*self.states, *self.indexed))
-            new |= zip(own, seen, strict=True)
-        return self._see_terms(formula, placed, new)
-
-    def _see_terms(
-        self, formula: Formula, placed: tree.Node, new: Mapping[Any, Any]
-    ) -> tuple[sympy.Expr, ...]:
-        """The components of a part of a formula in the window, in generic symbols."""
-        values = self.transform(formula, self.value(placed))
-        if formula is self.equations.spec.lagrangian:
-            written: Sequence[Any] = [self.written.with_velocities(value) for value in values]
-        else:
-            written = entries(self.written.value(placed))
-        return self.see(map(self.write, values), new, written)
-
-    def _terms(self, formula: Formula, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
-        """The components of the term of a sum, in generic symbols."""
-        if len(each.indices) > 1:
-            values = self.transform(formula, self.value(self._place_pair(each, term)))
-            return [self._see_pair(value) for value in values]
-        before, after = reach(each.term)
-        at = 0 if self.members.periodic else before
-        placed = place_at(term, {each.indices[0]: at}, self.members)
-        return self._see_terms(formula, placed, self.rename(at, before, after))
-
     # -- pairs --------------------------------------------------------------------------
-
-    def _place_pair(
-        self, each: tree.Sum, term: tree.Node, at: tuple[int, int] = (0, 1)
-    ) -> tree.Node:
-        """The term of two members."""
-        return place_at(term, dict(zip(each.indices, at, strict=True)), self.members)
-
-    def _see_pair(self, value: Element) -> sympy.Expr:
-        """An element of the first two members in the symbols of a member and its partner."""
-        new = dict(zip(map(sympy.Symbol, self.names_of(self.names, 0)), self.own, strict=True))
-        others = [self.partners[each] for each in self.own]
-        new |= zip(map(sympy.Symbol, self.names_of(self.names, 1)), others, strict=True)
-        return self.see([self.write(value)], new)[0]
 
     def pair_energy(self, i: int, j: int) -> Element:
         """What the sums over pairs have of two members."""
@@ -398,7 +183,7 @@ class _Reader(Window):
         values = list[Element]()
         for each, term in self.sums_of(self.energy):
             if len(each.indices) > 1:
-                values += self.value(self._place_pair(each, term, (i, j)))
+                values += self.value(self.place_pair(each, term, (i, j)))
         return self.equations.setting.field.sum(self.transform(self.energy, values))
 
     def check_pairs(self) -> None:
@@ -413,7 +198,7 @@ class _Reader(Window):
             if len(each.indices) == 1:
                 continue
             (value,), (turned,) = (
-                self.value(self._place_pair(each, term, at)) for at in ((0, 1), (1, 0))
+                self.value(self.place_pair(each, term, at)) for at in ((0, 1), (1, 0))
             )
             if not field.is_zero(value - turned):
                 i, j = each.indices
@@ -445,7 +230,7 @@ class _Reader(Window):
         for state, term in zip(self.states, flow, strict=True):
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
-                sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
+                sums[state] = Sum(symbol=symbol, term=self.see_pair(term), over="partners")
         return sums
 
     def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:

@@ -7,16 +7,24 @@ Read next: `coadjoint.derive.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import sympy
 
+from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.written import Written, choose
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+from coadjoint.spec import Formula
+from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import Members, member_name
+from coadjoint.spec.core.totals import put_term, split_sums
 from coadjoint.spec.model import Windows
 
 
@@ -192,3 +200,73 @@ class Window:
         if after < last:
             return self.rename(member, max(reach, last - 1 - after), after + first, around=True)
         return self.rename(member, reach, reach)
+
+    # -- expressions --------------------------------------------------------------------
+
+    @cached_property
+    def written(self) -> Written:
+        """What the spec says, not multiplied out."""
+        return Written(self.equations)
+
+    def see(
+        self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
+    ) -> tuple[sympy.Expr, ...]:
+        """Expressions of the window in generic symbols.
+
+        Args:
+            values: As the exact field has them.
+            new: The generic symbols.
+            written: The same as the spec writes them, if that is known.
+
+        Raises:
+            DerivationError: They depend on members that are not seen.
+        """
+        plain = [self._rename(value, new) for value in values]
+        seen = [value.xreplace(new) for value in written]
+        short = choose(plain, seen, most=0.5)  # to tidy up what is multiplied out takes long
+        if short:
+            return short
+        plain = [tidy(value, self.groups) for value in plain]
+        return choose(plain, seen) or tuple(plain)
+
+    def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
+        """An expression in generic symbols."""
+        shared = (*self.shared, *self.declared.shared_noise)
+        left = value.free_symbols - {*new, *map(sympy.Symbol, shared)}
+        left -= {*self.shared_inputs, *self.time}
+        if left:
+            spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
+            raise DerivationError(
+                f"{spec.path}: the rate of one member depends on {names}, which is none of its "
+                "neighbours; expected an energy that couples neighbours or pairs. Write the energy "
+                "as sums over members.",
+                found=names,
+            )
+        return value.xreplace(new)
+
+    @cached_property
+    def groups(self) -> list[list[sympy.Symbol]]:
+        """Symbols of each component of the state: of member i, its neighbours and its partner."""
+        groups = {each: [each] for each in self.states}
+        for (each, _), seen in self.neighbours.items():
+            if each in groups:
+                groups[each].append(seen)
+        for each, seen in self.partners.items():
+            if each in groups:
+                groups[each].append(seen)
+        return list(groups.values())
+
+    def value(self, node: tree.Node) -> tuple[Element, ...]:
+        """The components of a tree of the window."""
+        setting = self.equations.setting
+        return entries(interpret(node, setting.values, setting.field))
+
+    def write(self, element: Element) -> sympy.Expr:
+        """An element as SymPy has it."""
+        return self.equations.setting.field.to_sympy(self.equations.close(element))
+
+    def sums_of(self, formula: Formula) -> Iterator[tuple[tree.Sum, tree.Node]]:
+        """The sums of a formula, each with its term and the constant factor before it."""
+        assert formula.sums is not None, formula.key
+        for each, alone in split_sums(formula.sums):
+            yield each, put_term(alone, each)

@@ -9,7 +9,7 @@ Read next: `coadjoint.derive.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -68,12 +68,17 @@ class Written:
         setting = self.equations.setting
         return {name: _write(setting.field, value) for name, value in setting.values.items()}
 
-    def value(self, node: tree.Node) -> Any:
-        """The value of a tree, of any shape; of one that asks for signs none, ``()``."""
+    def value(self, node: tree.Node, known: Mapping[str, Any] | None = None) -> Any:
+        """The value of a tree, of any shape; of one that asks for signs none, ``()``.
+
+        Args:
+            node: The tree.
+            known: Values of further names.
+        """
         called = (part.function for part in tree.walk(node) if isinstance(part, tree.Call))
         if not _SIGNED.isdisjoint(called):
             return ()
-        return interpret(node, self._values, cast("Field", _AsWritten()))
+        return interpret(node, {**self._values, **(known or {})}, cast("Field", _AsWritten()))
 
     @cached_property
     def _energy(self) -> sympy.Expr | None:

@@ -32,6 +32,9 @@ from coadjoint.spec.sections.turning import TURNING, advect
 
 #: Tables of quantities, each of which may have the index.
 QUANTITIES = ("variables", "parameters", "inputs")
+#: A bracket of quantities of two members: ``{c[i], c[i+1]}``.
+_QUANTITY = r" *([A-Za-z]\w*)\[ *([A-Za-z]\w*) *([-+] *\d{1,6})? *\] *"
+_BETWEEN = re.compile(rf"\{{{_QUANTITY},{_QUANTITY}\}}")
 #: Roles of variables that take their components from the algebra.
 _OVER_ALGEBRA = ("momentum", "velocity", "advected", "attitude", "quaternion", "pose")
 
@@ -298,9 +301,12 @@ class _Writer:
             pairs = [[self.name(n, k) for n in pair] for pair in part.canonical for k in members]
             unique = list(map(list, dict.fromkeys(map(tuple, pairs))))
             return part.model_copy(update={"canonical": unique})
-        brackets = {}
+        brackets = dict[str, str]()
         for key, text in part.brackets.items():
             path: KeyPath = ("poisson", "brackets", key)
+            if (between := _BETWEEN.fullmatch(key)) is not None:
+                brackets |= self._write_between(path, between, text, brackets)
+                continue
             match = re.match(POISSON_PATTERN, key)
             if match is None:
                 problem, expected = f"{key!a} is not a bracket", "a key such as '{x, y}'"
@@ -312,6 +318,38 @@ class _Writer:
                 if own != key:
                     self._bind(path, ("poisson", "brackets", own), k)
         return part.model_copy(update={"brackets": brackets})
+
+    def _write_between(
+        self, path: KeyPath, key: re.Match[str], text: str, known: Mapping[str, str]
+    ) -> dict[str, str]:
+        """The brackets of members next to each other, as ``{c[i], c[i+1]}``.
+
+        Raises:
+            SpecError: Another index, or two members are neighbours twice.
+        """
+        left, one, before, right, other, after = key.groups()
+        for index in (one, other):
+            if index != self.index.name:
+                raise self.source.unknown(path, f"there is no index {index!a}", index, [one])
+        written, shifts = (
+            dict[str, str](),
+            [int((s or "0").replace(" ", "")) for s in (before, after)],
+        )
+        for k in range(self.count):
+            places = [self.members.place(k + shift) for shift in shifts]
+            if None in places:
+                continue
+            a, b = (
+                self._component_of(n, p or 0) for n, p in zip((left, right), places, strict=True)
+            )
+            own = f"{{{a}, {b}}}"
+            if not {own, f"{{{b}, {a}}}"}.isdisjoint({*known, *written}):
+                problem = f"the bracket of {a} and {b} is there twice"
+                expected = "each pair once; in a ring of two members neighbours meet twice"
+                raise self.source.at_key(path, problem, own, expected, "Choose a larger size.")
+            written[own] = text
+            self._bind(path, ("poisson", "brackets", own), k)
+        return written
 
     def _component_of(self, component: str, member: int) -> str:
         """The component of a member by that of the generic one."""

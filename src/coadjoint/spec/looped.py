@@ -22,8 +22,8 @@ from coadjoint.spec.core.members import Members, find_free, reach
 from coadjoint.spec.core.totals import (
     find_alone,
     has_sum,
+    is_linear,
     is_plain,
-    split_sums,
     walk_outside,
 )
 from coadjoint.spec.core.tree import (
@@ -86,6 +86,8 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         for table in ("lagrangian", "lax"):
             if getattr(file, driving) and getattr(file, table) is not None:
                 yield f"there are tables [{driving}] and [{table}]"
+    if file.poisson is not None and any("[" in key for key in file.poisson.brackets or ()):
+        yield "brackets couple members"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:
@@ -100,8 +102,15 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         yield from _examine(tree, members)
     for tree in (*forces, *others, *(claims if members.periodic else ())):
         yield from _refuse_alone(tree, members)
-    for tree in (*energy, *observables):
-        yield from _examine_total(tree, members, "the energy or an observable")
+    for tree in energy:
+        yield from _examine_total(tree, members, "the energy")
+    for tree in observables:
+        if not is_linear(tree, members) and any(
+            isinstance(n, Call) and n.function in _SIGNED for n in walk_outside(tree)
+        ):
+            yield "an observable asks for the sign of a sum"
+        if members.periodic:
+            yield from _refuse_alone(tree, members)
     if not all(map(has_sum, energy)):
         yield "the energy has no sum over members"
     for tree in friction:
@@ -187,13 +196,8 @@ def _examine_action(
 
 def _examine_total(tree: Node, members: Members, what: str) -> Iterator[str]:
     """Why a tree is no sum of sums with constant factors and of terms of members at the ends."""
-    try:
-        sums = split_sums(tree)
-        if any(find_alone(alone, members) for _, alone in sums):
-            yield f"{what} has a sum whose factor names a member"
-    except ExpressionError:
+    if not is_linear(tree, members):
         yield f"{what} is not linear in sums over members"
-        return
     if members.periodic:
         yield from _refuse_alone(tree, members)
 
@@ -206,6 +210,8 @@ def _refuse_alone(tree: Node, members: Members) -> Iterator[str]:
             yield f"{node.name} stands there of one member alone"
 
 
+#: Functions that ask for signs, which have no value where sums are symbols.
+_SIGNED = frozenset({"abs", "min", "max", "pow", "sign"})
 #: Functions whose values are linear in each argument.
 _LINEAR = frozenset(
     {

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-from coadjoint.spec.core.faults import fault_at
+from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.members import Members
 from coadjoint.spec.core.tree import (
     Binary,
@@ -46,6 +46,14 @@ def split_sums(tree: Node) -> list[tuple[Sum, Node]]:
     for node in walk(tree):
         _check_linear(node)
     return [(each, _keep(tree, each)) for each in sums]
+
+
+def is_linear(tree: Node, members: Members) -> bool:
+    """Whether a tree is linear in its sums, with factors that name no member."""
+    try:
+        return not any(find_alone(alone, members) for _, alone in split_sums(tree))
+    except ExpressionError:
+        return False
 
 
 def without_sums(tree: Node) -> Node:
