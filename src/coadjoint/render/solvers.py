@@ -20,7 +20,7 @@ from coadjoint.lower import normals
 from coadjoint.lower.jets import Cell, Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_spheres, stays_on_orbits
+from coadjoint.lower.orbits import find_spheres, is_nambu, stays_on_orbits
 from coadjoint.lower.polynomials import product_of, sum_of
 from coadjoint.lower.program import (
     ONE,
@@ -330,7 +330,11 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     bracket = programs.get("bracket_vector")
     on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
     spheres = find_spheres(programs) if on_orbits else ()
-    marks = {"orbits": on_orbits, "spheres": bool(spheres)}
+    marks = {
+        "orbits": on_orbits,
+        "spheres": bool(spheres),
+        "nambu": is_nambu({**programs, "rhs": programs["rates"]}),
+    }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
     state = () if bracket is None else bracket.state
     composed = [each for each in methods if each.file != "gauss"]
