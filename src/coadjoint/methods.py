@@ -287,8 +287,8 @@ _ENTRIES: Final = (
             needs=("energy", "energy_gradient", *DISTINGUISHED, "nambu"),
             keeps="the energy and all distinguished functions, to the rounding of each step",
             theorem=f"{steps}the product of discrete gradients of the energy and of all "
-            "distinguished functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. Robidoux, "
-            "Philosophical Transactions A 357 (1999) 1021)",
+            "distinguished functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. "
+            "Robidoux, Philosophical Transactions A 357 (1999) 1021)",
             expects="a motion by Nambu's bracket alone, declared with at most six coordinates",
         )
         for suffix, order, steps in (("", 2, ""), ("4", 4, "five steps with Suzuki's lengths of "))

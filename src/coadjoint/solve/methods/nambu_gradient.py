@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.solve.methods.average_gradient import NODES
 from coadjoint.solve.methods.discrete_gradient import ROUNDINGS, Corrected
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, Arc, LiePoisson, Sweep
+from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
