@@ -96,6 +96,21 @@ below the state.
         looped="never",
     ),
     KernelFunction(
+        name="distinguished",
+        summary="Distinguished functions of Nambu's bracket",
+        shape="(n - 2, *batch)",
+        doc="""Only systems with [poisson] nambu, and an energy, have it.""",
+        looped="never",
+    ),
+    KernelFunction(
+        name="distinguished_gradient",
+        summary="Derivatives of the distinguished functions by the state, row by row",
+        shape="(n - 2, n, *batch)",
+        doc="""Only systems that have `distinguished` have it: the motion is the product of these
+gradients and `energy_gradient`, ``dc x dh`` of three coordinates.""",
+        looped="never",
+    ),
+    KernelFunction(
         name="sandwich",
         summary="Product B W B of the matrices of a state W and of a vector B",
         shape="(n, *batch)",

@@ -123,8 +123,10 @@ _QUADRATIC: Final = (
 ACTION: Final = ("energy_gradient", "bracket_vector")
 #: Those of it that discrete gradients call.
 BALANCE: Final = (*ACTION, "energy")
+#: Functions that a motion by Nambu's bracket keeps beside its energy, and their gradients.
+DISTINGUISHED: Final = ("distinguished", "distinguished_gradient")
 #: All that methods ask of a kernel beyond its rates.
-ASKED: Final = (*BALANCE, "sandwich")
+ASKED: Final = (*BALANCE, "sandwich", *DISTINGUISHED)
 #: Those of a motion that stays on coadjoint orbits, on which the bracket acts.
 _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
@@ -302,6 +304,20 @@ _ENTRIES: Final = (
         "Journal of Computational Physics 231 (2012) 6770)",
         expects=_TENSORS,
     ),
+    *(
+        StructuredMethod(
+            name=f"nambu_gradient{suffix}",
+            file="nambu_gradient",
+            order=order,
+            needs=("energy", "energy_gradient", *DISTINGUISHED, "nambu"),
+            keeps="the energy and all distinguished functions, to the rounding of each step",
+            theorem=f"{steps}the product of discrete gradients of the energy and of all "
+            "distinguished functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. "
+            "Robidoux, Philosophical Transactions A 357 (1999) 1021)",
+            expects="a motion by Nambu's bracket alone, declared with at most six coordinates",
+        )
+        for suffix, order, steps in (("", 2, ""), ("4", 4, "five steps with Suzuki's lengths of "))
+    ),
 )
 
 _POISSON: Final = (
@@ -382,7 +398,8 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
 
     Args:
         functions: Their names, ``kinks`` among them where the rates have some, ``orbits`` where
-            the motion stays on coadjoint orbits, and ``spheres`` where these are spheres.
+            the motion stays on coadjoint orbits, ``spheres`` where these are spheres, and ``nambu``
+            where the motion is Nambu's product of gradients.
 
     >>> [method.name for method in list_structured(["rhs"])]
     ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']

@@ -63,6 +63,12 @@ def has_bracket(equations):
     return known and not equations.spec.relaxation and equations.spec.name not in LONG_BRACKETS
 
 
+def has_functions(equations):
+    """Whether the bracket is declared by distinguished functions."""
+    poisson = equations.spec.poisson
+    return poisson is not None and poisson.kind == "nambu"
+
+
 def test_every_function_that_applies_is_lowered(system):
     """In the order of the kernels; `tests.test_regenerate` runs each backwards, as below."""
     equations, programs = emitted(system), lowered(system)
@@ -73,6 +79,7 @@ def test_every_function_that_applies_is_lowered(system):
         "poisson_tensor": not equations.poisson_tensor,
         "energy_gradient": not has_bracket(equations),
         "bracket_vector": not has_bracket(equations),
+        **dict.fromkeys(("distinguished", "distinguished_gradient"), not has_functions(equations)),
         "sandwich": equations.spec.name not in MATRICES,
         "noise": not equations.spec.noise,
         "constraint_residual": not equations.spec.constraints and not equations.spec.turning,
@@ -90,6 +97,8 @@ def test_every_function_that_applies_is_lowered(system):
         "poisson_tensor",
         "energy_gradient",
         "bracket_vector",
+        "distinguished",
+        "distinguished_gradient",
         "sandwich",
     ]
     named += ["noise", "constraint_residual", "projection", "reconstruction", "domain"]

@@ -89,7 +89,7 @@ MUTANTS = (
         tests=("tests/lower/test_jets.py", "tests/lower/test_motion.py"),
     ),
     *of(
-        "render/solvers",
+        "render/recurrences",
         "_recurrence: rewrite Negate(whole) if _1 else whole -> whole",
         "_divisor: rewrite Number(Fraction(2)) -> Number(Fraction(1))",
         tests=("tests/lower/test_jets.py",),

@@ -192,6 +192,31 @@ def test_states_that_are_moved_take_quadratic_integrals():
     assert "the state is moved" in methods["gauss4"].decides
 
 
+NAMBU = """
+title = "Nambu's bracket of a quartic function"
+routes = ["nambu"]
+[poisson]
+nambu = ["x1^4/4 + x2^2/2 + x3^2/2"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+[hamiltonian]
+h = "x1^2/2 + cos(x2) + x3"
+[claims]
+casimirs = ["x1^4/4 + x2^2/2 + x3^2/2"]
+"""
+
+
+def test_nambus_gradient_keeps_both_functions():
+    """The default where they are not quadratic; the discrete gradient keeps the energy alone."""
+    _, methods = judge(spec(NAMBU))
+    assert default(methods) == "nambu_gradient"
+    assert methods["nambu_gradient"].exactly == ("energy", "casimir1")
+    assert not methods["nambu_gradient4"].is_poisson
+    assert methods["discrete_gradient"].exactly == ("energy",)
+    _, body = judge_shipped("rigid_body")
+    assert "Nambu's bracket alone" in body["nambu_gradient"].decides
+
+
 # -- on runs --------------------------------------------------------------------------------------
 
 RUNS = {

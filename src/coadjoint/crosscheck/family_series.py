@@ -28,7 +28,7 @@ from coadjoint.crosscheck.series import solve
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.family_solvers import FamilySolverText, PartText
-from coadjoint.render.solvers import Line
+from coadjoint.render.recurrences import Line
 from coadjoint.render.targets.body import failure
 from coadjoint.render.targets.c.solver_reader import NumberReader, VectorReader
 from coadjoint.render.targets.numpy.solver_reader import find_function

@@ -29,9 +29,9 @@ from coadjoint.render.kernels import (
     elementary_functions,
     name_solver,
 )
+from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import (
     FunctionText,
-    Line,
     SolverText,
     arrange_function,
     arrange_map,

@@ -138,6 +138,26 @@ def bracket_vector(equations: Equations) -> Rows | None:
     return _rows(own, lines, state=(*state, *vector_names(len(state))))
 
 
+def distinguished(equations: Equations) -> Rows | None:
+    """The distinguished functions of Nambu's bracket, where there is an energy as well."""
+    functions = _find_distinguished(equations)
+    return _rows(equations, functions) if functions else None
+
+
+def distinguished_gradient(equations: Equations) -> Rows | None:
+    """Their derivatives by the state, row by row."""
+    state, field = equations.setting.state, equations.setting.field
+    slopes = [
+        (f"d{label}/d{name}", slope)
+        for label, function in _find_distinguished(equations)
+        for name, slope in zip(state, field.gradient(function, state), strict=True)
+    ]
+    if not slopes:
+        return None
+    shape = (len(slopes) // len(state), len(state))
+    return replace(_rows(equations, slopes, shape), may_hide_zeros=True)
+
+
 def sandwich(equations: Equations) -> Rows | None:
     """``B W B`` of the matrices of the state and of a vector, which follows it."""
     own = products.sandwich(equations)
@@ -226,6 +246,15 @@ def _rates(equations: Equations) -> list[tuple[str, Element]]:
     """The rates with their labels."""
     state, rates = equations.setting.state, equations.exact.rates
     return [(f"d{name}/dt", rate) for name, rate in zip(state, rates, strict=True)]
+
+
+def _find_distinguished(equations: Equations) -> list[tuple[str, Element]]:
+    """The distinguished functions with labels; none where no method asks for them."""
+    setting, poisson = equations.setting, equations.spec.poisson
+    if poisson is None or energy_gradient(equations) is None:
+        return []
+    functions = [equations.close(setting.formula(each)) for each in poisson.functions]
+    return [(f"c{n}", function) for n, function in enumerate(functions, 1)]
 
 
 def _slopes(equations: Equations, by: tuple[str, ...]) -> Rows:

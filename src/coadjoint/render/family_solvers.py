@@ -14,7 +14,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.families import SUM, Loops, Read
 from coadjoint.lower.family_jets import PartJets, make_family_jets
 from coadjoint.lower.program import Call, Symbol, walk
-from coadjoint.render.solvers import (
+from coadjoint.render.recurrences import (
     Line,
     Stage,
     arrange_first,

@@ -25,13 +25,8 @@ from coadjoint.render.kernels import (
     tell_licence,
     wrap,
 )
-from coadjoint.render.solvers import (
-    FunctionText,
-    Line,
-    arrange_function,
-    list_reads,
-    list_sharing,
-)
+from coadjoint.render.recurrences import Line, list_reads
+from coadjoint.render.solvers import FunctionText, arrange_function, list_sharing
 from coadjoint.solver_kinds import SOLVER
 
 TEMPLATE: Final = "c/header.h.j2"

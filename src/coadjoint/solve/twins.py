@@ -122,6 +122,9 @@ class NumpyStepper:
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
             functions |= {"sandwich": self._sandwich, "field": self._field}
+            functions["values"] = partial(self._evaluate, ("energy", "distinguished"))
+            slopes = ("energy_gradient", "distinguished_gradient")
+            functions["gradients"] = partial(self._evaluate, slopes)
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
@@ -194,7 +197,9 @@ class NumpyStepper:
             own = np.ascontiguousarray(state[: self._sizes[name]])
             block = np.empty((*self._system.functions[name], state.shape[1]))
             rows.append(self._find_values(name, Call(own, parameters, block, named)))
-        return rows[0] if len(rows) == 1 else np.concatenate(rows)
+        if len(rows) == 1:
+            return rows[0]
+        return np.concatenate([each.reshape(-1, state.shape[1]) for each in rows])
 
     def _drive(self, lanes: Lanes, after: Array) -> Array:
         """Inputs, and the time below them."""

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.methods import Sphere
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
+from coadjoint.solve.methods.lie_poisson import LiePoisson
 from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint, _Scale
 from tests.solve.methods.algebras import (
     ALGEBRAS,

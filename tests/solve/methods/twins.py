@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from coadjoint.build.compiler import Source, compile_kernel, find_compiler
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS, Sphere
 from coadjoint.render.environment import environment
 from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
+from coadjoint.solve.methods.lie_poisson import LiePoisson
 from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint
 from coadjoint.solve.steps import Lanes
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS
 from coadjoint.solve.steps import Lanes, add_low
@@ -38,26 +39,6 @@ Bracket = Callable[[Lanes, "Array", "Array", "Array"], "Array"]
 
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44
-
-#: M. Suzuki, Physics Letters A 146 (1990) 319: order 4 from five steps of a symmetric method.
-_SUZUKI: Final = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
-#: W. Kahan and R.-C. Li, Mathematics of Computation 66 (1997) 1089: order 6 from nine, s9odr6a;
-#: as printed by Hairer, Lubich and Wanner, Geometric Numerical Integration, V.3.2.
-_KAHAN_LI: Final = (
-    0.39216144400731413928,
-    0.33259913678935943860,
-    -0.70624617255763935981,
-    0.08221359629355080023,
-)
-
-
-def _close(parts: tuple[float, ...]) -> tuple[float, ...]:
-    """A symmetric composition: parts, what is missing to 1, and the parts backwards."""
-    return (*parts, 1.0 - 2.0 * sum(parts), *reversed(parts))
-
-
-#: Lengths of the steps of a composition, in parts of its own step, by its order.
-COMPOSITIONS: Final = {2: (1.0,), 4: _close((_SUZUKI, _SUZUKI)), 6: _close(_KAHAN_LI)}
 
 
 @dataclass
