@@ -132,7 +132,8 @@ class Gauss(LiePoisson):
         low, *offsets = split_memory(memory, len(state))
         arc = Arc(lanes=lanes, middle=0.5 * h, length=h, state=state, low=low)
         start = np.concatenate([state] * len(offsets))
-        found = self.search(arc, start, np.concatenate([*map(continue_offset, offsets)]))
+        offset = np.concatenate([*map(continue_offset, offsets)])
+        found = self.search(arc, start, offset, np.zeros(h.shape, bool))
         stages = np.split(found.middle, len(offsets))
         kept = [
             keep_offset(*each) for each in zip(offsets, (x - state for x in stages), strict=True)

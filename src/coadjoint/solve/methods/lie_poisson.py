@@ -160,33 +160,28 @@ class LiePoisson:
         for number, stage in enumerate(self.stages):
             length = stage * h
             arc = Arc(lanes=lanes, middle=after + 0.5 * length, length=length, state=state, low=low)
+            offset = continue_offset(offsets[number]) if offsets else np.zeros(state.shape)
+            found = self.search(arc, state, offset, ~solved)
             if offsets:
-                found = self.search(arc, state, continue_offset(offsets[number]))
                 kept.append(keep_offset(offsets[number], found.middle - state))
-            else:
-                found = self.search_from(arc, state)
             state, low = add_low(state, low, found.rise)
             after, solved, made = after + length, solved & found.solved, made + found.made
         return state, np.concatenate([low, *kept]), solved, made
 
-    def search(self, arc: Arc, start: Array, offset: Array) -> Search:
-        """The middle of a step, and what the step adds to its state.
+    def search(self, arc: Arc, start: Array, offset: Array, done: Mask) -> Search:
+        """The middle of a step, and what the step adds to its state, in lanes that are not done.
 
         Where the search leads nowhere from some way off its start it begins again without that.
         """
-        first, solved = self._try_search(arc, start + offset, np.zeros(arc.length.shape, bool))
-        if solved.all():
+        first, solved = self._try_search(arc, start + offset, done)
+        over = solved | ~(offset != 0.0).any(axis=0)
+        if over.all():
+            first.done = solved
             return first
-        again, more = self._try_search(arc, start, solved)
-        again.take_over(first, solved)
-        again.done = solved | more
+        again, more = self._try_search(arc, start, over)
+        again.take_over(first, over)
+        again.done = np.where(over, solved, more)
         return again
-
-    def search_from(self, arc: Arc, middle: Array) -> Search:
-        """The same from one place alone."""
-        found, solved = self._try_search(arc, middle, np.zeros(arc.length.shape, bool))
-        found.done = solved
-        return found
 
     def _try_search(self, arc: Arc, middle: Array, done: Mask) -> tuple[Search, Mask]:
         """A search from some middle on in lanes that are not done, and where it is solved."""
