@@ -88,9 +88,9 @@ Systems whose rates are loops over a table have no such matrix.""",
         doc="""Only systems with an energy and a tensor in closed form have it. On the dual of a Lie
 algebra it is the coadjoint action of the vector on the state; of a constrained motion the tensor
 is the almost-Poisson one, taken from momenta to the velocities of the state, where it is
-antisymmetric as well. Its second argument is the vector, in
-the forms of the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector
-below the state.
+antisymmetric as well. With a double bracket it is ``P + P G P``, by which no energy grows. Its
+second argument is the vector, in the forms of the state; `evaluate` and `bind` take one array,
+``(2*n, *batch)``, with the vector below the state.
 """,
         below="vector",
         looped="never",

@@ -159,9 +159,7 @@ _TENSOR: Final = (
     "step (R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 "
     "(1999) 1021)"
 )
-_TENSORS: Final = (
-    "an energy, and a Poisson or almost-Poisson tensor in closed form, without relaxation"
-)
+_TENSORS: Final = "an energy, and a Poisson or almost-Poisson tensor in closed form"
 
 _ENTRIES: Final = (
     StructuredMethod(
@@ -389,6 +387,23 @@ STRUCTURED: Final = MappingProxyType(_TABLE)
 _MAPPED: Final = {each.name: each for each in _MAPS}
 #: Those whose steps are a sequence of maps: explicit, or with one linear equation.
 MAPPED: Final = MappingProxyType(_MAPPED)
+
+
+#: Why compositions are refused where energy is lost.
+BACKWARD: Final = (
+    "some of its steps go back in time, where friction gives energy: those of a composition of "
+    "order above 2, whose lengths have cubes with the sum 0"
+)
+
+
+def list_backward() -> set[str]:
+    """Names of methods that are compositions with steps back in time.
+
+    >>> sorted(list_backward())[:3]
+    ['coadjoint_mean4', 'coadjoint_mean6', 'discrete_gradient4']
+    """
+    composed = (each for each in (*_ENTRIES, *_MAPS) if each.file != "gauss")
+    return {each.name for each in composed if each.name[-1] in "46"}
 
 
 def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:

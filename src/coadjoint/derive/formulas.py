@@ -129,7 +129,7 @@ def energy_gradient(equations: Equations) -> Rows | None:
 
 
 def bracket_vector(equations: Equations) -> Rows | None:
-    """The Poisson tensor times a vector, which follows the state in the first argument."""
+    """The tensor times a vector, which follows the state in the first argument."""
     own = times_vector(equations)
     if own is None:
         return None

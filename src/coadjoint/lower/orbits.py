@@ -87,6 +87,20 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
     Args:
         programs: The functions of a kernel by name.
     """
+    if not is_product(programs):
+        return False
+    bracket = programs["bracket_vector"]
+    vector = bracket.state[len(programs["rhs"].state) :]
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        turned = run(bracket, at, number, call_modulo)
+        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
+
+    return vanish(find, bracket.names)
+
+
+def is_product(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are ``bracket_vector`` of the gradient of the energy, likewise."""
     if not {*ACTION} <= programs.keys() or "noise" in programs:
         return False
     rates, slopes, bracket = (programs[name] for name in ("rhs", *ACTION))
@@ -100,8 +114,6 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
             strict=True,
         )
         yield from (a + -b for a, b in pairs)
-        turned = run(bracket, at, number, call_modulo)
-        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
 
     return vanish(find, bracket.names)
 

@@ -14,11 +14,19 @@ from types import MappingProxyType
 from typing import Final
 
 from coadjoint.derive import Equations
+from coadjoint.derive.times_vector import find_product
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import SPLITTINGS, Maps, list_schedules
 from coadjoint.lower.program import Program, run
-from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, StructuredMethod
+from coadjoint.methods import (
+    BACKWARD,
+    MAPPED,
+    STRUCTURED,
+    JudgedMethod,
+    StructuredMethod,
+    list_backward,
+)
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
 from coadjoint.render.solvers import describe_structured, select_programs
@@ -68,6 +76,9 @@ def judge_methods(
     offered = {each.name for each in describe_structured(solved)["structured"]["methods"]}
     refusals = dict(maps.refusals)
     refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
+    refusals |= (
+        dict.fromkeys(list_backward() - refusals.keys(), BACKWARD) if facts.is_dissipative else {}
+    )
     known = {program.name: program for program in maps.programs}
     return facts, judge(facts, refusals, known)
 
@@ -97,11 +108,15 @@ def judge(
 
 
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
-    """Why a method does not apply, as a clause."""
+    """Why a method does not apply, as a clause; of one that does, whether it goes back in time."""
     if facts.is_noisy:
         return "motions with noise have methods of their own, heun and midpoint"
     if facts.has_kinks:
         return "its rates have kinks, at which explicit methods end their steps"
+    if method.file in ("discrete_gradient", "average_gradient"):
+        found = find_product(facts.equations)
+        if isinstance(found, str):
+            return found
     return f"it expects {method.expects}"
 
 
@@ -149,6 +164,8 @@ def _judge_runge_kutta(
     elif not exactly:
         said.append("no integral is seen to be of degree 2 or less")
     said += ["the Poisson tensor is constant"] * is_symplectic
+    if facts.grows and any(each.name == "energy" for each in exactly):
+        said.append("the entropy, of degree 2, grows by dS.G dS at the stages")
     is_gauss = method.file == "gauss"
     stages = method.order // 2 if is_gauss else STEPS[method.order]
     each = "stage" if is_gauss else "midpoint"
@@ -233,26 +250,42 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
     steps = count(STEPS[method.order], "middle")
     is_mean = method.file == "average_gradient"
     cost = f"{SWEEPS} of {steps}, each with {'five gradients' if is_mean else 'two energies'}"
-    if not facts.is_bracket:
-        balance = "the energy changes by the power at the middles of steps of what acts on it"
-        return Judgement((), False, balance, cost)
     is_moved = facts.is_moved and not facts.is_turned_by_tensor
     seen = [each for each in facts.integrals if not is_moved]
     has_mean = (
         facts.energy is not None and facts.find_degree([facts.energy], MEAN_DEGREE) is not None
     )
+    is_exact = has_mean or not is_mean
     exactly = tuple(
         each
         for each in seen
-        if (each.name == "energy" and (has_mean or not is_mean))
-        or (each.degree is not None and facts.is_kept_by_tensor(each.values))
+        if (each.name == "energy" and is_exact and facts.is_bracket)
+        or (
+            each.degree is not None
+            and each.is_kept_within_steps
+            and facts.is_kept_by_tensor(each.values)
+        )
     )
+    if not facts.is_bracket:
+        return Judgement(exactly, False, _tell_balance(facts, is_exact=is_exact), cost)
     decides = "the motion is an antisymmetric tensor times the gradient of its energy"
     if is_mean and not has_mean:
         decides += f", which is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
     if is_moved:
         decides += "; after each step the state is moved, so that integrals are not kept"
     return Judgement(exactly, False, decides, cost)
+
+
+def _tell_balance(facts: Facts, *, is_exact: bool) -> str:
+    """How the energy changes in a step with the discrete gradient g, by what acts on the motion."""
+    if not is_exact:
+        return f"the energy is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
+    if facts.relaxes:
+        return (
+            "the motion is P + P G P times the gradient of its energy: a step takes "
+            "h (P g).G (P g) of the energy, g its discrete gradient, and never adds to it"
+        )
+    return "a step adds h g.f to the energy, f what acts at its middle, g the discrete gradient"
 
 
 def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -329,6 +362,8 @@ def _prefer_first(facts: Facts) -> Sequence[str]:
         return ["splitting4", *general] if facts.is_separable else general
     if facts.is_canonical:
         return ["splitting4"] if facts.is_separable else []
+    if facts.relaxes and all(each.degree is not None for each in facts.integrals):
+        return ["discrete_gradient"]
     return ["splitting4", "discrete_gradient"] if facts.is_hamiltonian else []
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.methods import BACKWARD, MAPPED, STRUCTURED, list_backward
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
@@ -123,8 +123,12 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
     known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
     if not module.has("STRUCTURED"):
         return dict.fromkeys(STRUCTURED, "its folder was generated without it")
+    judged = {each.name for each in system.METHODS}
+    backward = list_backward() - judged if judged else set()
     return {
-        name: f"it expects {each.expects}" for name, each in STRUCTURED.items() if name not in known
+        name: f"it expects {each.expects}" if name not in known else BACKWARD
+        for name, each in STRUCTURED.items()
+        if name not in known or name in backward
     }
 
 
