@@ -15,6 +15,7 @@ from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
 from coadjoint.lower.mapped import list_schedules
 from coadjoint.lower.program import Node, Statement
@@ -37,7 +38,6 @@ from coadjoint.render.kernels import (
 from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
 from coadjoint.solve.methods import spherical_midpoint
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 
 
 @dataclass(frozen=True)

@@ -190,6 +190,7 @@ def render_header(
         "structured": structured,
         "schedules": {k: v for k, v in solver["schedules"].items() if k == method.name},
         "is_structured": method.name in STRUCTURED,
+        "parts": 0 if method.name in PLAIN else method.parts,
         "exact": not elementary_functions(programs.values()),
         "sample": sample,
         "observed": observed,

@@ -56,7 +56,7 @@ class NambuGradient(LiePoisson):
         self.values, self.gradients = values, gradients
         self.size, self.stages = size, COMPOSITIONS[order]
 
-    def prepare(self, arc: Arc) -> Corrected:
+    def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`; with a factor for each function."""
         n, members = arc.state.shape
         return Corrected(arc.state, np.zeros((n - 1, members)))

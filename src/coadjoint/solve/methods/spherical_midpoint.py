@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.methods import Sphere
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, Arc, LiePoisson, Sweep
+from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
