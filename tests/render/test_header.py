@@ -88,10 +88,10 @@ def write_program(name, system, state, inputs, headers):
         lines.append(f"    const {name}_inputs u = {{{write(inputs)}}};")
     for method, text in headers.items():
         own = f"{name}_{method}"
-        keeps = f"{own}_rounding" in text
-        given = ["&x", *(["&low"] if keeps else []), "&p", *(["&u", "0"] if inputs.size else [])]
+        keeps = f"{own}_memory" in text
+        given = ["&x", *(["&memory"] if keeps else []), "&p", *(["&u", "0"] if inputs.size else [])]
         lines += ["    {", f"        {name}_state x = {{{write(state)}}};"]
-        lines += [f"        {own}_rounding low = {{{{0.0}}}};"] * keeps
+        lines += [f"        {own}_memory memory = {{{{0.0}}}};"] * keeps
         lines += [
             f"        for (int n = 0; n < {STEPS}; ++n)",
             f"            if ({own}_step({', '.join([*given, STEP.hex()])}) != {own.upper()}_DONE)",
