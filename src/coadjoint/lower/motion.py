@@ -105,11 +105,13 @@ class Coupled:
         factors: The name of L and D.
         entries: Of the matrix, on and below the diagonal; each is a name, or does not move.
         known: The right side.
+        unknowns: The names of what solves them.
     """
 
     factors: str
     entries: tuple[Polynomial, ...]
     known: tuple[Polynomial, ...]
+    unknowns: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -295,9 +297,10 @@ class _Planning:
             return
         assert isinstance(value.factors, Symbol), value
         factors = value.factors.name
-        self._meanings[name] = Coupled(factors, self._matrices[factors], tuple(wholes))
-        for place in range(len(wholes)):
-            own = f"{name}_{place + 1}"
+        unknowns = tuple(f"{name}_{place + 1}" for place in range(len(wholes)))
+        entries, known = self._matrices[factors], tuple(wholes)
+        self._meanings[name] = Coupled(factors, entries, known, unknowns)
+        for place, own in enumerate(unknowns):
             self._meanings[own] = Unknown(name, place)
 
     def _name(self, whole: Polynomial, name: str) -> Polynomial:
@@ -408,6 +411,8 @@ def _names_behind(meaning: Meaning) -> Iterator[str]:
     """The names that a meaning reads of which orders below are enough: they may depend on it."""
     if isinstance(meaning, Function) and not meaning.divisor:
         yield from (name for name, _ in meaning.factors if name)
+    if isinstance(meaning, Coupled):  # each of its sums has all of them
+        yield from meaning.unknowns
 
 
 def _parts_of_slope(slope: Node) -> tuple[bool, Node, Node]:
