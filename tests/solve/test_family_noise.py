@@ -13,7 +13,7 @@ from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.spec.reader import read_spec_text
-from tests.families import MOVED, SHAKEN, VORTICES, read, write_shaken
+from tests.families import MOVED, SHAKEN, SPRINGS, VORTICES, read, write_shaken
 
 METHODS = ["heun", "midpoint"]
 SIZE, STEP, SEED = 4, 2.0**-6, 7
@@ -179,6 +179,15 @@ def test_noise_that_no_member_tells_is_written_out(hamiltonian, why):
     """And the spec says why."""
     noisy = VORTICES.split("[claims]")[0].replace("size = 6", "size = 3")
     assert read(noisy + f'[noise]\ndW = "{hamiltonian}"\n').written == why
+
+
+def test_noise_of_members_that_are_written_out_is_there_for_each():
+    """With a process of its own for each of them."""
+    text = SPRINGS.replace("size = 6", "size = 3").replace('"euler-lagrange", ', "")
+    text = text.split("[claims]")[0]
+    found = read(text + '[noise]\ndW = "c*q[i]"\ndV = "sum(i, q[i])"\n')
+    assert found.written == "there are tables [noise] and [lagrangian]"
+    assert [each.name for each in found.noise] == ["dW_0", "dW_1", "dW_2", "dV"]
 
 
 def test_a_run_with_noise_says_what_is_missing(shaken):
