@@ -13,7 +13,7 @@ from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.spec.reader import read_spec_text
-from tests.families import SHAKEN, VORTICES, read, write_shaken
+from tests.families import MOVED, SHAKEN, SPRINGS, VORTICES, read, write_shaken
 
 METHODS = ["heun", "midpoint"]
 SIZE, STEP, SEED = 4, 2.0**-6, 7
@@ -181,6 +181,15 @@ def test_noise_that_no_member_tells_is_written_out(hamiltonian, why):
     assert read(noisy + f'[noise]\ndW = "{hamiltonian}"\n').written == why
 
 
+def test_noise_of_members_that_are_written_out_is_there_for_each():
+    """With a process of its own for each of them."""
+    text = SPRINGS.replace("size = 6", "size = 3").replace('"euler-lagrange", ', "")
+    text = text.split("[claims]")[0]
+    found = read(text + '[noise]\ndW = "c*q[i]"\ndV = "sum(i, q[i])"\n')
+    assert found.written == "there are tables [noise] and [lagrangian]"
+    assert [each.name for each in found.noise] == ["dW_0", "dW_1", "dW_2", "dV"]
+
+
 def test_a_run_with_noise_says_what_is_missing(shaken):
     """As of every system with noise."""
     with pytest.raises(KernelArgumentError, match="seed is None"):
@@ -188,6 +197,25 @@ def test_a_run_with_noise_says_what_is_missing(shaken):
     assert "; noise dZ, dX, dY" in repr(shaken)
     numbers = np.zeros((15 + 11, 2))
     assert shaken.noise_vector(numbers, target="python").shape == (15, 2)
+
+
+def test_inputs_time_and_noise_move_members_together():
+    """Six arrays of a call, and steps in C with all that drives them: the bits of NumPy."""
+    source = np.random.default_rng(6)
+    with load_texts(pipeline.render(read_spec_text(MOVED, "moved.toml")).texts) as system:
+        three, signal = system.resize({"i": 3}), ([0, 0.5, 1], source.normal(size=(4, 3)), "linear")
+        state, inputs = source.normal(size=(9, 5)), source.normal(size=(4, 5))
+        found, expected = (
+            (
+                three.rhs(state, None, inputs, time=0.5, target=target),
+                three.simulate(
+                    state, (0, 1), None, signal, step=STEP, seed=1, samples=3, target=target
+                ).state,
+            )
+            for target in ("c", "numpy")
+        )
+    for one, other in zip(found, expected, strict=True):
+        assert np.array_equal(one, other)
 
 
 SPOILED_STEPS = [
