@@ -56,7 +56,7 @@ INDEXED = [
     ),
     (
         RING,
-        [("size = 6, ", ""), (M, 'M = "sum(i, S[i, 3])^2"')],
+        [("size = 6, ", ""), (M, 'M = "abs(sum(i, S[i, 3]))"')],
         'Give the index a size, or choose one: sizes={"i": 5}.',
         [("{ periodic", "{ size = 6, periodic")],
     ),
@@ -95,6 +95,12 @@ INDEXED = [
         [("{ periodic", "{ size = 6, periodic")],
     ),
     (CHAIN, [("size = 6", "size = 2")], "Choose a larger size.", [("size = 2", "size = 3")]),
+    (
+        RIGID_BODY,
+        [("shape = [3]", 'shape = ["n"]')],
+        'Declare what it counts: [index] i = { size = 8, count = "n" }.',
+        [("[algebra]", '[index]\ni = { size = 3, count = "n" }\n[algebra]')],
+    ),
     (
         CHAIN,
         [("[index]\ni = { size = 6 }\n", "")],

@@ -8,6 +8,8 @@ over the members, and so is its rate:
   all N >= 2 w, if each term reads w + 1 members. It vanishes if F(2 w) and F(2 w + 1) do, and then
   every F(N) does. A shorter ring is a longer one that repeats itself;
 * in an open chain, F(N+1) - F(N) is a function of the last w + 1 members: likewise from w on;
+* where members stand alone at the ends of a chain, the new one is put in the middle: what reads an
+  end does not change, and F(N+1) - F(N) is as in a ring;
 * with pairs, the rate of a sum over members is a sum of terms of one member and of two. If it
   vanishes for 2 members and for 3, both sums vanish for every N;
 * with pairs and neighbours, what two new members far from each other add together, and not each
