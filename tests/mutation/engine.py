@@ -513,6 +513,17 @@ MUTANTS = (
         "functions: use 1 for 0 in range",
     ),
     *of(
+        "solve/methods/lie_poisson",
+        "keep_offset: rewrite first - kept[1] -> first",
+        "continue_offset: rewrite first + second -> first",
+        tests=("tests/solve/test_clock.py -k 'differences or last_ones'",),
+    ),
+    *of(
+        "algebra/planes",
+        "_commute: rewrite ahead - back -> ahead + back",
+        tests=("tests/algebra/test_planes.py",),
+    ),
+    *of(
         "solve/methods/coadjoint_mean",
         "_find_rest: rewrite length * 0.5 -> length",
         "_follow: rewrite turn + _1 -> turn",
