@@ -39,7 +39,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, list_structured
+from coadjoint.methods import ACTION, ASKED, Sphere, list_structured
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -321,11 +321,14 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
     }
 
 
-def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
+def describe_structured(
+    programs: Mapping[str, Program], noisy_spheres: Sequence[Sphere] = ()
+) -> dict[str, Any]:
     """What templates read of methods that keep structure, under one name.
 
     Args:
         programs: As `select_programs` has them, with kinks.
+        noisy_spheres: Spheres on which noise moves the state.
     """
     bracket = programs.get("bracket_vector")
     on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
@@ -343,6 +346,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "has_bracket": bracket is not None,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
+            "noisy_spheres": noisy_spheres,
             "near": spherical_midpoint.NEAR,
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
