@@ -377,7 +377,7 @@ _MAPS: Final = (
 )
 
 #: Methods of motions with noise; ``"auto"`` is the last one.
-NOISY: Final = ("heun", "midpoint")
+NOISY: Final = ("heun", "spherical_midpoint", "midpoint")
 #: With a fixed step, without a method that keeps structure.
 PLAIN: Final = "dop853"
 

@@ -61,26 +61,30 @@ TOP |= {"d": [0.05, 0.02, 0.04], "tau": [0.1, 0.0, 0.5]}
 
 
 def top_energy(x):
+    """Of a top."""
     return (x[:3].T ** 2 / TOP["I"]).sum(1) / 2 + 9.81 * np.array(TOP["chi"]) @ x[3:]
 
 
 def top_power(x, y):
+    """Of friction and the motor, at the middle of a step."""
     Omega = (x[:3] + y[:3]).T / 2 / TOP["I"]
     return (Omega * (TOP["tau"] - TOP["d"] * Omega)).sum(1)
 
 
 TORQUE = np.array([0.02, -0.01, 0.03])
-I, J = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.1, 0.1])
+BODY, WHEEL = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.1, 0.1])
 
 
 def craft_energy(x):
+    """Of a body with wheels."""
     Pi, L = x[4:7], x[7:]
-    return ((Pi - L).T ** 2 / I).sum(1) / 2 + (L.T**2 / J).sum(1) / 2
+    return ((Pi - L).T ** 2 / BODY).sum(1) / 2 + (L.T**2 / WHEEL).sum(1) / 2
 
 
 def craft_power(x, y):
+    """Of torques on the wheels, by their rates."""
     m = (x + y) / 2
-    w = m[7:].T / J - (m[4:7] - m[7:]).T / I
+    w = m[7:].T / WHEEL - (m[4:7] - m[7:]).T / BODY
     return w @ TORQUE
 
 
@@ -89,11 +93,13 @@ INERTIA, MASS = np.array([0.082, 0.0845, 0.1377]), 4.34
 
 
 def flight_energy(x):
+    """Of a body in a field."""
     kinetic = (x[:3].T ** 2 / INERTIA).sum(1) / 2 + (x[3:6] ** 2).sum(0) / (2 * MASS)
     return kinetic - MASS * 9.81 * x[9]
 
 
 def flight_power(x, y):
+    """Of rotors."""
     m = (x + y) / 2
     return (m[:3].T / INERTIA) @ TURN - m[5] / MASS * THRUST
 

@@ -21,6 +21,7 @@ from coadjoint.derive.setting import STEP
 from coadjoint.lower.mapped import list_maps, list_moved, list_schedules
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
+from coadjoint.methods import Sphere
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import (
     TEMPLATES,
@@ -59,6 +60,7 @@ class SolverTexts:
         files: The printed files by name.
         system: Name of the system.
         kind: What they integrate.
+        noisy_spheres: Spheres on which noise moves the state.
     """
 
     programs: Mapping[str, Program]
@@ -67,6 +69,7 @@ class SolverTexts:
     files: Mapping[str, str]
     system: str
     kind: SolverKind = SOLVER
+    noisy_spheres: tuple[Sphere, ...] = ()
 
 
 def check_solver_texts(texts: SolverTexts) -> int:
@@ -289,7 +292,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "held": dict.fromkeys(kinks["held"], nothing),
             "driving": {name: rows for name, rows in driving.items() if rows},
             **describe_noise(texts.programs),
-            **describe_structured(texts.programs),
+            **describe_structured(texts.programs, texts.noisy_spheres),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),

@@ -190,6 +190,17 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
     return tuple(found)
 
 
+def find_noisy_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
+    """The same of a motion with noise, whose processes have Hamiltonians of their own.
+
+    What a process does is the bracket with its Hamiltonian, as it was derived.
+    """
+    still = {name: each for name, each in programs.items() if name != "noise"}
+    if "noise" not in programs or not stays_on_orbits(still):
+        return ()
+    return find_spheres(still)
+
+
 def _find_brackets(program: Program, n: int) -> Brackets:
     """All brackets of basis vectors: the product with each vector, at each basis state."""
     brackets: dict[tuple[int, int], dict[int, Fraction]] = {}

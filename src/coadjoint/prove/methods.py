@@ -22,6 +22,7 @@ from coadjoint.lower.program import Program, run
 from coadjoint.methods import (
     BACKWARD,
     MAPPED,
+    NOISY,
     STRUCTURED,
     JudgedMethod,
     StructuredMethod,
@@ -110,7 +111,7 @@ def judge(
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
     """Why a method does not apply, as a clause; of one that does, whether it goes back in time."""
     if facts.is_noisy:
-        return "motions with noise have methods of their own, heun and midpoint"
+        return "motions with noise have methods of their own: " + ", ".join(NOISY)
     if facts.has_kinks:
         return "its rates have kinks, at which explicit methods end their steps"
     if method.file in ("discrete_gradient", "average_gradient"):

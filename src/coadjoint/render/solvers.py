@@ -31,7 +31,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, TERMS, list_structured
+from coadjoint.methods import ACTION, ASKED, TERMS, Sphere, list_structured
 from coadjoint.render.recurrences import (
     Line,
     Stage,
@@ -300,11 +300,14 @@ def list_normals() -> dict[str, Any]:
     return {name: getattr(normals, name) for name in names}
 
 
-def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
+def describe_structured(
+    programs: Mapping[str, Program], noisy_spheres: Sequence[Sphere] = ()
+) -> dict[str, Any]:
     """What templates read of methods that keep structure, under one name.
 
     Args:
         programs: As `select_programs` has them, with kinks.
+        noisy_spheres: Spheres on which noise moves the state.
     """
     bracket = programs.get("bracket_vector")
     on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
@@ -326,6 +329,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "has_bracket": bracket is not None,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
+            "noisy_spheres": noisy_spheres,
             "near": spherical_midpoint.NEAR,
             "roundings": spherical_midpoint.ROUNDINGS,
             # names of a vector below the state, with their rows

@@ -36,7 +36,7 @@ from coadjoint.solve.starts import check_starts
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.twins import StepwiseStepper
-from coadjoint.solver_kinds import list_kinds
+from coadjoint.solver_kinds import SOLVER, list_kinds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -130,6 +130,19 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         for name, each in STRUCTURED.items()
         if name not in known or name in backward
     }
+
+
+def find_noisy_obstacle(system: System, name: str) -> str:
+    """Why a method does not follow the noise of a system, as a clause; "" where it does.
+
+    Args:
+        system: The System.
+        name: One of `coadjoint.methods.NOISY`.
+    """
+    if name != "spherical_midpoint":
+        return ""
+    has_spheres = KernelModule(system, SOLVER.files[2]).has("SPHERES")
+    return "" if has_spheres else f"it expects {STRUCTURED[name].expects}, and noise by brackets"
 
 
 def _tell_keeps(choice: Choice) -> str:

@@ -4,7 +4,8 @@ Over a step the noise is taken as constant: its increments over the length of th
 method and the implicit midpoint follow ``rhs + noise (dW/h)``, which gives the motion in the sense
 of Stratonovich. They are the functions of the generated ``solver.c``, operation by operation.
 Heun's keeps nothing exactly; the midpoint keeps what is linear or quadratic and kept on each path,
-as far as the equation of a step is solved, which is to rounding.
+as far as the equation of a step is solved, which is to rounding. On spheres the spherical midpoint
+keeps Casimirs and the Poisson bracket.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.normals`.
 """
@@ -12,13 +13,15 @@ Read next: `coadjoint.solve.normals`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from coadjoint.lower.normals import SWEEPS
+from coadjoint.methods import Sphere
+from coadjoint.solve.methods.spherical_midpoint import Scale
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.runge_kutta import end_where_rates_end
 from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step, larger
@@ -55,6 +58,7 @@ class _Noisy:
         seed: Of the noise.
         bound: The largest size of a normal number.
         branches: Whether the drift has branch points: it has to be finite after each step.
+        spheres: Rows of vectors on spheres, and of their tangents.
     """
 
     tries_again = halves = False
@@ -70,7 +74,9 @@ class _Noisy:
         seed: int,
         bound: float,
         branches: bool = False,
+        spheres: Sequence[Sphere] = (),
     ) -> None:
+        self.spheres = spheres
         self.rates, self.fields, self.along, self.size = rates, fields, along, size
         self.processes = np.arange(processes, dtype=np.uint64)[:, np.newaxis]
         self.seed, self.bound, self.branches = seed, bound, branches
@@ -139,11 +145,16 @@ class Midpoint(_Noisy):
         h = find_fixed_step(self.size, lanes.end - lanes.time)
         rates, half, middle = self.move(lanes, h), h * 0.5, lanes.state
         done, solved = np.zeros(h.shape, bool), np.zeros(h.shape, bool)
-        last = np.full(h.shape, np.inf)
+        last, kept = np.full(h.shape, np.inf), self.prepare(lanes.state)
+        rows = np.zeros(middle.shape)
         for _ in range(SWEEPS):
             if done.all():
                 break
-            following = lanes.state + half * rates(half, middle)
+            found = rates(half, middle)
+            following = lanes.state + half * found
+            rows = np.where(done, rows, found)
+            for each in kept:
+                each.apply(following)
             change, size = np.zeros(h.shape), np.zeros(h.shape)
             for one, other in zip(following, middle, strict=True):
                 change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
@@ -153,10 +164,29 @@ class Midpoint(_Noisy):
             fresh = (change == 0.0) | (small & (change >= last))
             last = np.where(done, last, change)
             done |= fresh
-        return self.make_attempt(lanes, h, 2.0 * middle - lanes.state, solved)
+        if not kept:
+            return self.make_attempt(lanes, h, 2.0 * middle - lanes.state, solved)
+        for each in kept:
+            solved &= each.is_root()
+        return self.make_attempt(lanes, h, lanes.state + h * rows, solved)
+
+    def prepare(self, state: Array) -> list[Scale]:
+        """What moves vectors to spheres: nothing."""
+        return []
+
+
+class SphericalMidpoint(Midpoint):
+    """The spherical midpoint, with the noise of a step as part of its energy.
+
+    It keeps what the spherical midpoint keeps, path by path: Casimirs and the Poisson bracket.
+    """
+
+    def prepare(self, state: Array) -> list[Scale]:
+        """As of `Midpoint`: of each sphere the quotient of lengths."""
+        return [Scale(state, 0.0 * state, each) for each in self.spheres]
 
 
 #: The methods by name.
 METHODS: Final[Mapping[str, type[Heun] | type[Midpoint]]] = MappingProxyType(
-    {"heun": Heun, "midpoint": Midpoint}
+    {"heun": Heun, "midpoint": Midpoint, "spherical_midpoint": SphericalMidpoint}
 )

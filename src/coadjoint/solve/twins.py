@@ -14,7 +14,7 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
-from coadjoint.methods import ASKED, MAPPED
+from coadjoint.methods import ASKED, MAPPED, Sphere
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
@@ -58,7 +58,8 @@ class NumpyStepper:
         functions = (*choice.kind.rates, "domain", "projection", "noise", "noise_vector", *ASKED)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
-        self._held, kinks, self._spheres = None, None, ()
+        spheres: tuple[Any, ...] = ()
+        self._held, kinks, self._spheres = None, None, spheres
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
@@ -133,6 +134,7 @@ class NumpyStepper:
             seed=run.seed,
             bound=run.bound,
             branches=self._branches,
+            spheres=tuple(Sphere(*each) for each in self._spheres),
         )
 
     def _expand(self, lanes: Lanes, order: int) -> Array:

@@ -16,7 +16,7 @@ from coadjoint.methods import Sphere
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
 from coadjoint.solve.methods.lie_poisson import LiePoisson
-from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint, _Scale
+from coadjoint.solve.methods.spherical_midpoint import Scale, SphericalMidpoint
 from tests.solve.methods.algebras import (
     ALGEBRAS,
     Motion,
@@ -286,11 +286,11 @@ def test_false_roots_of_a_quotient_are_refused() -> None:
     sphere = Sphere((0, 1, 2))
     start = np.array([[0.6], [0.0], [0.8]])
     for scale, good in ((1.0, True), (0.0, False), (-1.0, False)):
-        quotient = _Scale(start, 0.0 * start, sphere)
+        quotient = Scale(start, 0.0 * start, sphere)
         quotient.scale = np.array([scale])
         quotient.apply(start.copy())
         assert quotient.is_root().tolist() == [good], scale
-    assert _Scale(0 * start, start, sphere).is_root().tolist() == [True]
+    assert Scale(0 * start, start, sphere).is_root().tolist() == [True]
 
 
 def test_lanes_do_not_move_each_other() -> None:

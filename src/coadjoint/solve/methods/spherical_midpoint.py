@@ -70,16 +70,16 @@ class SphericalMidpoint(LiePoisson):
         self.field, self.size, self.stages = field, size, COMPOSITIONS[order]
         self.spheres = spheres
 
-    def prepare(self, arc: Arc, middle: Array) -> list[_Scale]:
+    def prepare(self, arc: Arc, middle: Array) -> list[Scale]:
         """As `LiePoisson.prepare`: of each sphere the quotient of lengths."""
-        return [_Scale(arc.state, middle - arc.state, each) for each in self.spheres]
+        return [Scale(arc.state, middle - arc.state, each) for each in self.spheres]
 
-    def confirm(self, kept: list[_Scale]) -> Mask | bool:
+    def confirm(self, kept: list[Scale]) -> Mask | bool:
         """As `LiePoisson.confirm`: quotients are roots, and positive."""
         roots = np.concatenate([np.atleast_2d(each.is_root()) for each in kept])
         return np.asarray(roots.all(axis=0))
 
-    def sweep(self, arc: Arc, middle: Array, kept: list[_Scale]) -> Sweep:
+    def sweep(self, arc: Arc, middle: Array, kept: list[Scale]) -> Sweep:
         """As `LiePoisson.sweep`."""
         rates = self.field(arc.lanes, arc.middle, middle)
         following = arc.state + (arc.low + 0.5 * arc.length * rates)
@@ -88,7 +88,7 @@ class SphericalMidpoint(LiePoisson):
         return Sweep(following, arc.length * rates)
 
 
-class _Scale:
+class Scale:
     """The quotient of the lengths of a vector and of the half of a sum, on its way to be solved.
 
     It is the root s of ``s^2 |c|^2 = |w|^2`` in dual numbers; each sweep makes one step of
