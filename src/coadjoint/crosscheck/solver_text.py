@@ -16,7 +16,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import zip_longest
 
-from coadjoint.crosscheck.parse_back import as_printed
+from coadjoint.crosscheck.parse_back import printed_lines
 from coadjoint.derive.setting import STEP
 from coadjoint.lower.mapped import list_maps, list_schedules
 from coadjoint.lower.program import Node, Program, Symbol
@@ -177,7 +177,7 @@ def _orders(solver: SolverText) -> Iterable[Pair | Loop]:
 
 
 def _pairs(lines: Iterable[Line]) -> list[Pair]:
-    return [(line.name, as_printed(line.value)) for line in lines]
+    return [each for line in lines for each in printed_lines(line.name, line.value)]
 
 
 def _check_body(found: SolverBody, expected: SolverBody, file: str, function: str) -> int:
@@ -273,6 +273,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         fixed_reads=frozenset(),
         branches=solver.branches,
         shared=solver.shared,
+        unknowns=solver.unknowns,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
     templates = {file: TEMPLATES[file] for file in texts.kind.files}

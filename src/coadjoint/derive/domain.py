@@ -57,6 +57,7 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         bounds=tuple(each for each in conditions if each not in known.conditions),
         definitions=_definitions(equations),
         momenta=_definitions(equations) if equations.iterations else momenta,
+        loops=equations.loops,
     )
 
 

@@ -7,7 +7,7 @@ numbers that carry their slopes, by the product, quotient and chain rules. The d
 element of the field would be brought to a common denominator, where terms cancel that no formula of
 doubles can cancel without rounding (docs/decisions/envelope.md). Definitions are evaluated in their
 order and never put into one another: there may be many levels of them where velocities are solved
-for.
+for. What a kernel solves by a loop is solved here by what the arithmetic knows of such equations.
 Read next: `coadjoint.lower.check` and `coadjoint.crosscheck.oracle`, which supply the arithmetic.
 """
 
@@ -90,7 +90,10 @@ class Reference:
             if solve.newton is not None and reached.intersection(solve.newton.names):
                 known |= solve.newton.find(field, known, number, call, partial(_settle, call))
         implied = {solve.last: solve for solve in self._implicit_solves(function)}
+        loops = rows.of.loops
         for name, definition in definitions:
+            for symbol in field.names_in(definition) & loops.keys() - known.keys():
+                known |= loops[symbol].run_loop(symbol, value) if symbol not in known else {}
             known[name] = value(definition)
             if name in implied:
                 known |= implied[name].differentiate(known, value)
@@ -105,7 +108,8 @@ class Reference:
     @cached_property
     def _solves(self) -> list[ImplicitSolve]:
         """All solves, with their factors."""
-        return [ImplicitSolve.of(self.equations, each) for each in self.equations.exact.solves]
+        solves = (each for each in self.equations.exact.solves if not each.is_loop)
+        return [ImplicitSolve.of(self.equations, each) for each in solves]
 
     def _slopes(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]

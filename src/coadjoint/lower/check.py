@@ -21,7 +21,7 @@ from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS, TABLE_ENTRIES
-from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
+from coadjoint.lower.program import LEVELS, ZERO, Output, Program, count_loop, run
 from coadjoint.lower.vanishing import find_vanishing
 
 #: Points modulo a prime at which Programs without a closed form are compared.
@@ -70,6 +70,8 @@ def check_size(equations: Equations, program: Program) -> None:
         LimitError: More operations or statements than docs/limits.md allows.
     """
     operations = sum(sum(program.operation_counts(level).values()) for level in LEVELS)
+    loops = (count_loop(statement.value) for statement in program.statements)
+    operations -= sum(sum(counts.values()) for counts in loops)
     # Outputs that are zero everywhere are set by one loop, and those of a table by another one.
     results = sum(output.value != ZERO for output in program.outputs)
     statements = len(program.statements) + (0 if program.table else results)

@@ -223,6 +223,7 @@ def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
 def count_slopes(equations: Equations) -> int:
     """The products that a Jacobian through all solves takes: factors times components."""
     factors = sum(map(len, factors_of_solves(equations)))
+    factors += sum(len(each.block) ** 2 for each in equations.exact.solves if each.is_loop)
     return factors * len(equations.setting.state)
 
 

@@ -255,7 +255,13 @@ class Samples:
         allowed = self._allow(point) | self._transform(point)
         point.update({name: x.value for name, x in allowed.items()})
         call.learn(values | allowed)
+        loops = self.motion.equations.loops
         for name, definition in self._needed:
+            for symbol in self.field.names_in(definition) & loops.keys() - point.keys():
+                given = loops[symbol].run_loop(
+                    symbol, lambda e: Residue(point.value(e), self.prime)
+                )
+                point.update({each: x.value for each, x in given.items()})
             point[name] = point.value(definition)
         return point
 

@@ -37,6 +37,7 @@ from coadjoint.render.solvers import (
     arrange,
     arrange_function,
     arrange_map,
+    count_unknowns,
     describe_noise,
     describe_structured,
     select_programs,
@@ -157,9 +158,19 @@ def list_called(programs: Iterable[Program]) -> list[str]:
     return sorted(name for name in FUNCTIONS if name in called)
 
 
+def find_chunk(unknowns: int) -> int:
+    """How many members the NumPy kernel evaluates at a time, given how many unknowns it solves for.
+
+    >>> find_chunk(0), find_chunk(20)
+    (11000, 500)
+    """
+    return 210_000 // (unknowns * (unknowns + 1)) if unknowns else CHUNK
+
+
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
     table, firsts = arrange_table(context.programs)
+    unknowns = count_unknowns(context.programs)
     state = rows_of(context.state)
     reconstructed = rows_of(context.reconstructed, len(state))
     shared: dict[str, Any] = {
@@ -180,7 +191,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             **shared,
             "state": state,
             "reconstructed": reconstructed,
-            "chunk": CHUNK,
+            "chunk": find_chunk(unknowns),
+            "unknowns": unknowns,
             "routes": wrap([*context.routes, *note_unproved(context.supported)]),
             "equations": wrap(context.equations),
             "functions": [

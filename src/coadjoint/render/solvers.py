@@ -28,15 +28,19 @@ from coadjoint.lower.program import (
     Add,
     Call,
     Divide,
+    Factors,
+    Item,
     Multiply,
     Negate,
     Node,
     Number,
     Program,
+    Solution,
     Symbol,
     Table,
     children,
     walk,
+    with_children,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
 from coadjoint.methods import ACTION, ASKED, list_structured
@@ -148,6 +152,7 @@ class SolverText:
         shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
         kinks: What the sides are those of, which are the last parameters; None for no sides.
+        unknowns: The largest number of unknowns that a loop solves for; 0 without loops.
     """
 
     fixed: tuple[Line, ...]
@@ -165,6 +170,13 @@ class SolverText:
     shared_reads: frozenset[str] = frozenset()
     loops: LoopText | None = None
     kinks: Program | None = None
+    unknowns: int = 0
+
+
+def count_unknowns(programs: Iterable[Program]) -> int:
+    """The largest number of unknowns that a loop solves for; 0 without loops."""
+    values = (value for program in programs for value in program.values())
+    return max((value.size for value in values if isinstance(value, Factors)), default=0)
 
 
 def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
@@ -244,6 +256,7 @@ def _arrange(
         shared=tuple(shared),
         shared_reads=_reads(shared),
         kinks=programs.get("kinks"),
+        unknowns=count_unknowns(programs.values()),
     )
 
 
@@ -409,6 +422,8 @@ def set_order(node: Node, order: str, arrays: frozenset[str]) -> Node:
             return type(node)(set_order(left, order, arrays), set_order(right, order, arrays))
         case Divide(left=left, right=right):
             return Divide(set_order(left, order, arrays), set_order(right, order, arrays))
+        case Factors() | Solution() | Item():
+            return with_children(node, (set_order(each, order, arrays) for each in children(node)))
     return node
 
 
@@ -454,7 +469,12 @@ def arrange_stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> 
     """
     terms, lines = dict[str, Node](), list[Line]()
     for cell in jets.cells:
-        if cell.tail is None:
+        if isinstance(cell.value, Factors):  # those of order 0 serve all orders
+            continue
+        if isinstance(cell.value, Solution):
+            own, value = _solve_order(cell, cell.value, jets, arrays)
+            terms |= own
+        elif cell.tail is None:
             total = f"{cell.name}_s"
             terms[total], value = _recurrence(cell, Symbol(total), jets, arrays)
         else:
@@ -551,6 +571,26 @@ def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -
             whole = Add(Multiply(part, total), sum_of(last))
             return Multiply(_WEIGHT, inner), Multiply(whole, reciprocal)
     raise AssertionError(cell)
+
+
+def _solve_order(
+    cell: Cell, solution: Solution, jets: Jets, arrays: frozenset[str]
+) -> tuple[dict[str, Node], Node]:
+    """The sums of a solution by their names, and the equations of an order k > 0 with them."""
+    terms, known = dict[str, Node](), list[Node]()
+    for n, (row, tail) in enumerate(
+        zip(cell.list_products(jets.moving), cell.tails, strict=True), 1
+    ):
+        side = set_order(tail, "_k", arrays)
+        if row:
+            total: Node = Symbol(f"{cell.name}_s{n}")
+            inner = (Multiply(Symbol(f"{a}[_m]"), Symbol(f"{x}[_k - _m]")) for a, x in row)
+            terms[f"{cell.name}_s{n}"] = sum_of((False, each) for each in inner)
+            for a, x in row:
+                total = Add(total, Multiply(Symbol(f"{a}[_k]"), Symbol(f"{x}[0]")))
+            side = Negate(total) if side == ZERO else Add(side, Negate(total))
+        known.append(side)
+    return terms, Solution(solution.factors, tuple(known))
 
 
 def _name_of(node: Node) -> str:

@@ -24,13 +24,20 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.iteration import Newton, guess_name, rate_name, tell_iterations
+from coadjoint.derive.mechanics.iteration import (
+    STEPS,
+    Newton,
+    guess_name,
+    rate_name,
+    tell_iterations,
+)
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
     Definition,
     Solve,
     forward_name,
+    names_for,
     solve_in_kernel,
     solver_names,
 )
@@ -42,7 +49,7 @@ from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.exact.signs import sign
-from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.limits import OPERATIONS
 from coadjoint.spec import Spec
 
 
@@ -192,9 +199,9 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     for block in coupled_blocks(known.mass):
         if any(known.setting.velocities[i] in known.bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
-        elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
-            names += solver_names(block)
-    return tuple(names)
+        if len(block) > LARGEST_BLOCK:
+            names += names_for(block)
+    return tuple(dict.fromkeys(names))
 
 
 def _invert_block(
@@ -216,7 +223,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         DerivationError: The block is driven, or its Hessian at rest not positive for certain.
     """
     setting, names = of.setting, of.setting.velocities
-    _check_count(setting, block)
+    _check_cost(setting, [names[i] for i in block])
     own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
@@ -285,7 +292,6 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
     names = [setting.velocities[i] for i in block]
-    _check_count(setting, block)
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -300,18 +306,19 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     )
 
 
-def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
-    """A block is not too large for the kernel."""
-    names = [setting.velocities[i] for i in block]
-    if len(block) > COUPLED_VELOCITIES:
+def _check_cost(setting: Setting, names: Sequence[str]) -> None:
+    """An iteration, each of whose steps is written out, is not too long for the kernel."""
+    operations = STEPS * len(names) ** 3 // 3
+    if operations > OPERATIONS:
         refused = _refusal(
             setting,
-            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
-            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            f"that decouple them, or give {_way_out(setting)}.",
+            f"the Lagrangian couples {len(names)} velocities ({', '.join(names)}) and is not "
+            f"quadratic in them; Newton's iteration takes about {operations} operations; expected "
+            f"at most {OPERATIONS} (OPERATIONS). Choose axes that decouple them, or give "
+            f"{_way_out(setting)}.",
             names[0],
         )
-        raise LimitError(str(refused), **refused.parts)
+        raise LimitError(str(refused), **refused.parts | {"limit": OPERATIONS})
 
 
 def _way_out(setting: Setting) -> str:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from coadjoint.lower.program import Node, Symbol, walk
+from coadjoint.lower.program import Node, Several, Symbol, walk
 from coadjoint.render.printers import WIDTH, Printer, indent
 
 
@@ -21,6 +21,8 @@ class CPrinter(Printer):
         >>> C.assignment(Symbol("Pi1"), to="out[0]", comment="dPi1/dt")
         'out[0] = Pi1; /* dPi1/dt */'
         """
+        if isinstance(node, Several):
+            return self.loop(node, to, column)
         note = f" /* {comment} */" if comment else ""
         line = f"{to} = {self.text(node)};"
         if column + len(line) + len(note) <= WIDTH:
@@ -28,6 +30,19 @@ class CPrinter(Printer):
         inner = self.break_lines(node, WIDTH - column - 4 - 1)
         inner[-1] += ";"
         return indent([f"{to} ={note}", *("    " + text for text in inner)], column)
+
+    def loop(self, node: Several, to: str, column: int) -> str:
+        """An array with its entries, and the loop over them that puts its results in their place.
+
+        >>> from coadjoint.lower.program import Factors, Symbol
+        >>> print(C.loop(Factors(1, (Symbol("a"),)), "const double f", column=0))
+        double f[1];
+        f[0] = a;
+        coadjoint_factor(f, 1);
+        """
+        kind, name = to.removeprefix("const ").split()
+        *entries, last = self._write_loop(node, name, column)
+        return indent([f"{kind} {name}[{len(entries)}];", *entries, f"{last};"], column)
 
 
 class VectorPrinter(CPrinter):
@@ -43,7 +58,7 @@ class VectorPrinter(CPrinter):
         >>> VECTORS.assignment(Number(Fraction(1, 2)), to="_rates[0]")
         '_rates[0] = all(0.5);'
         """
-        if any(isinstance(each, Symbol) for each in walk(node)):
+        if isinstance(node, Several) or any(isinstance(each, Symbol) for each in walk(node)):
             return super().assignment(node, to, column, comment)
         return f"{to} = all({C.text(node)});"
 
@@ -60,6 +75,6 @@ class VectorPrinter(CPrinter):
         return f"all({C.text(node)})"
 
 
-C: Final = CPrinter("", ends_with_comma=False)
-VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False)
+C: Final = CPrinter("", ends_with_comma=False, loop_prefix="coadjoint")
+VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False, loop_prefix="coadjoint")
 FILTERS: Final = {"c_assignment": C.assignment, "vector_assignment": VECTORS.assignment}
