@@ -17,9 +17,10 @@ from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.derive import derive
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
-from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.residues import Residue, call_modulo, residue
 from coadjoint.lower.check import call_residue, check_inverse
 from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Add, Factors, Negate, Solution, run
 from coadjoint.prove.certificate import Verdict
 from coadjoint.render.solvers import arrange, select_programs
@@ -71,6 +72,23 @@ def test_loops_compute_what_is_written_out(chain, name):
     found, wanted = (run(each, inputs, number, apply) for each in (looped, written))
     assert found == wanted
     assert any(each.value for each in found)
+
+
+def test_loops_solve_for_multipliers_too(monkeypatch):
+    """Accelerations with the multiplier of a constraint that is kept, and the signs of pivots."""
+    written = lowered("knife_edge_cvt")
+    for module in ("solver", "kinematics"):
+        monkeypatch.setattr(f"coadjoint.derive.mechanics.{module}.WRITTEN", 1)
+    equations = derive(read_spec(shipped("knife_edge_cvt").path))
+    looped = lower(equations)  # what is written out knows that sin^2 + cos^2 = 1
+    for name in ("rhs", "jacobian", "projection", "domain"):
+        assert looped[name].solves_by_loop
+        check_inverse(equations, looped[name])
+        inputs = at_random(looped[name])
+        found, wanted = (
+            run(each[name], inputs, residue, call_modulo) for each in (looped, written)
+        )
+        assert found == wanted
 
 
 def spoil_statement(program, kind, change):
