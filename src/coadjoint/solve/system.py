@@ -281,7 +281,8 @@ class System(Functions):
                 the same paths for any number of threads, and for the targets ``"c"`` and
                 ``"numpy"`` as far as these agree to the bit. A member has its own by its place in
                 the batch. Such a system has the methods
-                ``"heun"`` and ``"midpoint"``, which ``"auto"`` is, with ``step``; samples lie at
+                ``"heun"``, ``"spherical_midpoint"`` on spheres, and ``"midpoint"``, which
+                ``"auto"`` is, with ``step``; samples lie at
                 the ends of steps.
 
         Returns:
