@@ -13,7 +13,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Final
+from typing import ClassVar, Final
 
 from coadjoint.errors import SpecError
 from coadjoint.lower.program import (
@@ -83,7 +83,6 @@ class Printer:
         function_suffix: What stands behind it.
         names: Names of functions that have others than ours.
         ends_with_comma: Whether one stands behind the last of arguments on lines of their own.
-        loop_prefix: What stands before the names of the loops that solve equations.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> Printer("np.").text(Add(Multiply(x, Add(x, y)), Negate(Call("sqrt", y))))
@@ -94,7 +93,8 @@ class Printer:
     function_suffix: str = ""
     names: Mapping[str, str] = field(default_factory=dict)
     ends_with_comma: bool = True
-    loop_prefix: str = ""
+    #: What stands before the names of the loops that solve equations.
+    loop_prefix: ClassVar[str] = ""
 
     def text(self, node: Node) -> str:
         """``node`` on one line."""

@@ -16,6 +16,8 @@ from coadjoint.render.targets.c.numbers import in_numbers
 class CPrinter(Printer):
     """Writes nodes and assignments in C."""
 
+    loop_prefix = "coadjoint"
+
     def assignment(self, node: Node, to: str, column: int = 4, comment: str = "") -> str:
         """``to = node;``, broken at the operators if it is long; the first line is not indented.
 
@@ -87,8 +89,8 @@ class VectorPrinter(CPrinter):
         return f"all({C.text(node)})"
 
 
-C: Final = CPrinter("", ends_with_comma=False, loop_prefix="coadjoint")
-VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False, loop_prefix="coadjoint")
+C: Final = CPrinter("", ends_with_comma=False)
+VECTORS: Final = VectorPrinter("", "_of", ends_with_comma=False)
 FILTERS: Final = {
     "c_assignment": C.assignment,
     "vector_assignment": VECTORS.assignment,
