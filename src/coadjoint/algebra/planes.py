@@ -32,10 +32,12 @@ def find_planes(algebra: LieAlgebra) -> tuple[SparseMatrix, ...]:
         return ()
     found: dict[Plane, tuple[int, int]] = {}
     for pair, row in algebra.constants.items():
-        if len(row) != 1 or abs(*row.values()) != 1:
+        if len(row) != 1:
             return ()
         ((place, value),) = row.items()
-        found[pair] = (place, int(value))
+        if not isinstance(value, int) or abs(value) != 1:
+            return ()
+        found[pair] = (place, value)
     planes = next(_place([], algebra.dimension, axes, found), None)
     senses = None if planes is None else _turn(planes, found)
     if planes is None or senses is None:
