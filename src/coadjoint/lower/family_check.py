@@ -8,11 +8,14 @@ Read next: `coadjoint.lower.families`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
 
 import sympy
+from sympy.polys import lex
+from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family, Symbol, Tree
@@ -103,6 +106,12 @@ class _Symbols:
         SymPy differentiates `sign` of real symbols alone, and gives it a derivative where it jumps.
         """
         moving = self.vector | dict(sums)
+        polynomials = _find_polynomials([tree], moving.values())
+        if polynomials and not {*moving} & polynomials.divisors:
+            (whole,), ring = polynomials.values, polynomials.ring
+            named = [(s, h) for s, h in moving.items() if s in ring.symbols]
+            along = (whole.diff(ring(s)) * ring(h) for s, h in named)
+            return sum(along, ring.zero).as_expr().xreplace(polynomials.inverses)
         real = {s: sympy.Dummy(s.name, real=True) for s in tree.free_symbols}
         back, whole = {dummy: s for s, dummy in real.items()}, tree.xreplace(real)
         slopes = (sympy.diff(whole, real[s]) * h for s, h in moving.items() if s in real)
@@ -184,8 +193,56 @@ def _call(function: str, *arguments: Any) -> Any:
     return own(*arguments)
 
 
+@dataclass(frozen=True)
+class _Polynomials:
+    """Trees as polynomials with rational coefficients.
+
+    They take a tenth of the time of trees that SymPy expands or differentiates.
+
+    Attributes:
+        values: The polynomials.
+        ring: Theirs.
+        inverses: What stands for a divisor, which is a symbol there, by its inverse.
+    """
+
+    values: list[Any]
+    ring: PolyRing
+    inverses: Mapping[Symbol, Tree]
+
+    @property
+    def divisors(self) -> set[Symbol]:
+        """Symbols in divisors."""
+        return {s for inverse in self.inverses.values() for s in inverse.free_symbols}
+
+
+def _find_polynomials(trees: Sequence[Tree], others: Iterable[Symbol] = ()) -> _Polynomials | None:
+    """Trees as polynomials in all their symbols and in inverses; None where they call functions."""
+    inverses = dict[Tree, Symbol]()
+
+    def invert(power: Tree) -> Tree:
+        symbol = inverses.setdefault(power.base, sympy.Dummy())
+        return symbol**-power.exp
+
+    plain = [
+        tree.replace(lambda e: e.is_Pow and e.exp.is_Integer and e.exp < 0, invert)
+        for tree in trees
+    ]
+    symbols = {*others}.union(*(tree.free_symbols for tree in plain))
+    if not symbols:
+        return None
+    ring = PolyRing(sorted(symbols, key=str), sympy.QQ, lex)
+    try:
+        values = [ring.from_expr(tree) for tree in plain]
+    except ValueError:
+        return None
+    return _Polynomials(values, ring, {own: 1 / base for base, own in inverses.items()})
+
+
 def _are_equal(found: Tree, wanted: Tree) -> bool:
     """Whether two trees have one value."""
+    polynomials = _find_polynomials([found, wanted])
+    if polynomials and polynomials.values[0] == polynomials.values[1]:
+        return True
     difference = found - wanted
     if not difference.has(sympy.Function) and not difference.atoms(sympy.NumberSymbol):
         return difference.expand() == 0 or bool(sympy.cancel(sympy.together(difference)) == 0)
