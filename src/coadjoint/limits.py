@@ -102,7 +102,7 @@ PROVED_MEMBERS = 12
 # -- children -------------------------------------------------------------------------------------
 
 #: Seconds of processor time that the derivation of one system may take, unless more are asked for.
-WORKER_SECONDS = 60
+WORKER_SECONDS = 120
 #: Times as long that it may take by the clock: a machine that is busy with twenty tasks does not
 #: count against a spec, and a program that hangs is ended.
 WALL_FACTOR = 20
