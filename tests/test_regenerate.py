@@ -15,6 +15,7 @@ import pytest
 from coadjoint.errors import ClaimError, DriftError, SpecError
 from coadjoint.fingerprint import template_hashes
 from coadjoint.regenerate import _guess_work, _Source, check, regenerate
+from coadjoint.render.compare import is_intact
 from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.ownership import read_manifest
 from coadjoint.render.write import SYSTEM_FILES
@@ -97,10 +98,8 @@ def check_manifest(output, specs):
     written = {name: entry["spec_sha256"] for name, entry in manifest["systems"].items()}
     assert written == hashes, "run `coadjoint regenerate`, and commit"
     assert len(hashes) >= 89
-    for name, entry in manifest["systems"].items():
-        for file, known in entry["files"].items():
-            found = hashlib.sha256((output / name / file).read_bytes()).hexdigest()
-            assert found == known, f"{name}/{file}: run `coadjoint regenerate`, and commit"
+    for name in hashes:
+        assert is_intact(output, name), f"{name}: run `coadjoint regenerate`, and commit"
 
 
 def test_the_checked_in_tree_was_written_from_these_specs_and_templates():
@@ -117,7 +116,7 @@ def test_the_manifest_check_sees_one_changed_byte(tmp_path):
     specs = sorted((ROOT / "derivations").glob("*.toml"))
     kernel = tmp_path / "generated" / "heavy_top" / "kernel.c"
     kernel.write_text(kernel.read_text().replace("+", "-", 1))
-    with pytest.raises(AssertionError, match=r"heavy_top/kernel\.c"):
+    with pytest.raises(AssertionError, match=r"^heavy_top: run"):
         check_manifest(tmp_path / "generated", specs)
     changed = tmp_path / "heavy_top.toml"
     changed.write_text("# a remark")
