@@ -43,7 +43,8 @@ from coadjoint.lower.program import (
 )
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
-from coadjoint.render.solvers import Line, arrange, select_programs
+from coadjoint.render.recurrences import Line
+from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER

@@ -89,7 +89,7 @@ MUTANTS = (
         tests=("tests/lower/test_jets.py", "tests/lower/test_motion.py"),
     ),
     *of(
-        "render/solvers",
+        "render/recurrences",
         "_recurrence: rewrite Negate(whole) if _1 else whole -> whole",
         "_divisor: rewrite Number(Fraction(2)) -> Number(Fraction(1))",
         tests=("tests/lower/test_jets.py",),
@@ -511,6 +511,17 @@ MUTANTS = (
         "python/kernel_python.py.j2",
         "outputs: use function.outputs[-loop.index][0] for row in plain_assignment row",
         "functions: use 1 for 0 in range",
+    ),
+    *of(
+        "solve/methods/lie_poisson",
+        "keep_offset: rewrite first - kept[1] -> first",
+        "continue_offset: rewrite first + second -> first",
+        tests=("tests/solve/test_clock.py -k 'differences or last_ones'",),
+    ),
+    *of(
+        "algebra/planes",
+        "_commute: rewrite ahead - back -> ahead + back",
+        tests=("tests/algebra/test_planes.py",),
     ),
     *of(
         "solve/methods/coadjoint_mean",

@@ -60,8 +60,9 @@ _GNU = (
     "-fno-tree-slp-vectorize",
     "--param=vect-epilogues-nomask=0",
 )
-#: GCC fuses a product and a sum with this alone of all that the second level has in addition.
-_FUSING = ("-fexpensive-optimizations",)
+#: GCC fuses a product and a sum with the first alone of all that the second level has in addition.
+#: It sees less there, so that it takes rows that loops fill for uninitialised.
+_FUSING = ("-fexpensive-optimizations", "-Wno-maybe-uninitialized")
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
 #: What a driver says of a program that ran out of processor time.

@@ -163,9 +163,10 @@ class NumpySolver:
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
         if name in MAPS:
-            parts = self.module["SCHEDULES"][name]
-            maps = [(self.module[f"find_{each}"], part) for each, part in parts]
-            return Maps(maps, rates, size, branches=self.branches)
+            parts, moved = self.module["SCHEDULES"][name], self.module["MOVED"]
+            maps = [(self.module[f"find_{each}"], part, moved[each]) for each, part in parts]
+            compensated = MAPPED[name].parts > 0
+            return Maps(maps, rates, size, is_compensated=compensated, branches=self.branches)
         if name in self.module.get("STRUCTURED", ()):
             return Structured(name, size, {"rates": rates}, branches=self.branches)
         return METHODS[name](

@@ -18,7 +18,7 @@ from coadjoint.lower.exact_body import lower_exact_body
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kahan import lower_kahan
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.program import Program
+from coadjoint.lower.program import ZERO, Program
 
 #: Methods that are compositions of flows, with their orders.
 SPLITTINGS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6}
@@ -72,6 +72,14 @@ def lower_maps(equations: Equations, rates: Program) -> Maps:
 def list_maps(programs: Iterable[str]) -> list[str]:
     """The names that are those of maps."""
     return [name for name in programs if name in SINGLE or name.startswith("flow")]
+
+
+def list_moved(maps: Iterable[Program]) -> dict[str, tuple[int, ...]]:
+    """The rows of the state to which each map adds something."""
+    return {
+        each.name: tuple(row for row, out in enumerate(each.outputs) if out.value != ZERO)
+        for each in maps
+    }
 
 
 def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
