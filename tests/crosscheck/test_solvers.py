@@ -534,8 +534,8 @@ WRONG_IN_C = [
     ("dop853", "part * part < rest", "part < rest"),
     (
         "rk4",
-        "blocks[b].time = blocks[b].time + h[b]",
-        "blocks[b].time = blocks[b].time + h[b] * 0.5",
+        "blocks[b].time = add_low(blocks[b].time, &blocks[b].late, h[b])",
+        "blocks[b].time = add_low(blocks[b].time, &blocks[b].late, h[b] * 0.5)",
     ),
     ("dop853", "all(failed ? 0.0 : made)", "all(made + 1.0)"),
     ("taylor", "_m < _k;", "_m <= _k;"),

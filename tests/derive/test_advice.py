@@ -83,12 +83,6 @@ ADVICE = [
         change("(v1^2 + v2^2 + v3^2)/2", "(v1^2 + v2^2 + v3^2)/2 + v4^2"),
     ),
     (
-        FREE,
-        [WITHOUT_MOMENTA, ("dot(v, v)/2", "dot(v, v)/2 + (v1 + v2 + v3 + v4)^2/2")],
-        "Declare momenta: the kernel then solves for the velocities.",
-        [("[lagrangian]", 'p = { role = "momentum", of = "q" }\n[lagrangian]'), SHIFTED],
-    ),
-    (
         RIGID_BODY,
         change(KINETIC, "Omega1^2/2"),
         "Add the missing kinetic term of Omega2.",

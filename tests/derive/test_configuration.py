@@ -11,7 +11,7 @@ from coadjoint.derive import derive, make_setting
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.reference import Reference
 from coadjoint.derive.routes import euler_lagrange
-from coadjoint.errors import DerivationError, LimitError
+from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict
 from tests.specs import prove_claims, spec
 
@@ -170,14 +170,6 @@ def test_two_routes_that_solve_in_the_kernel_give_the_same_motion(monkeypatch):
     monkeypatch.setattr(euler_lagrange, "explicit_rate", lambda *given: right(*given) + 1)
     verdicts = {c.statement: c.verdict for c in prove_claims(sample).claims}
     assert verdicts[statement] is Verdict.REFUTED
-
-
-def test_more_coupled_velocities_than_the_limit_are_refused(monkeypatch):
-    """The limit is that of every solve in the kernel."""
-    monkeypatch.setattr("coadjoint.derive.mechanics.constrained.COUPLED_VELOCITIES", 3)
-    with pytest.raises(LimitError, match=r"energy couples 4 acc.* 3 .COUPLED_VEL") as caught:
-        derive(spec(FREE, COUPLED, *ALONE))
-    assert "constraints" not in str(caught.value)
 
 
 def test_entries_beside_the_diagonal_of_symmetric_matrices_are_paired_twice():

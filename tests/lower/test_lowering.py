@@ -54,13 +54,13 @@ LONG_BRACKETS = ("n_link_chain", "veselova_so4")
 
 
 #: Systems on so(n), n above 3, in the basis of the planes.
-MATRICES = ("manakov_so4", "manakov_so6", "so5_body", "so6_body", "so8_body")
+MATRICES = ("manakov_so4", "manakov_so6", "so4_body", "so5_body", "so6_body", "so8_body")
 
 
 def has_bracket(equations):
-    """Whether a bracket with the energy can be written out, to which forces may be added."""
+    """Whether a bracket with the energy can be written out, with relaxation, and without forces."""
     known = equations.energy is not None and bool(equations.poisson_tensor)
-    return known and not equations.spec.relaxation and equations.spec.name not in LONG_BRACKETS
+    return known and equations.spec.name not in LONG_BRACKETS
 
 
 def has_functions(equations):

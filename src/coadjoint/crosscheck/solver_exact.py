@@ -37,7 +37,7 @@ from coadjoint.crosscheck.series import solve
 from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, STRUCTURED, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.mapped import list_schedules
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.program import run
 from coadjoint.methods import list_structured
 from coadjoint.render.solvers import SolverText

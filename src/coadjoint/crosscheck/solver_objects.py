@@ -23,7 +23,8 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.compositions import list_schedules
+from coadjoint.lower.mapped import list_maps
 from coadjoint.methods import MAPPED, list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice

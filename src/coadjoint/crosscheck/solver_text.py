@@ -18,7 +18,8 @@ from itertools import zip_longest
 
 from coadjoint.crosscheck.parse_back import printed_lines
 from coadjoint.derive.setting import STEP
-from coadjoint.lower.mapped import list_maps, list_moved, list_schedules
+from coadjoint.lower.compositions import list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
 from coadjoint.methods import Sphere

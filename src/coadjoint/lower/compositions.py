@@ -13,7 +13,7 @@ Read next: `coadjoint.lower.flows`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from functools import cache
@@ -22,6 +22,10 @@ from typing import Final
 #: Flows, by their places, and parts of a step, in the order in which they act.
 Schedule = tuple[tuple[int, float], ...]
 Coefficients = tuple[Decimal, ...]
+#: Methods that are compositions of flows, with their orders.
+SPLITTINGS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6}
+#: Methods of a single map of their own names.
+SINGLE: Final = ("kahan", "exact_body")
 #: The arithmetic of coefficients.
 DIGITS: Final = Context(prec=60)
 
@@ -111,6 +115,21 @@ def schedule(parts: int, order: int) -> Schedule:
         forth = range(parts)
         flows = [(n, c) for k, c in enumerate(sweeps) for n in (forth, forth[::-1])[k % 2]]
         return _round(_merge(flows))
+
+
+def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
+    """The methods of a system: which map acts for which part of a step, in order.
+
+    Args:
+        maps: The names of its maps.
+    """
+    names = tuple(maps)
+    flows = [name for name in names if name.startswith("flow")]
+    found: dict[str, tuple[tuple[str, float], ...]] = {}
+    for method, order in SPLITTINGS.items() if flows else ():
+        own: Schedule = schedule(len(flows), order) if len(flows) > 1 else ((0, 1.0),)
+        found[method] = tuple((flows[part], time) for part, time in own)
+    return found | {name: ((name, 1.0),) for name in SINGLE if name in names}
 
 
 def suzuki() -> Coefficients:

@@ -20,9 +20,9 @@ from typing import Final
 from coadjoint.derive import Equations
 from coadjoint.exact import Element
 from coadjoint.families import Family
+from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.lower.families import Loops
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.mapped import SPLITTINGS, list_schedules
 from coadjoint.lower.program import Program
 from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
 from coadjoint.prove.certificate import Certificate
@@ -44,6 +44,7 @@ _SPHERES: Final = (
 _SPLIT: Final = (
     "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
 )
+_NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
 
 
 class FamilyFacts(Facts):
@@ -234,7 +235,9 @@ def judge_family(
         refusals |= dict.fromkeys(spheres, _SPHERES)
     if not facts.positions:
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
-    if facts.has_kinks:
+    if facts.is_noisy:
+        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
+    elif facts.has_kinks:
         reason = "its rates have kinks, at which explicit methods end their steps"
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), reason)
     if facts.is_driven:

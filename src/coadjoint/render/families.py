@@ -15,9 +15,8 @@ from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
-from coadjoint.lower.compositions import COMPOSITIONS
+from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
-from coadjoint.lower.mapped import list_schedules
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod

@@ -18,8 +18,9 @@ from typing import Any, Final
 from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.mapped import list_maps, list_moved, list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved
 from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import (
     FUNCTIONS,

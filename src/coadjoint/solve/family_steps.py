@@ -19,7 +19,7 @@ import numpy as np
 from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, CrossCheckError
-from coadjoint.lower.mapped import list_schedules
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS

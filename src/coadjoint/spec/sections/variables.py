@@ -181,12 +181,13 @@ def _read_variable(
     representation = None
     constrained = solved is not None
     paired = constrained or is_on_product(reading.file)
+    belongs = part.of is not None and any(x.role == "coordinate" for x in parts.values())
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
     if part.role == "contact":
         _check_rolling(reading, key)
         count, flat = SPACE, True
-    elif part.role == "coordinate" or algebra is None or (paired and part.of is not None):
+    elif part.role == "coordinate" or algebra is None or (paired and belongs):
         if not paired or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
