@@ -64,7 +64,7 @@ def test_python_of_a_page_runs(page, folder):
         exec(compile(block, f"{page}.md", "exec"), names)
     if page == "simulation":  # the belt carries the block until its spring pulls with f = 1/2
         held = names["held"]
-        assert (held.status, names["again"].status) == ("DOMAIN", "OK")
+        assert (held.status, names["freed"].status) == ("DOMAIN", "OK")
         carried = (0.5 - held["x"][0]) / 0.25
         assert held.time[-1] - held.time[0] == pytest.approx(carried, rel=1e-12)
 

@@ -214,7 +214,7 @@ MUTANTS = (
     *of("element", "diff: flip exponent in append", "__neg__: flip numer"),
     *of(
         "field",
-        "_derivative_of: rewrite each * slope -> each",
+        "_differentiate: rewrite each * slope -> each",
         "square_of: rewrite cast(Element, _1) -> -cast(Element, _1)",
     ),
     *of(
@@ -568,7 +568,7 @@ MUTANTS = (
     *of(
         "lower/orbits",
         "_is_sphere: rewrite (b, a, -scale) -> (b, a, scale)",
-        "find: rewrite a + -b -> a + -a",
+        "is_product.find: rewrite a + -b -> a + -a",
         tests=("tests/lower/test_orbits.py",),
     ),
 )

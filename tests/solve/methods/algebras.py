@@ -108,6 +108,10 @@ class Motion:
         """The motion."""
         return (self.tensor(x) * self.gradient(x)[np.newaxis]).sum(axis=1)
 
+    def field(self, lanes: Lanes, after: Matrix, x: Matrix) -> Matrix:
+        """The motion, as methods ask for it."""
+        return self.rates(x)
+
 
 def make_motion(name: str, seed: int = 1, quadratic: bool = False) -> Motion:
     """A motion with the energy ``x.Qx/2 + sin(a.x)`` for a random positive Q and a random a."""

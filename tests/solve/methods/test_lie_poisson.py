@@ -43,14 +43,14 @@ Make = Callable[..., LiePoisson]
 
 def make_method(kind: str, name: str, motion: Motion, order: int = 2) -> LiePoisson:
     """A method for a motion on the dual of an algebra."""
+    if kind == "spherical":
+        return SphericalMidpoint(field=motion.field, size=0.1, spheres=SPHERES[name], order=order)
     given: dict[str, Any] = {
         "gradient": motion.slope,
         "bracket": motion.bracket,
         "size": 0.1,
         "order": order,
     }
-    if kind == "spherical":
-        return SphericalMidpoint(**given, spheres=SPHERES[name])
     if kind == "isospectral":
         return IsospectralMidpoint(**given, sandwich=make_sandwich(name))
     return CoadjointMean(**given)
@@ -310,8 +310,7 @@ def test_a_spoiled_sphere_is_caught() -> None:
     motion = make_motion("se(3)")
     x = make_start(motion)
     method = SphericalMidpoint(
-        gradient=motion.slope,
-        bracket=motion.bracket,
+        field=motion.field,
         size=0.1,
         spheres=(Sphere((0, 1, 2)), Sphere((3, 4, 5))),
     )

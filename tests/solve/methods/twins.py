@@ -296,14 +296,17 @@ def make_twin(written: Written, macro: str) -> LiePoisson:
     def sandwich(lanes: Lanes, after: Array, x: Array, v: Array) -> Array:
         return written.evaluate(written.sandwich, x, v)
 
+    def field(lanes: Lanes, after: Array, x: Array) -> Array:
+        return bracket(lanes, after, x, gradient(lanes, after, x))
+
+    if file == "spherical_midpoint":
+        return SphericalMidpoint(field=field, size=0.1, spheres=written.spheres, order=order)
     given: dict[str, Any] = {
         "gradient": gradient,
         "bracket": bracket,
         "size": 0.1,
         "order": order,
     }
-    if file == "spherical_midpoint":
-        return SphericalMidpoint(**given, spheres=written.spheres)
     if file == "isospectral_midpoint":
         return IsospectralMidpoint(**given, sandwich=sandwich)
     return CoadjointMean(**given)
