@@ -234,7 +234,7 @@ RUNS = {
     "suslov": (suslov, [0.429, -0.084, 0.0], None),
 }
 #: Steps of 0.1; an integral that is not kept is missed by more after so many.
-STEPS, ROUNDING = 400, 1e-12
+STEPS, ROUNDING = 50, 1e-12
 #: Energies that the mean of a gradient misses by little: they are no polynomials.
 MISSED = {("kepler", "average_gradient"): 2e-12}
 
@@ -267,7 +267,8 @@ def find_defect(system, start, parameters, method, step=0.3):
     start, eps, n = np.array(start), 1e-5, len(start)
 
     def flow(x):
-        run = system.simulate(x, (0, step), parameters, method=method, step=step, samples=1)
+        options = {"method": method, "step": step, "samples": 1, "target": "numpy"}
+        run = system.simulate(x, (0, step), parameters, **options)
         return run.state[..., -1]
 
     shifts = eps * np.eye(n)
