@@ -156,6 +156,301 @@ h = "sum(i, p[i]^2/2 + k*q[i]^2/2 - F*cos(w*t)*q[i]) + sum(i, c*(q[i+1] - q[i])^
 [observables]
 P = "sum(i, p[i])"
 """
+#: Two members stand alone at the first end and one at the last, with parameters of theirs.
+WALLS = """
+title = "Masses between walls"
+routes = ["canonical"]
+[index]
+i = { size = 7, first = 1, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+c = { default = 1 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2) + sum(i, k[i]*(q[i+1] - q[i])^3/3)
+    + c*(k[1]*q[1]*q[2]^2 + k[n]*q[n]^4/4)'''
+[observables]
+length = "q[n] - q[1]"
+P = "sum(i, p[i])"
+D = "2*sum(i, p[i]^2) - p[1]^2 + k[n-1]*q[n]"
+[claims]
+conserved = ["energy"]
+"""
+#: The bond from the last member to the first is another one than those between neighbours.
+CLOSED = """
+title = "A ring with one weak bond"
+routes = ["canonical"]
+[index]
+i = { size = 6, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+c = { default = 0.5 }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, (q[i+1] - q[i])^4/4) + c*(q[0] - q[n-1])^4/4"
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+#: Of particles that all repel each other the first and the last are held by springs.
+HELD = """
+title = "Particles of which two are held"
+routes = ["canonical"]
+[index]
+i = { size = 6, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+c = { index = "i", default = 1 }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, j, i < j, c[i]*c[j]/(1 + (q[i] - q[j])^2)) + q[0]^2/2 + q[n-1]^4"
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy"]
+"""
+#: No Hamiltonian: masses that depend on places, walls, and velocities as the state.
+BY_VELOCITIES = """
+title = "Masses on a bent wire"
+routes = ["euler-lagrange"]
+[index]
+i = { size = 6, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+v = { role = "velocity", of = "q", index = "i" }
+[parameters]
+m = { index = "i", positive = true, default = 1 }
+[lagrangian]
+l = '''sum(i, m[i]*(1 + q[i]^2)*v[i]^2/2) - sum(i, (q[i+1] - q[i])^4/4)
+    - q[0]^2/2 - q[n-1]^4/4'''
+[claims]
+conserved = ["energy"]
+"""
+#: Charges in a plane: a velocity in the first degree, and pairs.
+CHARGES = """
+title = "Charges in a magnetic field"
+routes = ["euler-lagrange", "canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i", shape = [2] }
+v = { role = "velocity", of = "q", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+m = { index = "i", positive = true, default = 1 }
+b = { default = 1 }
+[lagrangian]
+l = '''sum(i, m[i]*dot(v[i], v[i])/2 + b*(q[i, 1]*v[i, 2] - q[i, 2]*v[i, 1])/2)
+    - sum(i, j, i < j, m[i]*m[j]/(1 + dot(q[i] - q[j], q[i] - q[j])))'''
+[observables]
+J = "sum(i, q[i, 1]*p[i, 2] - q[i, 2]*p[i, 1])"
+[claims]
+conserved = ["energy", "J"]
+"""
+#: Actions on each member, of which the third has a cocycle.
+PLANAR = """
+title = "Masses in a plane, tied to a ring"
+routes = ["canonical"]
+[index]
+i = { size = 6, periodic = true }
+[variables]
+q = { role = "coordinate", index = "i", shape = [2] }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+m = { index = "i", positive = true, default = 1 }
+[hamiltonian]
+h = "sum(i, dot(p[i], p[i])/(2*m[i])) + sum(i, dot(q[i+1] - q[i], q[i+1] - q[i])^2)"
+[symmetries.L]
+algebra = "so(2)"
+matrix = "A"
+generators = { q = "A*q[i]" }
+[symmetries.P]
+algebra = "R^2"
+vector = "a"
+generators = { q = "a" }
+map = "sum(i, dot(a, p[i]))"
+[observables]
+centre = "sum(i, m[i]*q[i])/sum(i, m[i])"
+turning = "sum(i, q[i, 1]*p[i, 2])*sum(i, p[i, 1])^2 - atan2(sum(i, p[i, 1]), sum(i, m[i]))"
+[symmetries.G]
+algebra = "R^2"
+vector = "b"
+generators = { q = "vector(b[1], 0)", p = "vector(b[2], 0)" }
+[claims]
+conserved = ["energy", "L", "P"]
+"""
+
+
+def write_velocities(n):
+    """So many masses on a wire."""
+    terms = [f"m_{k}*(1 + q_{k}^2)*v_{k}^2/2" for k in range(n)]
+    terms += [f"-(q_{k + 1} - q_{k})^4/4" for k in range(n - 1)]
+    terms += ["-q_0^2/2", f"-q_{n - 1}^4/4"]
+    return "\n".join(
+        [
+            'title = "W"\nroutes = ["euler-lagrange"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'v_{k} = {{ role = "velocity", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"m_{k} = {{ positive = true }}" for k in range(n)),
+            f'[lagrangian]\nl = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def write_charges(n):
+    """So many charges, by their Hamiltonian: the velocity is (p - b A)/m."""
+    terms = [
+        f"((p_{k}[1] + b*q_{k}[2]/2)^2 + (p_{k}[2] - b*q_{k}[1]/2)^2)/(2*m_{k})" for k in range(n)
+    ]
+    for a, c in combinations(range(n), 2):
+        terms.append(f"m_{a}*m_{c}/(1 + (q_{a}[1] - q_{c}[1])^2 + (q_{a}[2] - q_{c}[2])^2)")
+    return "\n".join(
+        [
+            'title = "C"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate", shape = [2] }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]\nb = {}",
+            *(f"m_{k} = {{ positive = true }}" for k in range(n)),
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"',
+        ]
+    )
+
+
+def write_masses(n, terms, parameters):
+    """So many masses with these terms of the energy, and parameters."""
+    kinetic = [f"p_{k}^2/2" for k in range(n)]
+    return "\n".join(
+        [
+            'title = "W"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"{name} = {{ default = 1 }}" for name in parameters),
+            f'[hamiltonian]\nh = "{" + ".join([*kinetic, *terms])}"',
+        ]
+    )
+
+
+def write_walls(n):
+    """So many masses between walls."""
+    terms = [f"k_{k}*(q_{k + 1} - q_{k})^3/3" for k in range(n - 1)]
+    terms += ["c*k_0*q_0*q_1^2", f"c*k_{n - 1}*q_{n - 1}^4/4"]
+    return write_masses(n, terms, ["c", *(f"k_{k}" for k in range(n))])
+
+
+def write_closed(n):
+    """So many masses in a ring with a weak bond."""
+    terms = [f"(q_{k + 1} - q_{k})^4/4" for k in range(n - 1)]
+    return write_masses(n, [*terms, f"c*(q_{n - 1} - q_0)^4/4"], ["c"])
+
+
+def write_held(n):
+    """So many particles, of which two are held."""
+    terms = [f"c_{a}*c_{b}/(1 + (q_{a} - q_{b})^2)" for a, b in combinations(range(n), 2)]
+    terms += ["q_0^2/2", f"q_{n - 1}^4"]
+    return write_masses(n, terms, [f"c_{k}" for k in range(n)])
+
+
+PULLED = """
+title = "Beads that repel each other, each pulled by an input of its own, all by another one"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1 }
+[inputs]
+u = { index = "i", default = "0.5" }
+g = { default = 1 }
+f = { default = 0 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2 + k[i]*q[i]^2/2 - g*q[i]) + sum(i, u[i+1]*q[i]*q[i+1])
+    + sum(i, j, i < j, u[i]*u[j]/(1 + (q[i] - q[j])^2))'''
+[forces]
+p = "f*p[i] - u[i]^2*p[i]"
+[observables]
+P = "sum(i, p[i])"
+"""
+
+
+def write_pulled(n):
+    """So many of these beads."""
+    terms = [f"p_{k}^2/2 + k_{k}*q_{k}^2/2 - g*q_{k}" for k in range(n)]
+    terms += [f"u_{k + 1}*q_{k}*q_{k + 1}" for k in range(n - 1)]
+    terms += [f"u_{i}*u_{j}/(1 + (q_{i} - q_{j})^2)" for i, j in combinations(range(n), 2)]
+    return "\n".join(
+        [
+            'title = "P"\nroutes = ["canonical"]\n[variables]',
+            *(f'q_{k} = {{ role = "coordinate" }}' for k in range(n)),
+            *(f'p_{k} = {{ role = "momentum", of = "q_{k}" }}' for k in range(n)),
+            "[parameters]",
+            *(f"k_{k} = {{ default = 1 }}" for k in range(n)),
+            "[inputs]",
+            *(f'u_{k} = {{ default = "0.5" }}' for k in range(n)),
+            "g = { default = 1 }\nf = { default = 0 }",
+            f'[hamiltonian]\nh = "{" + ".join(terms)}"\n[forces]',
+            *(f'p_{k} = "f*p_{k} - u_{k}^2*p_{k}"' for k in range(n)),
+        ]
+    )
+
+
+SHAKEN = """
+title = "Spins in a row, shaken each by itself and all together"
+routes = ["lie-poisson"]
+[index]
+i = { size = 5 }
+[algebra]
+name = "so(3)"
+[variables]
+S = { role = "momentum", index = "i", default = [0, "0.6", "0.8"] }
+[parameters]
+J = { default = 1 }
+s = { index = "i", default = "0.5" }
+z = { default = "0.2" }
+[noise]
+dZ = "z*sum(i, S[i, 3])"
+dX = "s[i]*S[i, 1]"
+dY = "s[i]*S[i, 2]"
+[hamiltonian]
+h = "J*sum(i, dot(S[i], S[i+1]))"
+[observables]
+M = "sum(i, S[i, 3])"
+[claims]
+casimirs = ["dot(S[i], S[i])"]
+"""
+#: The same with a field along the axis of each, another one that oscillates, and inputs for both.
+MOVED = SHAKEN.replace(
+    "[noise]", '[time]\nname = "t"\n[inputs]\nu = { index = "i" }\nf = { default = 1 }\n[noise]'
+).replace("S[i+1]))", "S[i+1])) + sum(i, (u[i] + f*t)*S[i, 3])")
+
+
+def write_shaken(n):
+    """So many of these spins, with the processes in the order of a family."""
+    spins = range(n)
+    bonds = " + ".join(f"dot(S_{k}, S_{k + 1})" for k in range(n - 1))
+    parts = ", ".join(['"so(3)"'] * n)
+    total = " + ".join(f"S_{k}[3]" for k in spins)
+    return "\n".join(
+        [
+            f'title = "S"\nroutes = ["lie-poisson"]\n[algebra]\ndirect_sum = [{parts}]',
+            "[variables]",
+            *(f'S_{k} = {{ role = "momentum", block = "rotation_{k + 1}" }}' for k in spins),
+            "[parameters]\nJ = { default = 1 }",
+            *(f's_{k} = {{ default = "0.5" }}' for k in spins),
+            f'z = {{ default = "0.2" }}\n[noise]\ndZ = "z*({total})"',
+            *(f'dX_{k} = "s_{k}*S_{k}[1]"' for k in spins),
+            *(f'dY_{k} = "s_{k}*S_{k}[2]"' for k in spins),
+            f'[hamiltonian]\nh = "J*({bonds})"',
+        ]
+    )
 
 
 def write_driven(n):
@@ -414,6 +709,8 @@ def value_of(family, total, n):
                 own |= {s: member(c, j) for c, s in family.partners.items()}
             parts.append(each.term.xreplace(own))
         values[each.symbol] = sum(parts)
+    for (c, number), symbol in family.singles.items():
+        values[symbol] = member(c, number % n)
     return total.formula.xreplace(values)
 
 

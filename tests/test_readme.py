@@ -62,6 +62,11 @@ def test_python_of_a_page_runs(page, folder):
     assert blocks("python", PAGES[page])
     for block in blocks("python", PAGES[page]):
         exec(compile(block, f"{page}.md", "exec"), names)
+    if page == "simulation":  # the belt carries the block until its spring pulls with f = 1/2
+        held = names["held"]
+        assert (held.status, names["freed"].status) == ("DOMAIN", "OK")
+        carried = (0.5 - held["x"][0]) / 0.25
+        assert held.time[-1] - held.time[0] == pytest.approx(carried, rel=1e-12)
 
 
 def test_python_of_driven_systems_runs(folder):

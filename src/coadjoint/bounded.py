@@ -109,6 +109,29 @@ def methods_bounded(
     return _run("coadjoint.bounded:methods_record", argument, seconds, memory)
 
 
+def export_bounded(
+    path: str | PathLike[str],
+    method: str = "auto",
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
+) -> str:
+    """One step of a method as a header of C, made in a bounded child.
+
+    Other arguments and errors are those of `derive_bounded`; ``method`` is a name, or ``"auto"``
+    for the one that ``"auto"`` takes with a fixed step.
+
+    Returns:
+        The text of the header, which C99 and C++17 compile.
+
+    Raises:
+        KernelArgumentError: The method does not apply, with the reason.
+    """
+    argument = {"path": fspath(path), "method": method, "sizes": dict(sizes)}
+    return str(_run("coadjoint.bounded:header_record", argument, seconds, memory)["text"])
+
+
 def _run(
     target: str, argument: Mapping[str, Any], seconds: float | None, memory: int
 ) -> dict[str, Any]:
@@ -233,3 +256,15 @@ def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     record = json.loads(rendered.texts["certificate.json"])
     judged = {key: record.get(key, empty) for key, empty in (("structure", {}), ("methods", []))}
     return {"system": spec.name, **judged}
+
+
+def header_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """A method as a header, as plain JSON values; runs in a bounded child."""
+    from coadjoint.export import export_header
+    from coadjoint.pipeline import render
+    from coadjoint.spec import read_spec
+
+    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
+    stages = ("derive", "lower", "prove", "render")
+    rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    return {"text": export_header(rendered, argument["method"])}

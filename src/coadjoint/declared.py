@@ -106,8 +106,8 @@ class KernelFunction:
         turning: The summary of a system whose attitudes are moved back, where it is another one.
         turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
-        below: What follows the rows of the state in its first argument: what is reconstructed, or
-            a vector with a row for each of them.
+        below: What follows the rows of the state in its first argument: what is reconstructed,
+            a vector with a row for each of them, or one with a row for each Wiener process.
         looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
@@ -119,7 +119,7 @@ class KernelFunction:
     turning: str = ""
     turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: Literal["", "reconstructed", "vector"] = ""
+    below: Literal["", "reconstructed", "vector", "noise"] = ""
     looped: Literal["", "only", "never"] = ""
 
 
@@ -141,6 +141,7 @@ class KernelContext:
         domain: What the rows of the function ``domain`` are; empty where there is none.
         reconstructed: What the function ``reconstruction`` returns the rates of, in order; empty
             where there is none.
+        reconstructed_observables: What the function of this name returns, in order.
         inputs: Quantities of the inputs, in order; empty where there are none.
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
@@ -164,6 +165,7 @@ class KernelContext:
     supported: int = 0
     domain: tuple[Bound, ...] = ()
     reconstructed: tuple[Quantity, ...] = ()
+    reconstructed_observables: tuple[Quantity, ...] = ()
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"

@@ -8,7 +8,8 @@ loop over i. Comes in: nothing. Goes out: the records that `coadjoint.derive` ma
 State in memory: component after component, and within each the member fastest. With the members'
 components ``S1, S2, S3`` a state has shape ``(3*N, *batch)`` and its rows are ``S1`` of members 0
 to N-1, then ``S2`` of them, then ``S3``: ``state.reshape(3, N, *batch)[c, i]`` is component c of
-member i. Indexed parameters lie likewise, after all shared ones; a row is called ``S1[0]``. In
+member i. Indexed parameters and inputs lie likewise, after all shared ones; a row is called
+``S1[0]``. In
 formulas members are counted from 0, as in the names of rows.
 Read next: `coadjoint.derive.indexed`.
 """
@@ -16,7 +17,7 @@ Read next: `coadjoint.derive.indexed`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -34,6 +35,7 @@ class Index:
         periodic: Whether member N-1 is followed by member 0; an open chain has two ends.
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
+        from_zero: Whether names count from 0 all the same, as where members are looped over.
     """
 
     name: str
@@ -41,6 +43,12 @@ class Index:
     periodic: bool = False
     first: int = 0
     count: str = ""
+    from_zero: bool = False
+
+    @property
+    def first_name(self) -> int:
+        """The number of the first member in names."""
+        return 0 if self.from_zero else self.first
 
 
 @dataclass(frozen=True)
@@ -69,7 +77,7 @@ class Total:
 
     Attributes:
         name: ``energy``; ``M1`` for the first component of ``M``.
-        formula: In the symbols of its sums and in shared parameters.
+        formula: In the symbols of its sums, of members at the ends and of shared parameters.
         sums: The sums, each over members or over pairs.
     """
 
@@ -87,20 +95,33 @@ class Family:
         states: Symbols of the components of member i, in the order of the state.
         shifts: Which neighbours the rates read, in order and without 0, e.g. ``(-1, 1)``.
         neighbours: By component symbol and shift, the symbol of that component of member i+shift,
-            of states and of indexed parameters; for every shift that any rate or total reads.
+            of states, indexed parameters and inputs; for every shift that any rate or total reads.
         shared: Symbols of the parameters that all members share.
         indexed: Symbols of the parameters of member i.
-        partners: By component symbol, that of member j of a pair; of states and indexed parameters.
+        partners: By component symbol, that of member j of a pair; of all that it has.
         rates: Rate of each component of member i, in these symbols and those of pair sums.
         pair_sums: Sums over the partners j of member i, which the rates name; empty without pairs.
-        ends: Of an open chain, the rates of the members that lack a neighbour, by member: 0, 1, ...
-            from the start and -1, -2, ... from the end; empty for a ring.
+        ends: Of an open chain, the rates of the members that lack a neighbour, or that stand alone
+            in the energy, by member: 0, 1, ... from the start and -1, -2, ... from the end; empty
+            for a ring.
         totals: The energy and the observables.
-        small: The least N for which ``rates`` and ``ends`` hold: twice the range of an open chain,
-            1 for a ring, in which members may be each other's neighbours more than once.
+        small: The least N for which ``rates``, ``ends`` and ``totals`` hold: both ends together, 1
+            for a ring, in which members may be each other's neighbours more than once.
         turned: The state of member i with its attitudes moved back to rotations; empty without any.
         residuals: What is zero where they are rotations.
         time: The symbol of the time, which all members share, if the equations name it.
+        singles: By component symbol and number, counted as in ``ends``, the symbol of that
+            component of a member at an end, as far as totals name it.
+        wraps: Whether places of neighbours go on round: in a ring, and in a chain of which members
+            at one end push those at the other.
+        shared_inputs: Symbols of the inputs that all members share.
+        indexed_inputs: Symbols of the inputs of member i, which have neighbours and partners as
+            parameters have.
+        noise: What increments of Wiener processes do to each component of member i, linear in these
+            increments; empty without noise.
+        noise_ends: The same of members that lack a neighbour, as in ``ends``.
+        shared_noise: Symbols of the increments of processes that move all members.
+        indexed_noise: Symbols of those of member i; its neighbours have others.
     """
 
     index: Index
@@ -118,3 +139,16 @@ class Family:
     turned: tuple[Tree, ...] = ()
     residuals: tuple[Tree, ...] = ()
     time: tuple[Symbol, ...] = ()
+    singles: Mapping[tuple[Symbol, int], Symbol] = field(default_factory=dict)
+    wraps: bool = False
+    shared_inputs: tuple[Symbol, ...] = ()
+    indexed_inputs: tuple[Symbol, ...] = ()
+    noise: tuple[Tree, ...] = ()
+    noise_ends: Mapping[int, tuple[Tree, ...]] = field(default_factory=dict)
+    shared_noise: tuple[Symbol, ...] = ()
+    indexed_noise: tuple[Symbol, ...] = ()
+
+    @property
+    def own(self) -> tuple[Symbol, ...]:
+        """Symbols of all that member i has: its state, parameters and inputs."""
+        return (*self.states, *self.indexed, *self.indexed_inputs)

@@ -41,7 +41,7 @@ def template_hashes() -> dict[str, str]:
     folder = templates_folder()
     return {
         f"templates/{path.relative_to(folder).as_posix()}": _sha256(path)
-        for path in sorted(folder.glob("*/*.j2"))
+        for path in sorted(folder.rglob("*.j2"))
     }
 
 

@@ -88,11 +88,26 @@ Systems whose rates are loops over a table have no such matrix.""",
         doc="""Only systems with an energy and a tensor in closed form have it. On the dual of a Lie
 algebra it is the coadjoint action of the vector on the state; of a constrained motion the tensor
 is the almost-Poisson one, taken from momenta to the velocities of the state, where it is
-antisymmetric as well. Its second argument is the vector, in
-the forms of the state; `evaluate` and `bind` take one array, ``(2*n, *batch)``, with the vector
-below the state.
+antisymmetric as well. With a double bracket it is ``P + P G P``, by which no energy grows. Its
+second argument is the vector, in the forms of the state; `evaluate` and `bind` take one array,
+``(2*n, *batch)``, with the vector below the state.
 """,
         below="vector",
+        looped="never",
+    ),
+    KernelFunction(
+        name="distinguished",
+        summary="Distinguished functions of Nambu's bracket",
+        shape="(n - 2, *batch)",
+        doc="""Only systems with [poisson] nambu, and an energy, have it.""",
+        looped="never",
+    ),
+    KernelFunction(
+        name="distinguished_gradient",
+        summary="Derivatives of the distinguished functions by the state, row by row",
+        shape="(n - 2, n, *batch)",
+        doc="""Only systems that have `distinguished` have it: the motion is the product of these
+gradients and `energy_gradient`, ``dc x dh`` of three coordinates.""",
         looped="never",
     ),
     KernelFunction(
@@ -111,6 +126,16 @@ those of the commutator of the two; the isospectral midpoint calls both.""",
         shape="(n, w, *batch)",
         doc="""Only systems with [noise] have it. The motion is
 ``dx = rhs dt + noise o dW``, in the sense of Stratonovich.""",
+    ),
+    KernelFunction(
+        name="noise_vector",
+        summary="What the noise does to the state, for a number of each Wiener process",
+        shape="(n, *batch)",
+        doc="""Only systems of equal members with [noise] have it, in the place of `noise`: this is
+``noise`` times a vector. Its first argument is the state with these numbers below it, those of
+processes that move all members, then those of members, process by process.""",
+        below="noise",
+        looped="only",
     ),
     KernelFunction(
         name="constraint_residual",
@@ -142,6 +167,14 @@ attitudes in the state or keep a constraint, one that gives no velocity outright
         shape="(r, *batch)",
         doc="""Rows are the components of ``RECONSTRUCTED``. In the first argument these follow the
 state: ``(n + r, *batch)``, or a mapping that names them all.""",
+        below="reconstructed",
+    ),
+    KernelFunction(
+        name="reconstructed_observables",
+        summary="Observables of what is reconstructed; state holds the state, then its rows",
+        shape="(o, *batch)",
+        doc="""Rows are the components of ``RECONSTRUCTED_OBSERVABLES``. The first argument is the
+same as that of ``reconstruction``.""",
         below="reconstructed",
     ),
     KernelFunction(

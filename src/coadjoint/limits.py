@@ -74,9 +74,6 @@ EXAMINED_GENERATORS = 36
 MONOMIALS = 20_000
 #: Products of terms of one invariant of matrices; the largest one of so(8) takes 6300.
 INVARIANT_TERMS = 25_000
-#: Velocities coupled by a kinetic energy that the kernel solves for: unrolled, fifteen (rotations
-#: in six dimensions, by entries) take 135 intermediates, and a minute of proofs.
-COUPLED_VELOCITIES = 16
 #: Work of one search whose result is not claimed, in operations of exact arithmetic, of which each
 #: takes 1 to 15 microseconds; the largest one of a shipped system, the Casimirs of so(8), takes
 #: 410 000. See `coadjoint.prove.searches`.

@@ -13,6 +13,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+#: What is kept of each search for the next step: an offset and its first two differences.
+TERMS: Final = 3
+#: Of how many steps one is composed, by its order.
+_LENGTHS: Final = MappingProxyType({2: 1, 4: 5, 6: 9})
+
 
 @dataclass(frozen=True)
 class Sphere:
@@ -59,6 +64,26 @@ class StructuredMethod:
         """What chooses it in C."""
         return self.name.upper()
 
+    @property
+    def stages(self) -> int:
+        """How many states are searched for in a step; 0 of maps."""
+        if self.file == "sequence":
+            return 0
+        return self.order // 2 if self.file == "gauss" else _LENGTHS[self.order]
+
+    def count_memory(self, rows: int) -> int:
+        """How many numbers a step of a state of so many rows leaves for the next one.
+
+        First what rounding took of the state; then, for each stage, where it was searched for with
+        success, as far from the state, and how this changed.
+        """
+        return rows * self.parts
+
+    @property
+    def parts(self) -> int:
+        """How many numbers of each row that are; sums of maps that keep nothing are plain."""
+        return 0 if self.name == "kahan" else 1 + TERMS * self.stages
+
 
 @dataclass(frozen=True)
 class JudgedMethod:
@@ -98,8 +123,10 @@ _QUADRATIC: Final = (
 ACTION: Final = ("energy_gradient", "bracket_vector")
 #: Those of it that discrete gradients call.
 BALANCE: Final = (*ACTION, "energy")
+#: Functions that a motion by Nambu's bracket keeps beside its energy, and their gradients.
+DISTINGUISHED: Final = ("distinguished", "distinguished_gradient")
 #: All that methods ask of a kernel beyond its rates.
-ASKED: Final = (*BALANCE, "sandwich")
+ASKED: Final = (*BALANCE, "sandwich", *DISTINGUISHED)
 #: Those of a motion that stays on coadjoint orbits, on which the bracket acts.
 _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
@@ -132,9 +159,7 @@ _TENSOR: Final = (
     "step (R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 "
     "(1999) 1021)"
 )
-_TENSORS: Final = (
-    "an energy, and a Poisson or almost-Poisson tensor in closed form, without relaxation"
-)
+_TENSORS: Final = "an energy, and a Poisson or almost-Poisson tensor in closed form"
 
 _ENTRIES: Final = (
     StructuredMethod(
@@ -277,6 +302,20 @@ _ENTRIES: Final = (
         "Journal of Computational Physics 231 (2012) 6770)",
         expects=_TENSORS,
     ),
+    *(
+        StructuredMethod(
+            name=f"nambu_gradient{suffix}",
+            file="nambu_gradient",
+            order=order,
+            needs=("energy", "energy_gradient", *DISTINGUISHED, "nambu"),
+            keeps="the energy and all distinguished functions, to the rounding of each step",
+            theorem=f"{steps}the product of discrete gradients of the energy and of all "
+            "distinguished functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. "
+            "Robidoux, Philosophical Transactions A 357 (1999) 1021)",
+            expects="a motion by Nambu's bracket alone, declared with at most six coordinates",
+        )
+        for suffix, order, steps in (("", 2, ""), ("4", 4, "five steps with Suzuki's lengths of "))
+    ),
 )
 
 _POISSON: Final = (
@@ -338,7 +377,7 @@ _MAPS: Final = (
 )
 
 #: Methods of motions with noise; ``"auto"`` is the last one.
-NOISY: Final = ("heun", "midpoint")
+NOISY: Final = ("heun", "spherical_midpoint", "midpoint")
 #: With a fixed step, without a method that keeps structure.
 PLAIN: Final = "dop853"
 
@@ -350,6 +389,23 @@ _MAPPED: Final = {each.name: each for each in _MAPS}
 MAPPED: Final = MappingProxyType(_MAPPED)
 
 
+#: Why compositions are refused where energy is lost.
+BACKWARD: Final = (
+    "some of its steps go back in time, where friction gives energy: those of a composition of "
+    "order above 2, whose lengths have cubes with the sum 0"
+)
+
+
+def list_backward() -> set[str]:
+    """Names of methods that are compositions with steps back in time.
+
+    >>> sorted(list_backward())[:3]
+    ['coadjoint_mean4', 'coadjoint_mean6', 'discrete_gradient4']
+    """
+    composed = (each for each in (*_ENTRIES, *_MAPS) if each.file != "gauss")
+    return {each.name for each in composed if each.name[-1] in "46"}
+
+
 def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
     """The methods that the functions of a solver allow.
 
@@ -357,7 +413,8 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
 
     Args:
         functions: Their names, ``kinks`` among them where the rates have some, ``orbits`` where
-            the motion stays on coadjoint orbits, and ``spheres`` where these are spheres.
+            the motion stays on coadjoint orbits, ``spheres`` where these are spheres, and ``nambu``
+            where the motion is Nambu's product of gradients.
 
     >>> [method.name for method in list_structured(["rhs"])]
     ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']

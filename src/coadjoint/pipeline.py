@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.reference import Reference
@@ -29,8 +30,10 @@ from coadjoint.lower.family_check import check_loops
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
+from coadjoint.methods import JudgedMethod
 from coadjoint.prove import Certificate, Verdict, prove
 from coadjoint.prove.declaration import family_context, kernel_context
+from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
 from coadjoint.render.families import FamilyContext, render_family
@@ -68,7 +71,10 @@ class RenderedFamily:
 
 @dataclass(frozen=True)
 class Rendered:
-    """The emitted route, what is proved of it, its functions, its files by name, and its maps."""
+    """The emitted route, what is proved of it, its functions, its files by name, and its maps.
+
+    Of a system that is no family also what the files say, and its methods of integration, judged.
+    """
 
     equations: Equations
     certificate: Certificate
@@ -76,6 +82,8 @@ class Rendered:
     texts: dict[str, str]
     family: RenderedFamily | None = None
     maps: tuple[Program, ...] = ()
+    context: KernelContext | None = None
+    methods: tuple[JudgedMethod, ...] = ()
 
     @property
     def pair_operations(self) -> int:
@@ -105,7 +113,13 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     record = certificate_json(spec, certificate, facts.as_record(), methods)
     texts = {**render_system(context), "certificate.json": record}
     return Rendered(
-        equations=first, certificate=certificate, programs=programs, texts=texts, maps=maps.programs
+        equations=first,
+        certificate=certificate,
+        programs=programs,
+        texts=texts,
+        maps=maps.programs,
+        context=context,
+        methods=methods,
     )
 
 
@@ -121,8 +135,11 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     certificate = prove(spec, list(routes)).require()
     check_loops(family, loops)
     progress("render")
-    context = family_context(first, family, loops, certificate.count(Verdict.SUPPORTED))
-    texts = {**render_family(context), "certificate.json": certificate_json(spec, certificate)}
+    facts, methods = judge_family(windows, declared, family, loops, certificate)
+    supported = certificate.count(Verdict.SUPPORTED)
+    context = family_context(first, family, loops, supported, facts, methods)
+    record = certificate_json(spec, certificate, facts.as_record(), methods)
+    texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member
     assert member is not None, spec.name
     return Rendered(

@@ -8,7 +8,7 @@ import pytest
 
 from coadjoint.cli.self_check import main
 from coadjoint.solve.self_check import check_methods
-from coadjoint.systems import euler_disk, n_body, rigid_body, suslov
+from coadjoint.systems import euler_disk, rigid_body, stochastic_rigid_body, suslov
 
 PACKAGE = "coadjoint.systems.rigid_body"
 
@@ -42,10 +42,11 @@ def test_a_method_that_does_not_apply_is_refused(capsys):
     assert "gauss4" in said
 
 
-def test_families_have_nothing_to_check(capsys):
-    """And say so."""
-    assert main(n_body.system, "here", ["--check"]) == 0
-    assert "No method that keeps structure applies to n_body" in capsys.readouterr().out
+def test_noise_leaves_nothing_to_check(capsys):
+    """And says so."""
+    assert main(stochastic_rigid_body.system, "here", ["--check"]) == 0
+    said = "No method that keeps structure applies to stochastic_rigid_body"
+    assert said in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

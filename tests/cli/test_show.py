@@ -84,11 +84,11 @@ def test_methods_are_listed_with_what_decides(run):
     [
         ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
-        ("toda_lattice", "No method that keeps structure is generated for toda_lattice"),
+        ("toda_lattice", "do not apply: its solvers are loops over equal members, without it."),
         ("bloch", '"auto" with step= takes dop853.'),
     ],
 )
-def test_systems_without_methods_that_keep_structure_say_so(run, system, said):
+def test_methods_that_do_not_apply_say_why(run, system, said):
     """Of noise, of equal members, and where nothing is kept."""
     assert said in run("show", system, "--methods").stdout
 

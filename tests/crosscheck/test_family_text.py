@@ -9,9 +9,10 @@ from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import CHAIN, DRIVEN, RING, VORTICES
+from tests.families import CHAIN, CLOSED, DRIVEN, RING, VORTICES, WALLS
 
 TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "driven": DRIVEN}
+TEXTS |= {"walls": WALLS, "closed": CLOSED}
 #: A text, what stands in it, and what spoils it.
 SPOILED = [
     ("ring", "kernel.c", "before(_run.i, 1, _run.size)", "before(_run.i, 2, _run.size)"),
@@ -26,6 +27,13 @@ SPOILED = [
     ("vortices", "kernel.c", "const double y_j = _batch ?", "const double y_j = _shared ?"),
     ("vortices", "kernel.py", "size + j]", "size + i]"),
     ("vortices", "kernel_python.py", "_t1 * ", "_t1 + "),
+    ("walls", "kernel.py", "parameters[1 + size - 2]", "parameters[1 + size - 1]"),
+    ("walls", "kernel.py", "q_last = state[size - 1]", "q_last = state[size - 2]"),
+    ("walls", "kernel.c", "double k_last = _indexed ?", "double k_last = _shared ?"),
+    ("walls", "kernel.c", "(_run.size - 1) * _run.stride", "(_run.size - 2) * _run.stride"),
+    ("walls", "kernel_python.py", "q_first = state[0]", "q_first = state[1]"),
+    ("closed", "kernel.py", "(i - 1) % size", "i - 1"),
+    ("closed", "solver.py", "at.near(0, -1)", "at.near(0, 1)"),
     ("ring", "solver.c", "near(_at, 0, -1)", "near(_at, 0, 1)"),
     ("ring", "solver.py", "at.near(0, -1)", "at.near(1, -1)"),
     ("ring", "solver.c", "_slots + 1 * ORDER", "_slots + 0 * ORDER"),

@@ -14,8 +14,8 @@ from tests.kernels import COMPILER
 #: Of the second flow in a step of order 4, cut by its last digits.
 LENGTH = str(schedule(3, 4)[1][1])[:12]
 
-#: The second momentum after the first flow, with a wrong sign.
-TURN = tuple(f"_rows[1] = Pi2 {sign} _flow1_t4 * _flow1_tan1 + _flow1_t5;" for sign in "-+")
+#: What the first flow adds to the second momentum, with a wrong sign.
+TURN = tuple(f"_rows[1] = _flow1_t4 {sign} _flow1_t5 * _flow1_tan1;" for sign in "-+")
 
 
 @cache
@@ -50,13 +50,16 @@ def test_every_method_is_compared():
         # a sign, a factor and a row of a flow, a name of another flow
         ("solver.c", *TURN),
         ("solver.c", "const V _flow2_p1 = 0.5 / I2;", "const V _flow2_p1 = 0.25 / I2;"),
-        ("solver.py", "    _rows[0] = Pi1\n", "    _rows[0] = Pi2\n"),
+        ("solver.py", "    _rows[0] = 0.0\n", "    _rows[0] = Pi2\n"),
+        # rows that a flow moves, and a plain sum
+        ("solver.py", '    "flow1": (1, 2, ),\n', '    "flow1": (1, ),\n'),
+        ("solver.c", "add_low(ends[b][1], &steps[b].memory[1], rises[1])", "ends[b][1] + rises[1]"),
         ("solver.c", "find_flow2(blocks + b", "find_flow3(blocks + b"),
         # a coefficient, and a part left out
         ("solver.c", f"h[b] * {LENGTH}", f"h[b] * {LENGTH}1"),
         ("solver.py", '        ("flow2", 0.5),\n', ""),
         # a sign in the solve, and a wrong start of the elliptic functions
-        ("solver.py", "_rows[2] = Pi3 + _kahan_d3", "_rows[2] = Pi3 - _kahan_d3"),
+        ("solver.py", "_rows[2] = _kahan_d3", "_rows[2] = -_kahan_d3"),
         ("solver.c", "0.015625 * _h", "0.015626 * _h"),
     ],
 )

@@ -43,7 +43,8 @@ from coadjoint.lower.program import (
 )
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
-from coadjoint.render.solvers import Line, arrange, select_programs
+from coadjoint.render.recurrences import Line
+from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
@@ -533,8 +534,8 @@ WRONG_IN_C = [
     ("dop853", "part * part < rest", "part < rest"),
     (
         "rk4",
-        "blocks[b].time = blocks[b].time + h[b]",
-        "blocks[b].time = blocks[b].time + h[b] * 0.5",
+        "blocks[b].time = add_low(blocks[b].time, &blocks[b].late, h[b])",
+        "blocks[b].time = add_low(blocks[b].time, &blocks[b].late, h[b] * 0.5)",
     ),
     ("dop853", "all(failed ? 0.0 : made)", "all(made + 1.0)"),
     ("taylor", "_m < _k;", "_m <= _k;"),

@@ -14,14 +14,20 @@ from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.spec.reader import read_spec_text
 from tests.families import (
     BEADS,
+    BY_VELOCITIES,
     CHAIN,
+    CHARGES,
+    CLOSED,
     DRAG,
     DRIVEN,
+    HELD,
     NECKLACE,
+    PLANAR,
     RING,
     SPRINGS,
     TOPS,
     VORTICES,
+    WALLS,
     are_equal,
     check_rates,
     family_of,
@@ -31,13 +37,18 @@ from tests.families import (
     value_of,
     write_beads,
     write_chain,
+    write_charges,
+    write_closed,
     write_drag,
     write_driven,
+    write_held,
     write_necklace,
     write_ring,
     write_springs,
     write_tops,
+    write_velocities,
     write_vortices,
+    write_walls,
 )
 from tests.specs import shipped
 
@@ -51,6 +62,11 @@ SYSTEMS = {
     "drag": (DRAG, write_drag, (2, 3)),
     "springs": (SPRINGS, write_springs, (2, 3, 5)),
     "driven": (DRIVEN, write_driven, (2, 3, 5)),
+    "walls": (WALLS, write_walls, (3, 4, 7)),
+    "closed": (CLOSED, write_closed, (2, 3, 6)),
+    "held": (HELD, write_held, (2, 3, 5)),
+    "velocities": (BY_VELOCITIES, write_velocities, (2, 3, 5)),
+    "charges": (CHARGES, write_charges, (2, 3)),
 }
 CASES = [(name, n) for name, (_, _, sizes) in SYSTEMS.items() for n in sizes]
 
@@ -84,6 +100,13 @@ def spoil_end(family):
     return replace(family, ends={k: family.ends[-k - 1] for k in family.ends})
 
 
+def spoil_sides(family):
+    """The first and the last member change places."""
+    ends = dict(family.ends)
+    ends[0], ends[-1] = ends[-1], family.rates
+    return replace(family, ends=ends)
+
+
 def spoil_drag(family):
     """No force acts."""
     (c,) = family.indexed
@@ -109,6 +132,11 @@ def spoil_pairs(family):
         ("tops", 3, spoil_end),
         ("drag", 2, spoil_drag),
         ("springs", 3, spoil_neighbour),
+        ("walls", 4, spoil_sides),
+        ("closed", 4, spoil_sides),
+        ("held", 4, spoil_sides),
+        ("velocities", 3, spoil_sides),
+        ("charges", 3, spoil_pairs),
     ],
 )
 def test_a_wrong_rate_is_seen(families, name, n, spoil):
@@ -119,7 +147,19 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
 
 @pytest.mark.parametrize(
     ("name", "n"),
-    [("ring", 2), ("ring", 5), ("chain", 5), ("vortices", 4), ("beads", 4), ("tops", 3)],
+    [
+        ("ring", 2),
+        ("ring", 5),
+        ("chain", 5),
+        ("vortices", 4),
+        ("beads", 4),
+        ("tops", 3),
+        ("walls", 5),
+        ("closed", 4),
+        ("held", 3),
+        ("velocities", 4),
+        ("charges", 3),
+    ],
 )
 def test_the_energy_is_that_of_all_members(families, name, n):
     """Sums begin and end where the energy that is written out has its terms."""
@@ -147,6 +187,59 @@ def test_a_spin_wave_turns_as_the_book_says():
     for i, (s, rate) in enumerate(zip(spins, rates, strict=True)):
         found = [float(each.subs(point)) for each in rate]
         assert found == pytest.approx([omega * s[1], -omega * s[0], 0], abs=1e-12), i
+
+
+def test_observables_may_name_members_at_the_ends(families):
+    """A length has no sum, and a sum may be less a member; by the last member but one, too."""
+    values = {each.name: value_of(families["walls"], each, 4) for each in families["walls"].totals}
+    q, p = (sympy.symbols(f"{name}_:4") for name in "qp")
+    k = sympy.Symbol("k_2")
+    assert values["length"] == q[3] - q[0]
+    wanted = 2 * sum(each**2 for each in p) - p[0] ** 2 + k * q[3]
+    assert sympy.expand(values["D"] - wanted) == 0
+
+
+def test_momentum_maps_are_sums_over_members():
+    """Lifted, declared, and found for what moves the whole state of a member."""
+    family = family_of(read(PLANAR))
+    values = {each.name: value_of(family, each, 3) for each in family.totals}
+    q = [sympy.symbols(f"q_{k}_1 q_{k}_2") for k in range(3)]
+    p = [sympy.symbols(f"p_{k}_1 p_{k}_2") for k in range(3)]
+    turned = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(q, p, strict=True))
+    assert sympy.expand(values["L"] ** 2 - turned**2) == 0  # up to the sign of the basis
+    assert [values["P1"], values["P2"]] == [sum(each[c] for each in p) for c in range(2)]
+    assert [values["G1"], values["G2"]] == [sum(x for x, _ in p), -sum(x for x, _ in q)]
+
+
+def test_observables_may_be_functions_of_sums():
+    """A centre of mass, and products and functions of sums; the first component has all sums."""
+    family = family_of(read(PLANAR))
+    totals = {each.name: each for each in family.totals}
+    x, y = totals["centre1"], totals["centre2"]
+    q = [sympy.symbols(f"q_{k}_1 q_{k}_2") for k in range(3)]
+    p = [sympy.symbols(f"p_{k}_1 p_{k}_2") for k in range(3)]
+    m = sympy.symbols("m_:3")
+    for n, each in enumerate((x, replace(y, sums=x.sums))):
+        wanted = sum(w * place[n] for w, place in zip(m, q, strict=True)) / sum(m)
+        assert are_equal(value_of(family, each, 3), wanted)
+    turned = sum(a[0] * b[1] for a, b in zip(q, p, strict=True))
+    along = sum(b[0] for b in p)
+    found = value_of(family, totals["turning"], 3)
+    assert are_equal(found, turned * along**2 - sympy.atan2(along, sum(m)))
+
+
+def test_normal_modes_between_walls_are_those_of_the_book():
+    """omega_k = 2 sqrt(k/m) sin(pi k/(2 (N + 1))), with sines as modes (Fermi, Pasta and Ulam)."""
+    linear = "k[i]*(q[i+1] - q[i])^3/3)", "c*(q[i+1] - q[i])^2/2)"
+    walls = "c*(k[1]*q[1]*q[2]^2 + k[n]*q[n]^4/4)", "c*q[1]^2/2 + c*q[n]^2/2"
+    family, n, c = family_of(read(WALLS, linear, walls)), 9, 2.5
+    q, _ = family.states
+    for mode in (1, 4, 9):
+        omega = 2 * sqrt(c) * sin(pi * mode / (2 * (n + 1)))
+        values = {(q, j): sin(pi * mode * (j + 1) / (n + 1)) for j in range(n)}
+        point = {member(x, j): v for (x, j), v in values.items()} | {sympy.Symbol("c"): c}
+        for j, (_, rate) in enumerate(rates_of_members(family, n)):
+            assert isclose(float(rate.subs(point)), -(omega**2) * values[q, j], abs_tol=1e-12)
 
 
 def test_two_vortices_turn_about_each_other():

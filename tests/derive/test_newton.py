@@ -183,15 +183,15 @@ def test_an_iteration_that_is_lowered_wrongly_is_found():
         ("v^4/4 - a*v^2/2", "not positive definite"),
         ("v^4/4 + a*v^3", "not positive definite"),
         ("v^4/4 + a*v^2/2 + sqrt(v)", "not defined there"),
-        ("v^4/4 + u*v^2/2 + a*v^2", "depend on u, which is given in time"),
     ],
 )
 def test_what_cannot_begin_at_rest_is_refused(kinetic, message):
-    """The message says why."""
-    driven = ("[parameters]", "[inputs]\nu = { default = 1 }\n[parameters]")
-    changes = [(QUARTIC, kinetic), *([driven] if "u*" in kinetic else [])]
-    with pytest.raises(DerivationError, match=message):
-        derive(spec(LINE, *changes))
+    """The message says why, and what it advises is followed in the end: no momenta."""
+    with pytest.raises(DerivationError, match=message) as caught:
+        derive(line(kinetic))
+    assert "remove p and take the route euler-lagrange" in str(caught.value)
+    changes = (('p = { role = "momentum", of = "q" }\n', ""), (', "canonical"', ""))
+    assert derive(spec(LINE, (QUARTIC, kinetic), *changes)).setting.state == ("q", "v")
 
 
 def test_too_many_coupled_velocities_are_refused():
@@ -233,3 +233,99 @@ def test_time_in_momenta_is_proved_on_both_routes():
     proved = prove_claims(spec(DRIFTING.replace('"energy"', ""))).claims
     assert all(claim.verdict.name == "PROVED" for claim in proved)
     assert any("explicit dependence on time" in claim.statement for claim in proved)
+
+
+STEERED = LINE.replace(QUARTIC, "v^4/4 + (a + u)*v^2/2 + w*v").replace(
+    "[parameters]",
+    """[domain]
+convex = "a + u > 0"
+[inputs]
+u = { default = 1 }
+w = { default = 0 }
+[parameters]""",
+)
+
+
+@cache
+def steer():
+    """A free particle, ``v^3 + (a + u) v + w = p``: its equations and functions."""
+    text = STEERED.replace(" - k*q^2/2", "").replace("k = { positive = true, default = 1 }\n", "")
+    equations = derive(spec(text.split("[claims]")[0]))
+    return equations, lower(equations)
+
+
+@pytest.fixture(scope="module")
+def steered(tmp_path_factory):
+    """Its system."""
+    return build(kernel_context(*steer(), 0), tmp_path_factory.mktemp("steered"))
+
+
+@pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+@pytest.mark.parametrize(
+    ("method", "target"), [("taylor", "c"), ("taylor", "numpy"), ("dop853", "c")]
+)
+def test_momenta_may_depend_on_inputs(steered, method, target):
+    """Along ramps of both inputs p is kept, and v, the root of a cubic, integrates to q."""
+    times, u, w = [0, 2, 3], [0, 4, 1], [0.5, 0.5, -1]
+
+    def cubic(t):
+        h = 0.7 + mpmath.mpf(np.interp(float(t), times, u))
+        r, size = 1.5 - mpmath.mpf(np.interp(float(t), times, w)), 2 * mpmath.sqrt(h / 3)
+        return size * mpmath.sinh(mpmath.asinh(3 * r / (h * size)) / 3)
+
+    end = mpmath.quad(cubic, [0, 1, 2, 2.5, 3])
+    run = steered.simulate(
+        *([0.25, 1.5], (0, 3), {"a": 0.7}, (times, [u, w], "linear")),
+        **{"method": method, "target": target, "rtol": 1e-12, "atol": 1e-12},
+    )
+    assert run.status == "OK"
+    assert run.final["p"] == 1.5
+    assert run.final["q"] == pytest.approx(0.25 + float(end), abs=1e-11)
+
+
+def test_recurrences_have_the_rates_of_inputs():
+    """V' = -(u' v + w')/(3 v^2 + a + u) at v = 1, and of another sign of w' it is not that."""
+    text = arrange(select_programs(steer()[1].values()))
+    given = {"a": (1.0,), "u": (2.0, 0.5), "w": (0.25, -2.0)}
+    found = run_recurrences(text, {"q": 0.5, "p": 4.25}, given, 2, partial(float), call)
+    assert found["q"] == pytest.approx([0.5, 1.0, (2.0 - 0.5) / 6 / 2], rel=1e-14)
+    other = run_recurrences(
+        text, {"q": 0.5, "p": 4.25}, given | {"w": (0.25, 2.0)}, 2, partial(float), call
+    )
+    assert other["q"][2] == pytest.approx((-2.0 - 0.5) / 6 / 2, rel=1e-14)
+
+
+def test_inputs_in_momenta_are_proved_on_both_routes():
+    """The energy is kept while the inputs are constant."""
+    proved = prove_claims(spec(STEERED)).claims
+    assert all(claim.verdict.name == "PROVED" for claim in proved)
+    assert any("while the inputs are constant" in claim.statement for claim in proved)
+
+
+@pytest.fixture(scope="module")
+def folding(tmp_path_factory):
+    """A force F pushes a particle, ``a v - v^3 = p``, past the largest momentum."""
+    text = LINE.replace(QUARTIC, "-v^4/4 + a*v^2/2").replace("- k*q^2/2", "+ k*q")
+    equations = derive(spec(text.split("[claims]")[0]))
+    return build(kernel_context(equations, lower(equations), 0), tmp_path_factory.mktemp("folding"))
+
+
+@pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize(
+    ("method", "ends"),
+    [("taylor", {"DOMAIN"}), ("rk4", {"NONFINITE"}), ("midpoint", {"NOT_SOLVED", "NONFINITE"})],
+)
+def test_a_member_past_the_last_momentum_ends_alone(folding, method, ends, target):
+    """The member that is pushed less goes on to the end, and has the velocity of its momentum."""
+    own = {} if method == "taylor" else {"step": 0.015625}
+    run = folding.simulate(
+        *(np.zeros((2, 2)), (0, 1), {"k": np.array([0.125, 0.5])}),
+        **{"method": method, "target": target, **own},
+    )
+    assert run.status[0] == "OK"
+    assert run.status[1] in ends
+    assert run.final["p"] == pytest.approx([0.125, FOLD], abs=0.008)
+    assert run.final["p"][1] <= FOLD + 1e-12
+    found = folding.rhs([run.final["q"], run.final["p"]], target=target)[0]
+    assert found[0] == pytest.approx(velocity("-v^4/4 + a*v^2/2", 0.125), rel=1e-12)

@@ -4,6 +4,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive, structure
+from coadjoint.derive.routes import euler_poincare
 from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
 from tests.specs import prove_claims, spec
@@ -143,3 +144,105 @@ def test_a_coordinate_without_a_momentum_is_refused():
     brackets = ('"{q, p}" = "1", ', "")
     with pytest.raises(SpecError, match="the coordinate 'q' has no momentum"):
         spec(BODY, bare, flat, brackets)
+
+
+#: The same with momenta of both as the state, by its Lagrangian.
+BOTH = (
+    BODY.split("[hamiltonian]")[0].replace('["lie-poisson"]', '["euler-poincare", "lie-poisson"]')
+    + LAGRANGIAN[LAGRANGIAN.index("[lagrangian]") :]
+    + BODY[BODY.index("[claims]") :]
+)
+#: A mass that slides in a plane, a vertical, and kinetic energies that are not quadratic.
+CURVED = """
+title = "A heavy body with a mass inside"
+routes = ["euler-poincare", "lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Gamma = { role = "advected", representation = "vector" }
+Omega = { role = "velocity" }
+q = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "q" }
+p = { role = "momentum", of = "q" }
+Pi = { role = "momentum" }
+[parameters]
+m = { positive = true, default = 1 }
+b = { positive = true, default = 1 }
+[inputs]
+u = { default = 0 }
+[forces]
+v = "vector(u, 0)"
+Omega = "vector(0, 0, u)"
+[dissipation]
+R = "dot(v, v)/2"
+[lagrangian]
+l = '''
+dot(Omega, Omega)/2 + m*((v1 + Omega3*q2)^2 + (v2 - Omega3*q1)^2)/2 + b*(v1^4 + Omega3^4)/4
+- dot(q, q)/2 - Gamma3*q1
+'''
+"""
+
+
+def test_a_lagrangian_of_both_gives_the_same_rates():
+    """Those typed by hand above, on both routes."""
+    omega = INERTIA.inv() * Pi
+    force = m * q * (omega[1] ** 2 + omega[2] ** 2) - k * q
+    expected = [*Pi.cross(omega), p / m, force]
+    for route in ("euler-poincare", "lie-poisson"):
+        found = derive(spec(BOTH), route)
+        assert tuple(map(str, found.state)) == ("Pi1", "Pi2", "Pi3", "q", "p")
+        assert all(sympy.simplify(a - b) == 0 for a, b in zip(found.rates, expected, strict=True))
+    assert set(verdicts(BOTH).values()) == {Verdict.PROVED}
+
+
+def test_velocities_of_both_may_need_an_iteration():
+    """Coupled, with forces, friction, an input and an advected vector; every claim is proved."""
+    found = verdicts(CURVED)
+    assert set(found.values()) == {Verdict.PROVED}
+    same = "euler-poincare and lie-poisson give the same motion, through the Legendre transform"
+    assert same in found
+    assert any("in Newton's iteration" in each for each in found)
+
+
+def test_another_force_of_coordinates_is_refuted(monkeypatch):
+    """With -dl/dq in place of dl/dq."""
+    true = euler_poincare._rates_of_coordinates
+
+    def spoil(setting):
+        return {x: -rate if x == "p" else rate for x, rate in true(setting).items()}
+
+    monkeypatch.setattr(euler_poincare, "_rates_of_coordinates", spoil)
+    same = "euler-poincare and lie-poisson give the same motion, through the Legendre transform"
+    assert verdicts(BOTH)[same] is Verdict.REFUTED
+
+
+def test_a_force_along_a_velocity_of_a_coordinate_acts():
+    """``dp/dt = ... - c v``, and the balance of energy, with either energy."""
+    for text in (BODY, BOTH):
+        forced = text.split("[claims]")[0] + '[forces]\nv = "-k*v"\n'
+        free, found = derive(spec(text)), derive(spec(forced))
+        added = [a - b for a, b in zip(found.rates, free.rates, strict=True)]
+        assert [sympy.simplify(each) for each in added] == [0, 0, 0, 0, -k * p / m]
+        assert set(verdicts(forced).values()) == {Verdict.PROVED}
+
+
+def test_a_coordinate_of_a_lagrangian_needs_its_velocity():
+    """The message writes it, and what it writes is accepted."""
+    line = 'v = { role = "velocity", of = "q" }\n'
+    changes = ((line, ""), ("m*(v^2 + q^2*(", "m*(q^2*("))
+    with pytest.raises(SpecError, match=r"coordinate 'q' has no velocity.*v = { role") as caught:
+        spec(BOTH, *changes)
+    assert line.strip() in str(caught.value)
+    spec(BOTH, changes[1])
+
+
+@pytest.mark.parametrize("role", ["attitude", "quaternion"])
+def test_an_attitude_may_stand_in_the_state_too(role):
+    """The momentum in space is that of the algebra alone, and the weight of the mass turns it."""
+    text = BOTH.replace("[variables]", f'[variables]\nR = {{ role = "{role}" }}')
+    up = "R[3, 3]" if role == "attitude" else "rotate(R, vector(0, 0, 1))[3]"
+    text = text.replace('- k*q^2/2"', f'- k*q^2/2 - {up}*q"').split("[claims]")[0]
+    assert set(verdicts(text).values()) == {Verdict.PROVED}
+    names = derive(spec(text)).observables
+    assert {"Pi_spatial1", "Pi_spatial2", "Pi_spatial3"} <= set(names)
+    assert not any(name.startswith("p_spatial") for name in names)

@@ -195,11 +195,12 @@ def test_a_degenerate_leading_block_is_refused():
         derive(spec(BODY.replace("a[1]*W12^2/2 +", "0*a[1] +")))
 
 
-def test_too_many_coupled_velocities_are_refused(monkeypatch):
-    """The count, the names and the limit are told."""
-    monkeypatch.setattr("coadjoint.derive.mechanics.legendre.COUPLED_VELOCITIES", 3)
-    with pytest.raises(LimitError, match=r"couples 4 velocities .*W12.* 3 .COUPLED_VELOCITIES"):
-        derive(spec(BODY))
+def test_iterations_for_too_many_velocities_are_refused(monkeypatch):
+    """The count, the names, the estimate and the limit are told."""
+    monkeypatch.setattr("coadjoint.derive.mechanics.legendre.OPERATIONS", 600)
+    said = r"couples 4 velocities .*W12.* about 682 operations; expected at most 600 .OPERATIONS"
+    with pytest.raises(LimitError, match=said):
+        derive(spec(BODY.replace("b*(W12*W13", "W12^4/4 + b*(W12*W13")))
 
 
 def test_an_integral_that_names_a_solved_velocity_is_refused():

@@ -4,7 +4,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.errors import LimitError, SpecError
+from coadjoint.errors import ClaimError, LimitError, SpecError
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.almost_poisson import about_reduced_jacobi
 from coadjoint.prove.constrained import motion_of
@@ -154,14 +154,59 @@ def test_a_chain_hangs_with_the_roots_of_laguerre(n):
 
 def test_size_is_needed_and_limited():
     """The message says why all members are written out."""
-    with pytest.raises(
-        SpecError, match=r"since the energy follows from a Lagrangian; no size is given"
-    ):
+    with pytest.raises(SpecError, match=r"since a sum stands in a sum; no size is given"):
         read(CHAIN, ("size = 2, ", ""))
     with pytest.raises(LimitError, match="STATE_COMPONENTS"):
         read(CHAIN, sizes={"i": 1000})
     with pytest.raises(LimitError, match="WRITTEN_PARTS"):
         read(WALLS, ("V", "sum(i, j, k2, l, q[i]*q[j]*q[k2]*q[l])"), sizes={"i": 60})
+
+
+#: M. Kac and P. van Moerbeke, Advances in Mathematics 16 (1975) 160.
+VOLTERRA = """
+title = "Volterra's lattice"
+routes = ["poisson"]
+[index]
+i = { size = 5, periodic = true }
+[variables]
+c = { role = "coordinate", index = "i", default = 1 }
+[poisson.brackets]
+"{c[i], c[i+1]}" = "c[i]*c[i+1]"
+[hamiltonian]
+h = "sum(i, c[i])"
+[claims]
+casimirs = ["c[0]*c[1]*c[2]*c[3]*c[4]"]
+conserved = ["energy", "sum(i, c[i]^2/2 + c[i]*c[i+1])"]
+"""
+
+
+def test_members_may_have_brackets_with_their_neighbours():
+    """Volterra's lattice: dc_i/dt = c_i (c_(i+1) - c_(i-1)), also with two ends."""
+    ring, chain = read(VOLTERRA), read(VOLTERRA.split("[claims]")[0], (", periodic = true", ""))
+    assert ring.written == chain.written == "brackets couple members"
+    c = sympy.symbols("c_:5")
+    turned = [c[i] * (c[(i + 1) % 5] - c[i - 1]) for i in range(5)]
+    assert [sympy.expand(a - b) for a, b in zip(derive(ring).rates, turned, strict=True)] == [0] * 5
+    assert sympy.expand(derive(chain).rates[0] - c[0] * c[1]) == 0
+    assert sympy.expand(derive(chain).rates[4] + c[3] * c[4]) == 0
+    prove(ring).require()
+    with pytest.raises(ClaimError, match="for N = 5"):
+        prove(read(VOLTERRA, ("c[i]^2/2", "c[i]^2"))).require()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("size = 5", "size = 2"), "the bracket of c_1 and c_0 is there twice"),
+        (("{c[i], c[i+1]}", "{c[i], c[k+1]}"), "there is no index 'k'"),
+    ],
+)
+def test_bad_brackets_of_neighbours_are_refused(change, said):
+    """With the key, and advice that works."""
+    with pytest.raises(SpecError) as caught:
+        read(VOLTERRA.split("[claims]")[0], change)
+    assert said in str(caught.value)
+    assert "poisson.brackets" in str(caught.value)
 
 
 MEMBERS = [

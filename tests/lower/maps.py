@@ -57,7 +57,8 @@ def call(name, *given):
 def apply(program, state, parameters, h):
     """A map of one Program."""
     values = dict(zip(program.names, [*state, h, *parameters], strict=True))
-    return run(program, values, number, call)
+    rises = run(program, values, number, call)
+    return [a + rise for a, rise in zip(state, rises, strict=True)]
 
 
 def split_step(name, order, state, parameters, h):

@@ -13,7 +13,7 @@ Series = dict[tuple[int, ...], Any]
 
 def find_pair_errors(a: Sequence[Any], b: Sequence[Any], order: int) -> list[Any]:
     """What a product of ``exp(a_i A) exp(b_i B)`` differs by from ``exp(A + B)``, word by word."""
-    flows = [(n % 2, (a, b)[n % 2][n // 2]) for n in range(len(a) + len(b))]
+    flows = [(n % 2, _read((a, b)[n % 2][n // 2])) for n in range(len(a) + len(b))]
     found = multiply_exponentials([{(letter,): time} for letter, time in flows], (1, 1), order)
     return compare_series(found, {(0,): 1, (1,): 1}, (1, 1), order)
 
@@ -23,9 +23,14 @@ def find_sweep_errors(sweeps: Sequence[Any], order: int) -> list[Any]:
     weights = tuple(range(1, order + 1))
     logs: list[Series] = [
         {(n,): c**weight * (-1) ** (k * (weight - 1)) for n, weight in enumerate(weights)}
-        for k, c in enumerate(sweeps)
+        for k, c in enumerate(map(_read, sweeps))
     ]
     return compare_series(multiply_exponentials(logs, weights, order), {(0,): 1}, weights, order)
+
+
+def _read(coefficient: Any) -> Any:
+    """A decimal in the arithmetic of the conditions."""
+    return mpmath.mpf(str(coefficient))
 
 
 def multiply_exponentials(logs: Sequence[Series], weights: Sequence[int], order: int) -> Series:

@@ -1,5 +1,6 @@
 """Compositions: order conditions in the free algebra, word by word, to 40 digits."""
 
+from decimal import Decimal
 from itertools import groupby
 
 import mpmath
@@ -44,12 +45,13 @@ def test_a_wrong_coefficient_or_order_of_coefficients_is_caught():
     """One that is off by 1e-12, two that change places, and sweeps that all go forth."""
     with mpmath.workdps(50):
         a, b = PAIRS[4]()
-        wrong = (a[0] + mpmath.mpf("1e-12"), *a[1:])
+        wrong = (a[0] + Decimal("1e-12"), *a[1:])
         assert max(map(abs, find_pair_errors(wrong, b, 4))) > 1e-13
         swapped = (a[1], a[0], *a[2:-2], a[-1], a[-2])
         assert max(map(abs, find_pair_errors(swapped, b, 4))) > 1e-2
         weights = tuple(range(1, 5))
-        forth = [{(n,): c**w for n, w in enumerate(weights)} for c in find_sweeps(a, b)]
+        sweeps = [mpmath.mpf(str(c)) for c in find_sweeps(a, b)]
+        forth = [{(n,): c**w for n, w in enumerate(weights)} for c in sweeps]
         found = multiply_exponentials(forth, weights, 4)
         assert max(map(abs, compare_series(found, {(0,): 1}, weights, 4))) > 1e-3
 

@@ -7,9 +7,22 @@ import pytest
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
-from tests.families import CHAIN, PEAKONS, RING, TOPS, VORTICES, family_of, read
+from tests.families import (
+    CHAIN,
+    CLOSED,
+    HELD,
+    PEAKONS,
+    PLANAR,
+    RING,
+    TOPS,
+    VORTICES,
+    WALLS,
+    family_of,
+    read,
+)
 
 TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "peakons": PEAKONS, "tops": TOPS}
+TEXTS |= {"walls": WALLS, "closed": CLOSED, "held": HELD, "planar": PLANAR}
 #: Operations of a member and of a pair, counted by hand before the kernels were looked at. A spin:
 #: three sums of neighbours, three by J, the anisotropy 2 D S3, a cross product. Vortices: two
 #: differences, the square of the distance, one quotient; for each vortex of a pair its strength by
@@ -33,7 +46,9 @@ def test_loops_compute_what_the_family_says(families, name):
 
 
 FUNCTIONS = ["rhs", "jacobian_vector", "energy", "observables"]
-CASES = [(name, function) for name in ("ring", "chain", "vortices") for function in FUNCTIONS]
+CASES = [
+    (name, function) for name in ("ring", "chain", "vortices", "walls") for function in FUNCTIONS
+]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,8 @@ import pytest
 from coadjoint.crosscheck.recurrences import run_recurrences
 from coadjoint.lower.jets import make_jets
 from coadjoint.lower.program import Symbol
-from coadjoint.render.solvers import SUMS, arrange
+from coadjoint.render.recurrences import SUMS
+from coadjoint.render.solvers import arrange
 from tests.programs import program
 
 ORDER = 9

@@ -89,7 +89,7 @@ MUTANTS = (
         tests=("tests/lower/test_jets.py", "tests/lower/test_motion.py"),
     ),
     *of(
-        "render/solvers",
+        "render/recurrences",
         "_recurrence: rewrite Negate(whole) if _1 else whole -> whole",
         "_divisor: rewrite Number(Fraction(2)) -> Number(Fraction(1))",
         tests=("tests/lower/test_jets.py",),
@@ -214,7 +214,7 @@ MUTANTS = (
     *of("element", "diff: flip exponent in append", "__neg__: flip numer"),
     *of(
         "field",
-        "_derivative_of: rewrite each * slope -> each",
+        "_differentiate: rewrite each * slope -> each",
         "square_of: rewrite cast(Element, _1) -> -cast(Element, _1)",
     ),
     *of(
@@ -513,6 +513,17 @@ MUTANTS = (
         "functions: use 1 for 0 in range",
     ),
     *of(
+        "solve/methods/lie_poisson",
+        "keep_offset: rewrite first - kept[1] -> first",
+        "continue_offset: rewrite first + second -> first",
+        tests=("tests/solve/test_clock.py -k 'differences or last_ones'",),
+    ),
+    *of(
+        "algebra/planes",
+        "_commute: rewrite ahead - back -> ahead + back",
+        tests=("tests/algebra/test_planes.py",),
+    ),
+    *of(
         "solve/methods/coadjoint_mean",
         "_find_rest: rewrite length * 0.5 -> length",
         "_follow: rewrite turn + _1 -> turn",
@@ -557,7 +568,7 @@ MUTANTS = (
     *of(
         "lower/orbits",
         "_is_sphere: rewrite (b, a, -scale) -> (b, a, scale)",
-        "find: rewrite a + -b -> a + -a",
+        "is_product.find: rewrite a + -b -> a + -a",
         tests=("tests/lower/test_orbits.py",),
     ),
 )

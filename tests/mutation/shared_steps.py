@@ -84,7 +84,7 @@ SHARED = (
         "momentum-maps",
         "symmetries",
         ("spd_motion",),
-        "_value: flip covector",
+        "_lift: flip covector",
         "_covector: omit weight",
         "momentum_map: rewrite 1 if _1 else -1 -> -1 if _1 else 1",
     ),

@@ -210,12 +210,35 @@ def test_a_summand_in_another_order_keeps_its_algebra():
     turned.check_matrices()
 
 
-def test_a_search_refuses_parameters_and_quotients_and_functions():
-    """Coefficients must be numbers; what is in the way is named."""
+def test_casimirs_have_functions_of_parameters_and_pi_as_coefficients():
+    """``b x^2 + y^2 + a z^2``, its first coefficient 1; the same with pi and pi sqrt(2)."""
+    field = Field(["x", "y", "z", "a", "b"], slots=2)
+    x, y, z, a, b = (field[name] for name in "xyzab")
+    pi = 4 * field.call("atan", field.one)
+    names = ("x", "y", "z")
+    for one, other in ((a, b), (pi, b), (pi * field.call("sqrt", field.number(2)), a + 2)):
+        brackets = {(0, 1): one * z, (1, 2): other * x, (0, 2): -y}
+        structure = declare_bracket(field, names, brackets)
+        (found,) = casimirs(structure, 2).generators
+        assert field.is_zero(found - (x**2 + y**2 / other + one * z**2 / other))
+        assert not structure.is_casimir(found + z**2)
+
+
+def test_the_casimir_of_a_plane_with_a_scale():
+    """``p^2 + a q^2``, which no search with rational coefficients finds."""
+    field = Field(["m", "p", "q", "a"])
+    p, q, a = (field[name] for name in "pqa")
+    structure = declare_bracket(field, ("m", "p", "q"), {(0, 1): a * q, (0, 2): -p})
+    (found,) = casimirs(structure, 2).generators
+    assert field.is_zero(found - (p**2 + a * q**2)) or field.is_zero(found - (p**2 / a + q**2))
+
+
+def test_a_search_refuses_quotients_and_functions():
+    """Coefficients must be numbers and parameters; what is in the way is named."""
     field = Field(["x", "y", "z", "a"], slots=1)
-    z, a = field["z"], field["a"]
+    z = field["z"]
     root = field.call("sqrt", z)
-    for entry, found in ((a * z, "'a'"), (1 / z, "quotient"), (root, "'sqrt'")):
+    for entry, found in ((1 / z, "quotient"), (root, "'sqrt'")):
         structure = declare_bracket(field, ("x", "y", "z"), {(0, 1): entry})
         with pytest.raises(AlgebraError, match=found):
             casimirs(structure, 2)

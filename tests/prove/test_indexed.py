@@ -13,15 +13,21 @@ from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES
 from tests.families import (
     BEADS,
+    BY_VELOCITIES,
     CHAIN,
+    CHARGES,
+    CLOSED,
     DRAG,
     DRIVEN,
+    HELD,
     NECKLACE,
     PEAKONS,
+    PLANAR,
     RING,
     SPRINGS,
     TOPS,
     VORTICES,
+    WALLS,
     are_equal,
     family_of,
     read,
@@ -61,6 +67,10 @@ def test_what_a_proof_leaves_out_is_said_of_all_members():
 
 
 CLAIM = 'conserved = ["energy"'
+#: Friction acts on the last member alone.
+DAMPED = SPRINGS.replace("size = 6", 'size = 6, count = "n"')
+DAMPED = DAMPED.replace("c*sum(i, (v[i] - v[i+1])^2)/2", "2*c*v[n-1]^2/2")
+DAMPED = DAMPED.replace('conserved = ["P"]', "")
 LONG = NECKLACE.replace("size = 6", "size = 60")
 #: False claims, of a sum with a wrong sign, a wrong neighbour and a wrong end.
 FALSE = [
@@ -82,6 +92,15 @@ FALSE = [
     (TOPS, (CLAIM, 'conserved = ["sum(i, dot(R[i]*Pi[i], R[i]*Pi[i]))", "energy"')),
     (TOPS, ("- w[i]*R[i, 3, 3]", "- w[i]*R[i, 1, 3]")),
     (VORTICES, ('1/c[i]"', '1/c[i]^2"'), (CLAIM, 'conserved = ["sum(i, c[i]*x[i])"')),
+    # what holds in the middle, and fails at one end alone
+    (WALLS, (CLAIM, 'conserved = ["P"'), ("k[1]*q[1]*q[2]^2 + ", "")),
+    (WALLS, (CLAIM, 'conserved = ["P"'), (" + k[n]*q[n]^4/4", "")),
+    (CLOSED, ("(q[0] - q[n-1])^4", "(q[0] + q[n-1])^4")),
+    (CLOSED, ('"energy", "P"', '"energy", "sum(i, p[i]) + p[n-1]"')),
+    (HELD, (CLAIM, 'conserved = ["P"'), (" + q[n-1]^4", "")),
+    (BY_VELOCITIES, ('conserved = ["energy"]', 'conserved = ["sum(i, m[i]*v[i])"]')),
+    (CHARGES, ("m[i]*m[j]/(1 + dot(q[i] - q[j], q[i] - q[j]))", "q[i, 1]*q[j, 1]")),
+    (DAMPED, ("2*c", "c"), ("[claims]", '[claims]\nconserved = ["energy"]')),
 ]
 
 
@@ -153,6 +172,58 @@ def test_attitudes_of_members_stay_rotations_and_need_to_be_some():
     assert f"{moved}, for every N >= 2" in said
     assert not any("_0" in each or "_1" in each for each in said)
     assert len(said) == len(set(said))
+
+
+def test_claims_of_chains_with_members_alone_say_from_where_they_hold():
+    """From where both ends keep apart; the momentum of a closed chain is kept."""
+    walls, closed = (prove(read(text)).require().claims for text in (WALLS, CLOSED))
+    assert all(each.statement.endswith("for every N >= 6") for each in walls)
+    said = {each.statement: each.method for each in closed}
+    assert "with 4 and with 5 members" in said["P is conserved, for every N >= 4"]
+    power = "the energy changes by -2 R, for every N >= 4"
+    assert power in {each.statement for each in prove(read(DAMPED)).require().claims}
+
+
+def test_energies_of_lagrangians_are_kept_by_their_theorem():
+    """Without a Hamiltonian there is a Legendre transform of each member."""
+    charges, wire = (prove(read(text)).require().claims for text in (CHARGES, BY_VELOCITIES))
+    (energy,) = (each for each in wire if each.statement.startswith("the energy"))
+    assert energy.statement == "the energy is conserved, for every N >= 4"
+    assert energy.method.endswith("the Lagrangian does not name the time")
+    said = [each.statement for each in charges]
+    assert "J is conserved, for every N >= 2" in said
+    same = "euler-lagrange and canonical give the same motion, through the Legendre transform"
+    assert f"{same}, for every N >= 2" in said
+
+
+def test_symmetries_of_members_have_momentum_maps_for_every_number_of_them():
+    """Noether's theorem, and a cocycle that is a sum over members."""
+    said = {each.statement: each.method for each in prove(read(PLANAR)).require().claims}
+    scope = ", for every N >= 1"
+    noether = "is conserved by Noether's theorem, since its flow keeps h"
+    for name in ("L", "P", "G1"):
+        assert "one more member" in said[f"{name} {noether}{scope}"]
+    assert f"{{P_xi, P_eta}} = P_[xi, eta]: P is a Poisson map{scope}" in said
+    law = "{G_xi, G_eta} = G_[xi, eta] + Sigma(xi, eta) with a constant 2-cocycle Sigma, the sum of"
+    assert f"{law} those of all members{scope}" in said
+    assert not any("m_0" in each or "dq_0" in each for each in said)
+
+
+#: What spoils the momentum maps above, and the statement that is refuted.
+WRONG_MAPS = [
+    (("sum(i, dot(a, p[i]))", "-sum(i, dot(a, p[i]))"), "P is their momentum map"),
+    (("A*q[i]", "A*vector(q[i, 1], 2*q[i, 2])"), "L is conserved"),
+    (("q[i+1] - q[i], q[i+1] - q[i]", "q[i+1] - q[i], q[i+1] + q[i]"), "P is conserved"),
+]
+
+
+@pytest.mark.parametrize(("change", "refuted"), WRONG_MAPS)
+def test_a_wrong_momentum_map_is_refuted(change, refuted):
+    """By a sign, an action that shears, and an energy that translations change."""
+    claims = prove(read(PLANAR, change)).claims
+    (false,) = (c for c in claims if c.statement.startswith(refuted) and "Noether" not in c.method)
+    assert false.verdict is Verdict.REFUTED
+    assert not any(c.statement.startswith(f"{refuted} by Noether") for c in claims)
 
 
 def test_a_false_casimir_is_refuted():

@@ -9,6 +9,7 @@ from jinja2.exceptions import SecurityError
 from coadjoint.declared import Quantity
 from coadjoint.errors import SpecError
 from coadjoint.methods import STRUCTURED
+from coadjoint.render import header
 from coadjoint.render.environment import (
     environment,
     names_read,
@@ -17,6 +18,7 @@ from coadjoint.render.environment import (
     template_source,
 )
 from coadjoint.render.families import FAMILY_FILES
+from coadjoint.render.header import PLAIN
 from coadjoint.render.kernels import TEMPLATES
 from coadjoint.render.targets import FOLDERS
 from coadjoint.resources import derivations_folder, targets_folder, templates_folder
@@ -28,9 +30,12 @@ def test_every_kernel_template_is_rendered():
     present = {path.relative_to(folder).as_posix() for path in folder.rglob("*.j2")}
     rendered = {*TEMPLATES.values(), *(template for template, _ in FAMILY_FILES.values())}
     # parts of solver.c.j2; that of the isospectral midpoint tests/solve/methods renders alone
-    parts = {f"c/methods/{each.file}.c.j2" for each in STRUCTURED.values()}
+    methods = (*STRUCTURED.values(), *PLAIN.values())
+    parts = {header.TEMPLATE} | {f"c/methods/{each.file}.c.j2" for each in methods}
     parts |= {"c/methods/lie_poisson.c.j2", "c/methods/isospectral_midpoint.c.j2"}
-    parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2"}
+    parts |= {"c/methods/dop853_tables.c.j2", "c/normals.c.j2"}
+    parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2", "c/methods/spheres.c.j2"}
+    parts |= {"c/methods/family_steps.c.j2"}  # of family_solver.c.j2
     assert {name for name in present if not name.startswith("document/")} == rendered | parts
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}
     assert targets == set(FOLDERS)

@@ -6,14 +6,17 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.families import crosscheck_family
-from coadjoint.errors import CrossCheckError, KernelArgumentError
+from coadjoint.errors import CrossCheckError
+from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import FamilyTwin
+from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import DRIVEN, VORTICES, write_driven
 
 TIMES = np.linspace(0.0, 10.0, 6)
-RUNS = [("rk4", 0.01, 1e-9), ("dop853", None, 1e-9), ("auto", None, 1e-9)]
+RK4, TAYLOR, MIDPOINT = Choice("rk4", 4), Choice("taylor", 6), Choice("midpoint4", 4)
+RUNS = [("rk4", 0.01, 1e-9), ("dop853", None, 1e-9), ("taylor", None, 1e-9)]
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +57,9 @@ def test_a_stage_without_its_time_is_seen(driven, monkeypatch, lost):
         return honest(self, lanes, 0.0 * after if late else after)
 
     monkeypatch.setattr(FamilyTwin, "_drive", forget)
-    motion = driven.resize({"i": 5}).simulate(
-        {"q": np.zeros(5), "p": np.zeros(5)}, (0, 10), method="rk4", step=0.01, samples=1
-    )
+    given = {"q": np.zeros(5), "p": np.zeros(5)}
+    run = {"method": "rk4", "step": 0.01, "samples": 1, "target": "numpy"}
+    motion = driven.resize({"i": 5}).simulate(given, (0, 10), **run)
     assert len(calls) >= 4000
     assert np.abs(motion["q"][:, -1] - find_motion(10.0)).max() > 1e-5
 
@@ -93,13 +96,25 @@ def test_trajectories_have_times_of_their_own(driven):
         assert not np.array_equal(alike, both)
 
 
-def test_series_are_refused_and_said_why(driven):
-    """The advice names methods that work."""
-    with pytest.raises(KernelArgumentError, match="name the time") as caught:
-        run(driven, "taylor", None)
-    assert "'dop853'" in str(caught.value)
-    assert run(driven, "auto", None).method == "dop853"
+def test_series_know_the_time(driven):
+    """They are what ``auto`` takes, as for members that no time drives."""
+    motion = run(driven, "auto", None)
+    assert (motion.method, motion.status) == ("taylor", "OK")
     assert repr(driven).endswith("; time t>")
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853", "taylor", "midpoint4"])
+def test_steps_of_trajectories_are_those_of_the_twin(driven, method):
+    """Nine at a time, begun at another time than 0; steps that nobody records are made in C."""
+    system, source = driven.resize({"i": 3}), np.random.default_rng(3)
+    given = source.normal(size=(6, 9)), np.linspace(0.25, 3.0, 4)
+    step = 0.0625 if method in ("rk4", "midpoint4") else None
+    found, expected = (
+        system.simulate(*given, method=method, step=step, target=target)
+        for target in ("c", "numpy")
+    )
+    np.testing.assert_allclose(found["q"], expected["q"], rtol=0, atol=1e-12)
+    assert np.array_equal(found.steps, expected.steps)
 
 
 def test_a_run_with_events_and_between_samples(driven):
@@ -120,6 +135,25 @@ SPOILED = [
     ("kernel.py", "time.reshape(1, -1)", "0.0 * time.reshape(1, -1)"),
     ("kernel_python.py", "time = [time]", "time = [0.5 * time]"),
 ]
+#: How steps lose it, and by which method that is seen.
+SPOILED_STEPS = [
+    ("solver.c", "+ after[l] * run->slopes[n + l]", "+ 0.0 * after[l]", RK4),
+    ("solver.c", "- 1, l, time, 1.0", "- 1, l, 0.5 * time, 1.0", RK4),
+    ("solver.c", "to[1][w] = run->slopes[place]", "to[1][w] = 0.0", TAYLOR),
+    ("solver.py", "driving[:, k] = ", "driving[:, k] = (1 - k) * ", TAYLOR),
+    ("solver.c", "begun[l] + 0.5 * search.length[l]", "begun[l]", MIDPOINT),
+    ("solver.c", "begun[l] = begun[l] +", "begun[l] = 0.0 * begun[l] +", MIDPOINT),
+]
+
+
+@pytest.mark.parametrize(("file", "old", "new", "choice"), SPOILED_STEPS)
+def test_steps_that_lose_the_time_differ_from_those_of_the_twin(file, old, new, choice):
+    """In C or in NumPy, whose texts are two."""
+    texts = dict(pipeline.render(read_spec_text(DRIVEN, "driven.toml")).texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="differs from its"):
+        load_steps(system, choice, "c")
 
 
 def test_the_ladder_passes_for_pairs_at_a_time():

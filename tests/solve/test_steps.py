@@ -112,7 +112,8 @@ int main(void)
     enum { STATE = %(state)d, PARAMETERS = %(parameters)d, SAMPLES = 5 };
     for (size_t members = 1; members < 20; members += 3) {
         double *state = calloc(STATE * members, 8), *time = calloc(members, 8);
-        double *step = calloc(members, 8), *out = calloc(STATE * members * SAMPLES, 8);
+        double *late = calloc(members, 8), *step = calloc(members, 8);
+        double *out = calloc(STATE * members * SAMPLES, 8);
         size_t *next = calloc(members, 8), *steps = calloc(members, 8);
         size_t *rejected = calloc(members, 8);
         int8_t *status = calloc(members, 1);
@@ -123,8 +124,8 @@ int main(void)
         for (int i = 0; i < PARAMETERS; ++i)
             parameters[i] = 1.0 + 0.1 * i;
         %(name)s_run run = {
-            .members = members, .last = members, .state = state, .time = time, .step = step,
-            .next = next, .steps = steps, .rejected = rejected, .status = status,
+            .members = members, .last = members, .state = state, .time = time, .late = late,
+            .step = step, .next = next, .steps = steps, .rejected = rejected, .status = status,
             .parameters = parameters, .knots = knot, .inputs = knot, .slopes = knot, .pieces = 1,
             .samples = samples, .sample_count = SAMPLES, .out = out, .rtol = 1e-8, .atol = 1e-8,
             .size = %(size)s, .max_steps = 1000, .work = 3};
@@ -138,8 +139,8 @@ int main(void)
         for (size_t n = 0; n < members; ++n)
             if (status[n] != %(status)d || (status[n] == 1) != (next[n] == SAMPLES))
                 return 1;
-        free(state), free(time), free(step), free(out), free(next), free(steps), free(rejected);
-        free(status);
+        free(state), free(time), free(late), free(step), free(out), free(next);
+        free(steps), free(rejected), free(status);
     }
     return 0;
 }

@@ -32,6 +32,39 @@ def length(square: Any) -> Any:
     return Fraction(isqrt(square.numerator * 10 ** (2 * DIGITS) // square.denominator), 10**DIGITS)
 
 
+class Rounded(Fraction):
+    """A fraction whose sums, differences, products and quotients are rounded to `BITS`.
+
+    For what is iterated: exact fractions would have several times as many digits after each step.
+    """
+
+    __slots__ = ()
+
+
+#: Bits of rounded fractions: twice as many as are compared.
+BITS = 540
+
+
+def _round_after(operation: str) -> Any:
+    """An operation of fractions, and a rounding."""
+    exactly = getattr(Fraction, operation)
+
+    def compute(a: Fraction, b: Any) -> Any:
+        exact = exactly(a, b)
+        if exact is NotImplemented or exact == 0:
+            return exact
+        shift = BITS + exact.denominator.bit_length() - exact.numerator.bit_length()
+        one = Fraction(2) ** shift
+        return Rounded(Fraction(round(exact * one)) / one)
+
+    return compute
+
+
+for _name in ("add", "sub", "mul", "truediv"):
+    for _side in ("", "r"):
+        setattr(Rounded, f"__{_side}{_name}__", _round_after(f"__{_side}{_name}__"))
+
+
 def circular(function: str, angle: Any) -> Any:
     """``sin`` or ``cos`` of an angle, to 80 digits; of a float as floats have it."""
     if isinstance(angle, float):

@@ -60,7 +60,18 @@ def check_rates(equations, name):
 
 
 def solved(equations, point):
-    """A point with the values of what the kernel solves for, one after the other."""
+    """A point with the values of what the kernel solves for, one after the other.
+
+    Newton's iteration has its end at the velocities of the book: the step after it stays there.
+    """
+    for newton in equations.iterations:
+        parts = textbook.OBSERVABLES[equations.spec.name](
+            [point[n] for n in textbook.STATES[equations.spec.name]],
+            [point[n] for n in textbook.GIVEN[equations.spec.name]],
+        )
+        names = [equations.setting.velocities[place] for place in newton.block]
+        found = [sympy.sympify(parts[name]).evalf(DIGITS) for name in names]
+        point = point | dict(zip(newton.names, found, strict=True))
     for name in equations.kept:
         (value,) = values([equations.velocities[name]], point)
         # nested roots and sines would grow exponentially

@@ -92,6 +92,7 @@ from tests.sources.phase_spaces import (
     spd_tensor,
 )
 from tests.sources.points import (
+    Rounded,
     disk_observables,
     disk_rates,
     disk_tensor,
@@ -129,6 +130,8 @@ def within(name: str, point: dict[str, Any]) -> dict[str, Any]:
     """
     if name == "body_of_revolution":
         return point | {"C": abs(point["A"]) + abs(point["C"])}
+    if name == "darwin_charges":
+        return point | {"k": point["k"] / 1024}
     if name == "tippe_top":
         return point | {each: point[each] / 1024 for each in ("viscous", "coulomb")}
     return point
@@ -147,6 +150,10 @@ def rational(name: str, point: dict[str, Any]) -> dict[str, Any]:
         return point | {f"axes{n}": long / point[f"Gamma{n}"] for n in (2, 3)}
     if name == "body_of_revolution":
         return point | {"C": point["A"] * point["Gamma3"] / 2}
+    if name == "darwin_charges":  # near each other, and as fractions that do not grow
+        x, y, m, n, c = (abs(point[each]) + 1 for each in ("x1", "x2", "m1", "m2", "c"))
+        far = {"x1": x, "x2": -y, "m1": m, "m2": n, "c": c, "k": point["k"] / 200}
+        return {each: Rounded(value) for each, value in (point | far).items()}
     if name == "guiding_centre_twisted":
         place = 2 / Fraction(point["k"])
         return point | {"X1": place, "X2": -place, "B0": abs(point["B0"])}

@@ -52,6 +52,22 @@ WITH_ROTOR = 's = { role = "coordinate" }\nu = { role = "velocity", of = "s" }\n
 CANONICAL_ROUTE = 'routes = ["canonical"]'
 ENERGY = '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"\n'
 BOTH = 'routes = ["euler-poincare", "lie-poisson"]'
+ALONE = 'routes = ["hamilton-pontryagin"]'
+#: Coordinates with momenta next to an algebra.
+PRODUCT = """
+title = "x"
+routes = ["euler-poincare", "lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+v = { role = "velocity", of = "q" }
+Pi = { role = "momentum" }
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[lagrangian]
+l = "dot(Omega, Omega)/2 + v^2/2"
+"""
 ONE = 'routes = ["euler-poincare"]'
 FORCE = '[forces]\nOmega = "-Omega"\n[claims]'
 SHAKEN = "[inputs]\nu = { default = 0 }\n[claims]"
@@ -670,10 +686,18 @@ ADVICE = [
         write(", default = [1, 1, 0, 0]", ""),
     ),
     (
-        RIGID_BODY.replace('Pi = { role = "momentum" }\n', "").replace("dot(Pi, Pi)", "Omega1"),
+        RIGID_BODY.replace('Pi = { role = "momentum" }\n', "")
+        .replace("dot(Pi, Pi)", "Omega1")
+        .replace(BOTH, ALONE),
         write("[parameters]", WITH_ROTOR),
         'With velocities as the state it may: write routes = ["nonholonomic"] at the top.',
-        write(BOTH, 'routes = ["nonholonomic"]'),
+        write(ALONE, 'routes = ["nonholonomic"]'),
+    ),
+    (
+        PRODUCT,
+        write('"euler-poincare", "lie-poisson"', '"hamilton-pontryagin"'),
+        "With momenta it may on the routes euler-poincare and lie-poisson.",
+        write('"hamilton-pontryagin"', '"euler-poincare", "lie-poisson"'),
     ),
     # -- form of the file
     (

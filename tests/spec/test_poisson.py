@@ -179,6 +179,13 @@ def test_slip_in_a_bracket_is_refused_at_its_place(text, change, key, found, sai
         (
             RIGID_BODY,
             ('role = "momentum"', 'role = "coordinate"'),
+            "variables",
+            "J1, J2, J3",
+            "no momentum spans",
+        ),
+        (
+            RIGID_BODY.replace('"lie-poisson"', '"clebsch"'),
+            ('role = "momentum"', 'role = "coordinate"'),
             "variables.Pi.role",
             "coordinate",
             "with [algebra]",

@@ -56,7 +56,13 @@ ROWS_P = ROWS_Q.replace("Q", "P")
 ONE_POINT = "r1 r2 r3 v1 v2 v3"
 INERTIAL = ("lie-poisson", "euler-poincare", "hamilton-pontryagin", "poincare")
 #: Systems of other books.
-BEYOND = {"gravity_gradient_satellite", "orbiting_body", *fields.STATES, *machines.STATES}
+BEYOND = {
+    "gravity_gradient_satellite",
+    "orbiting_body",
+    "darwin_charges",
+    *fields.STATES,
+    *machines.STATES,
+}
 #: Systems whose claims are of integrals alone: they have no Casimir, or those of a rotation.
 CONSERVED_ALONE = (
     *("affine_line", "guiding_centre", "guiding_centre_twisted", "orbiting_body"),
@@ -237,6 +243,7 @@ SHIPPED = {
         "I1 I2 I3 m mu",
         (*TWO, "hamilton-pontryagin"),
     ),
+    "darwin_charges": ("x1 x2 p1 p2", "m1 m2 c k", ("euler-lagrange", "canonical")),
     "kapitza_top": (
         "Pi1 Pi2 Pi3 Gamma1 Gamma2 Gamma3",
         "I1 I2 I3 m g chi1 chi2 chi3 a w",

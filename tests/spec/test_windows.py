@@ -12,7 +12,19 @@ from coadjoint.spec.looped import find_misfit
 from coadjoint.spec.reader import read_spec
 from coadjoint.spec.validate import validate
 from tests.conftest import FAMILIES, WRITTEN
-from tests.families import BEADS, CHAIN, NECKLACE, RING, SPRINGS, VORTICES, read
+from tests.families import (
+    BEADS,
+    CHAIN,
+    CLOSED,
+    HELD,
+    NECKLACE,
+    PLANAR,
+    RING,
+    SPRINGS,
+    VORTICES,
+    WALLS,
+    read,
+)
 from tests.specs import RIGID_BODY, shipped
 
 MOMENTA = 'S = { role = "momentum", index = "i" }'
@@ -44,7 +56,7 @@ INDEXED = [
     ),
     (
         RING,
-        [("size = 6, ", ""), (M, 'M = "sum(i, S[i, 3])^2"')],
+        [("size = 6, ", ""), (M, 'M = "abs(sum(i, S[i, 3]))"')],
         'Give the index a size, or choose one: sizes={"i": 5}.',
         [("{ periodic", "{ size = 6, periodic")],
     ),
@@ -83,6 +95,12 @@ INDEXED = [
         [("{ periodic", "{ size = 6, periodic")],
     ),
     (CHAIN, [("size = 6", "size = 2")], "Choose a larger size.", [("size = 2", "size = 3")]),
+    (
+        RIGID_BODY,
+        [("shape = [3]", 'shape = ["n"]')],
+        'Declare what it counts: [index] i = { size = 8, count = "n" }.',
+        [("[algebra]", '[index]\ni = { size = 3, count = "n" }\n[algebra]')],
+    ),
     (
         CHAIN,
         [("[index]\ni = { size = 6 }\n", "")],
@@ -146,10 +164,9 @@ HAMILTONIAN = '[hamiltonian]\nh = "sum(i, p[i]^2/(2*m[i])) + sum(i, exp(q[i] - q
 MISFITS = [
     (("m[i]*v[i]^2/2) -", "m[i]*v[i]*v[i+1]/2) -"), "the kinetic energy couples members"),
     (
-        ("- sum(i, exp(q[i] - q[i+1]))", "- sum(i, j, i < j, (q[i] - q[j])^2)"),
-        "the Lagrangian has a sum over pairs",
+        ("- sum(i, exp(q[i] - q[i+1]))", "- sum(i, j, i < j, (v[i] - v[j])^2)"),
+        "the kinetic energy couples members",
     ),
-    ((HAMILTONIAN, ""), "the energy follows from a Lagrangian"),
     (("c*sum(i, (v[i] - v[i+1])^2)/2", "c*sum(i, v[i])^2/2"), "Rayleigh's function is not linear"),
     (
         ("c*sum(i, (v[i] - v[i+1])^2)/2", "c*sum(i, j, i < j, (v[i] - v[j])^2)/2"),
@@ -157,6 +174,11 @@ MISFITS = [
     ),
     (("[dissipation]\nR =", "[forces]\nv ="), "a force has a sum over members"),
     (("[hamiltonian]", "[time]\n[hamiltonian]"), "there are tables [time] and [lagrangian]"),
+    (("v[i]^2/2) -", "v[i]^2/2) + v[0]^2 -"), "one member alone has a kinetic energy of its own"),
+    (("sum(i, p[i]^2/(2*m[i]))", "p[0]*sum(i, p[i]^2/(2*m[i]))"), "the energy is not linear in"),
+    (('P = "sum(i, p[i])"', 'P = "abs(sum(i, p[i]))"'), "an observable asks for the sign of a sum"),
+    (('P = "sum(i, p[i])"', 'P = "sum(i, p[0]*p[i])"'), "a sum names one member alone"),
+    (('P = "sum(i, p[i])"', 'P = "p[4]"'), "a member stands alone that is not among the first"),
 ]
 
 
@@ -168,10 +190,67 @@ def test_what_no_generic_member_tells_is_written_out(change, why):
     assert read_file_misfit(SPRINGS.replace(*change)).startswith(why)
 
 
+#: Actions that do not move each member by itself.
+ACTIONS = [
+    (('q = "a"', 'q = "q[i+1]*a[1]"'), "an action moves a member by others"),
+    (('q = "a"', 'q = "sum(i, q[i])*a[1]"'), "an action moves a member by others"),
+    (('q = "a"', 'q = "q[0]*a[1]"'), "q stands there of one member alone"),
+    (("dot(a, p[i])", "dot(a, p[i+1])"), "a momentum map has terms of several members"),
+    (('q = "a" }', 'q = "a" }\ntime = "a[1]"'), "an action moves time"),
+    (
+        ('vector = "a"\ngenerators = { q = "a" }\nmap = "sum(i, dot(a, p[i]))"', 'linear = ["q"]'),
+        "an action is linear in stacked variables",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "why"), ACTIONS)
+def test_actions_of_looped_members_move_each_by_itself(change, why):
+    """Others are written out."""
+    assert not read_file_misfit(PLANAR)
+    assert change[0] in PLANAR
+    assert read_file_misfit(PLANAR.replace(*change)).startswith(why)
+
+
+#: Kinetic energies of Lagrangians without a Hamiltonian, and whether members are looped over.
+KINETIC = [
+    ("m[i]*v[i]^2/2", True),
+    ("m[i]*v[i]*(v[i] + 2)/exp(q[i])", True),
+    ("sin(q[i])^4*v[i]^2 + v[i]", True),
+    ("m[i]*v[i]^4", False),
+    ("m[i]*v[i]^2*v[i]", False),
+    ("-m[i]*sqrt(1 - v[i]^2)", False),
+    ("m[i]/v[i]", False),
+]
+
+
+@pytest.mark.parametrize(("kinetic", "loops"), KINETIC)
+def test_without_a_hamiltonian_velocities_are_solved_for_member_by_member(kinetic, loops):
+    """Where the Lagrangian is quadratic in them."""
+    text = SPRINGS.replace(HAMILTONIAN, "").replace("m[i]*v[i]^2/2", kinetic, 1)
+    misfit = "" if loops else "the Lagrangian is not quadratic in the velocities"
+    assert read_file_misfit(text) == misfit
+
+
 def read_file_misfit(text):
     """Why the members of a text are not looped over; "" if they are."""
     source = Source(path="sample.toml", text=text, positions=scan(text))
     return find_misfit(validate(source), Index("i", 6))
+
+
+def test_members_at_the_ends_are_read_in_any_chain_that_keeps_them_apart():
+    """Where they stand; shorter chains are written out, and a ring has no ends."""
+    assert read(WALLS).family.alone == (2, 1)
+    assert read(CLOSED).family.alone == (1, 1)
+    short = read(WALLS, sizes={"i": 5})
+    assert short.written == "the ends of a chain of fewer than 6 do not keep apart"
+    assert len(short.state) == 10
+    ring = read(CLOSED, ("size = 6", "size = 6, periodic = true"))
+    assert ring.written == "q stands there of one member alone"
+    with pytest.raises(SpecError, match=r"beyond the end of the chain; expected members 1 to n"):
+        read(WALLS, ("q[1]*q[2]", "q[0]*q[2]"))
+    with pytest.raises(SpecError, match=r"expected members 0 to n - 1"):
+        read(CLOSED, ("q[n-1]", "q[n]"))
 
 
 def test_limits_of_neighbours_and_members():
@@ -185,6 +264,10 @@ def test_limits_of_neighbours_and_members():
 @pytest.mark.parametrize(
     ("text", "change", "numbers"),
     [
+        (WALLS, None, (6, 7)),
+        (CLOSED, None, (4, 5)),
+        (HELD, None, (2, 3, 4)),
+        (BEADS, ("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + q[0]^2"), (6, 7, 8)),
         (VORTICES, None, (2, 3)),
         (BEADS, None, (2, 3, 4)),
         (NECKLACE, None, (4, 5, 6)),
@@ -199,7 +282,7 @@ def test_limits_of_neighbours_and_members():
 )
 def test_windows_have_the_numbers_of_members_of_the_proof(text, change, numbers):
     """4 w and two more in a ring, 2 w and two more in a chain; w is the span of both sums."""
-    spec = read(text, *([change] if change else []), ("size = 6", "size = 60"))
+    spec = read(text, *([change] if change else []), sizes={"i": 60})
     found = [len(each.state) // len(spec.family.variables) for each in spec.family.windows]
     assert tuple(found) == numbers
 

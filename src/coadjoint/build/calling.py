@@ -21,6 +21,8 @@ typedef const double *in;
 typedef void kernel3(size_t, in, size_t, in, size_t, double *, size_t);
 typedef void kernel4(size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
 typedef void kernel5(size_t, in, size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
+typedef void kernel6(
+    size_t, in, size_t, in, size_t, in, size_t, in, size_t, in, size_t, double *, size_t);
 
 extern const char coadjoint_build[];
 const char coadjoint_build[] = "BUILD";
@@ -39,17 +41,22 @@ void coadjoint_call(const uintptr_t *c)
         ((kernel4 *)c[0])(
             c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (double *)a[6], a[7]);
         break;
-    default:
+    case 5:
         ((kernel5 *)c[0])(
             c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (in)a[6], a[7],
             (double *)a[8], a[9]);
+        break;
+    default:
+        ((kernel6 *)c[0])(
+            c[2], (in)a[0], a[1], (in)a[2], a[3], (in)a[4], a[5], (in)a[6], a[7],
+            (in)a[8], a[9], (double *)a[10], a[11]);
     }
 }
 
 /* The same at another state of so many members, with other parameters or NULL, another result. */
 void coadjoint_call_at(const uintptr_t *c, size_t members, in state, in parameters, double *out)
 {
-    uintptr_t own[13], last = 2 * c[1] + 1;
+    uintptr_t own[15], last = 2 * c[1] + 1;
     memcpy(own, c, (last + 2) * sizeof *own);
     own[2] = own[4] = own[last + 1] = members;
     own[3] = (uintptr_t)state;

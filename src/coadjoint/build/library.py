@@ -96,7 +96,7 @@ class Library:
         Args:
             function: Its bare name.
             arguments: Members, then place and stride of each array: state, parameters, inputs and
-                time where there are some, result.
+                time where there are some, the number of equal members, result.
         """
         return partial(self._call, self._pack(function, arguments))
 
@@ -120,7 +120,7 @@ class Library:
         """A pointer to packed arguments, as the second file of an object takes them."""
         arrays, rest = divmod(len(arguments), 2)
         assert rest == 1, len(arguments)
-        assert 3 <= arrays <= 5, len(arguments)
+        assert 3 <= arrays <= 6, len(arguments)
         words = (self.find(function), arrays, *arguments)
         return ctypes.byref((_SIZE * len(words))(*words))
 

@@ -18,7 +18,7 @@ def print_methods(record: Mapping[str, Any]) -> None:
     """The methods of a system: order, what is kept, whether a step is a Poisson map, and cost."""
     name, methods = record["system"], record["methods"]
     if not methods:
-        say(f"No method that keeps structure is generated for {name}: its members are equal.")
+        say(f"The certificate of {name} judges no methods: run `coadjoint regenerate`.")
         return
     fit = sorted((each for each in methods if each["cost"]), key=_place)
     if fit:

@@ -41,6 +41,7 @@ COMMANDS: Final = (
     "prove",
     "crosscheck",
     "simulate",
+    "export",
     "new",
     "doctor",
     "schema",

@@ -169,7 +169,9 @@ def command(
     start = find_start(loaded, state, given, driven)
     run = Members(state=start, parameters=given, inputs=driven, followed=followed)
     options["samples"] = options["samples"] or (1001 if members is None else 101)
-    if "noise" in loaded.functions:
+    from coadjoint.solve.noisy import has_noise  # which needs NumPy
+
+    if has_noise(loaded):
         spaces = max(1, options["samples"] - 1)
         steps = spaces * -(-LEAST_STEPS // spaces)
         options |= {"seed": seed, "step": options["step"] or time / steps}
@@ -286,7 +288,8 @@ def default_state(quantities: Quantities) -> list[float]:
 
 def _shown_names(system: System) -> tuple[str, ...]:
     """State, what is reconstructed, and observables, by component."""
-    tables = (system.STATE, system.RECONSTRUCTED, system.OBSERVABLES)
+    seen = system.RECONSTRUCTED_OBSERVABLES
+    tables = (system.STATE, system.RECONSTRUCTED, system.OBSERVABLES, seen)
     return tuple(name for quantities in tables for name in quantities.components)
 
 
@@ -306,7 +309,8 @@ def _print(system: System, solution: Solution) -> None:
     _print_ends(solution, "state", system.STATE.components, f"{system.title} ({system.name})")
     if system.RECONSTRUCTED:
         _print_ends(solution, "reconstructed", system.RECONSTRUCTED.components)
-    _print_ends(solution, "observable", system.OBSERVABLES.components)
+    observed = (system.OBSERVABLES, system.RECONSTRUCTED_OBSERVABLES)
+    _print_ends(solution, "observable", [name for table in observed for name in table.components])
     for name, drift in solution.attitude_drift.items():
         say(f"|{name}|^2 - 1 up to {drift:.1e}")
     say(": ".join(filter(None, ("status", solution.status, solution.message))))

@@ -19,7 +19,8 @@ from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.program import run
-from coadjoint.render.kernels import CHUNK
+from coadjoint.render.kernels import find_chunk
+from coadjoint.render.solvers import count_unknowns
 from coadjoint.render.targets import BUILDS
 
 #: Members compared at a time: few enough for the cache.
@@ -88,7 +89,8 @@ def compare_chunks(subject: Subject) -> int:
     Raises:
         CrossCheckError: A member has other rates among many, by more than roundings.
     """
-    size, points = CHUNK + 1, subject.points
+    size = find_chunk(count_unknowns(subject.programs.values())) + 1
+    points = subject.points
     compared = _compare_chunks(subject, points.families(77, size)["random"])
     if not compared and subject.inside.size:
         compared = _compare_chunks(subject, points.draw_around(subject.inside, 77, size))

@@ -18,21 +18,25 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from decimal import localcontext
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.crosscheck.compare import Figures
+from coadjoint.crosscheck.family_loops import evaluate_loops
 from coadjoint.crosscheck.family_series import ORDER, check_series
 from coadjoint.crosscheck.family_sums import MEMBERS, check_blocks
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
+    CONTEXT,
     OutsideDomain,
     error_in_envelopes,
     error_in_ulp,
+    exact,
     oracle,
 )
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
@@ -69,8 +73,20 @@ METHODS: Final = (
     Choice(name="dop853", order=8),
     Choice(name="taylor", order=ORDER),
 )
+#: The same for motions with noise, besides.
+NOISY: Final = tuple(Choice(name=name, order=2, is_noisy=True) for name in ("heun", "midpoint"))
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Where a function is evaluated."""
+
+    state: Array
+    parameters: Array
+    inputs: Array
+    time: float
 
 
 @dataclass(frozen=True)
@@ -85,6 +101,9 @@ class _Window:
         totals: Names of the rows of the function ``observables``.
         residuals: Those of the function ``constraint_residual``.
         time: Of the time, if there is one.
+        inputs: Names of the rows of the inputs.
+        noise: Names of the Wiener processes; those that no member has in a window are missing in
+            its equations.
     """
 
     reference: Reference
@@ -94,12 +113,15 @@ class _Window:
     totals: tuple[str, ...]
     residuals: tuple[str, ...]
     time: tuple[str, ...]
+    inputs: tuple[str, ...]
+    noise: tuple[str, ...]
 
     @classmethod
     def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
+        quantities = (*spec.variables, *spec.parameters, *spec.inputs)
+        known = {each.name: each for each in quantities}
         turning = {each.name: each for each in spec.turning}
         size = len(spec.state) // len(declared.variables)
 
@@ -113,12 +135,15 @@ class _Window:
                 for name in same
             )
 
-        shared = tuple(c for each in declared.shared for c in known[each].components)
+        def alike(names: Sequence[str]) -> tuple[str, ...]:
+            return tuple(c for each in names for c in known[each].components)
+
         return cls(
             reference=Reference(equations),
             size=size,
             state=rows(declared.variables),
-            parameters=(*shared, *rows(declared.indexed)),
+            parameters=(*alike(declared.shared), *rows(declared.indexed)),
+            inputs=(*alike(declared.shared_inputs), *rows(declared.indexed_inputs)),
             totals=tuple(each.name for each in family.totals),
             residuals=tuple(
                 name
@@ -131,20 +156,25 @@ class _Window:
                 for name in same
             ),
             time=tuple(map(str, family.time)),
+            noise=(
+                *declared.shared_noise,
+                *(member_name(each, k) for each in declared.indexed_noise for k in range(size)),
+            ),
         )
 
-    def evaluate(
-        self, function: str, state: Array, parameters: Array, time: float | None
-    ) -> list[Any]:
+    def evaluate(self, function: str, point: _Point) -> list[Any]:
         """A function at a point to 50 digits, its rows in the order of a family."""
-        own = self.reference.state
-        inputs = dict(zip(self.parameters, parameters.tolist(), strict=True))
+        own, state = self.reference.state, point.state
+        inputs = dict(zip(self.parameters, point.parameters.tolist(), strict=True))
         inputs |= zip(self.state, state.tolist(), strict=False)
-        inputs |= dict.fromkeys(self.time, time)
+        inputs |= zip(self.inputs, point.inputs.tolist(), strict=True)
+        inputs |= dict.fromkeys(self.time, point.time)
         if function == "jacobian_vector":
             place = {name: n for n, name in enumerate(own, 1)}
             vector = state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
+        if function == "noise_vector":
+            return self._move_by_noise(inputs, state[len(self.state) :].tolist())
         values = oracle(self.reference, function, inputs)
         if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
@@ -158,6 +188,18 @@ class _Window:
             by_name = dict(zip((name for name, _ in rows), values, strict=True))
             values = [by_name[name] for name in self.residuals]
         return values
+
+    def _move_by_noise(self, inputs: Mapping[str, float], numbers: Sequence[float]) -> list[Any]:
+        """What each process does to the state, times a number, one after the other."""
+        given = dict(zip(self.noise, numbers, strict=True))
+        processes = [each.name for each in self.reference.equations.spec.noise]
+        values = iter(oracle(self.reference, "noise", inputs))
+        moved = dict[str, Any]()
+        with localcontext(CONTEXT):
+            for name in self.reference.state:
+                parts = [next(values) * exact(given[process]) for process in processes]
+                moved[name] = sum(parts[1:], parts[0])
+        return [moved[name] for name in self.state]
 
 
 def crosscheck_family(
@@ -196,10 +238,11 @@ def crosscheck_family(
     for equations in windows:
         window = _Window.of(equations, declared, family)
         for name, each in loops.items():
-            _check_window(window, name, each, system, chosen, figures[name])
+            _check_window(window, each, system, chosen, figures[name])
         sized = system.resize({system.index.name: window.size})
-        names, made = (window.state, window.parameters), {"c", "numpy"} & set(chosen)
-        if made and not family.time:
+        names = (window.state, window.parameters, window.inputs, window.time)
+        made = {"c", "numpy"} & set(chosen)
+        if made:
             check_series(window.reference, names, sized, sorted(made))
     for each in loops.values():
         if each.partners is not None and "numpy" in chosen:
@@ -211,7 +254,7 @@ def crosscheck_family(
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if BUILDS[each].needs_compiler):
-        for choice in () if family.time else METHODS:
+        for choice in (*METHODS, *_list_structured(system), *(NOISY if family.noise else ())):
             compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):
@@ -226,6 +269,17 @@ def crosscheck_family(
         together=together,
         solvers={},
     )
+
+
+def _list_structured(system: Any) -> list[Choice]:
+    """Methods of order 2 that keep structure; the others share their texts with these.
+
+    A fresh object of any of them is compared with its twin before it is used.
+    """
+    own = {each.name: Choice(name=each.name, order=2) for each in system.METHODS if each.order == 2}
+    if "spherical_midpoint" in own:
+        own.pop("midpoint")
+    return list(own.values())
 
 
 def _calls(loops: Loops) -> bool:
@@ -248,32 +302,31 @@ def _points(source: Any, rows: int, count: int) -> Iterator[Array]:
 
 def _check_window(
     window: _Window,
-    name: str,
     loops: Loops,
     system: Any,
     targets: Sequence[str],
     figures: dict[str, Figures],
 ) -> None:
     """A function of all targets for the members of a window, against 50 digits."""
+    name = loops.name
     sized = system.resize({system.index.name: window.size})
     source = np.random.default_rng(window.size)
-    rows = loops.blocks * window.size
+    rows = loops.blocks * window.size + loops.rows
     largest = _threshold(loops, window.size)
     states = list(_points(source, rows, POINTS))
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
-    times = source.normal(size=POINTS).tolist() if window.time else [None] * POINTS
-    exact = {
-        n: value
-        for n in range(POINTS)
-        for value in _evaluate(window, name, states[n], parameters[n], times[n])
-    }
-    if not exact:
+    times = source.normal(size=POINTS).tolist()
+    inputs = source.normal(size=(POINTS, len(window.inputs)))
+    points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
+    known = {n: v for n, each in enumerate(points) for v in _evaluate(window, loops, each)}
+    if not known:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
         k = ulp = 0.0
-        for n, expected in exact.items():
-            given = states[n], parameters[n]
-            computed = sized.evaluate(name, *given, time=times[n], target=target)
+        for n, expected in known.items():
+            given = states[n], parameters[n], inputs[n] if window.inputs else None
+            now = times[n] if window.time else None
+            computed = sized.evaluate(name, *given, time=now, target=target)
             for row, (value, bounded) in enumerate(zip(np.ravel(computed), expected, strict=True)):
                 error = error_in_envelopes(float(value), bounded)
                 k, ulp = max(k, error), max(ulp, error_in_ulp(float(value), bounded))
@@ -286,17 +339,28 @@ def _check_window(
                         4,
                     )
         old = figures.get(target, Figures(0.0, 0.0, 0))
-        figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(exact))
+        figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(known))
 
 
-def _evaluate(
-    window: _Window, name: str, state: Array, parameters: Array, time: float | None
-) -> list[list[Any]]:
-    """The exact rows at a point; none where the equations have no value."""
+def _evaluate(window: _Window, loops: Loops, point: _Point) -> list[list[Any]]:
+    """The exact rows at a point; none where the equations have no value.
+
+    Their envelopes are those of the equations or of the loops, whichever are larger: they may be
+    written in different forms, of which one has cancelled what the other subtracts.
+    """
     try:
-        return [window.evaluate(name, state, parameters, time)]
+        rows = window.evaluate(loops.name, point)
     except OutsideDomain:
         return []
+    arrays = {name: getattr(point, name).tolist() for name in ("state", "parameters", "inputs")}
+    arrays["time"] = [point.time]
+    others = evaluate_loops(loops, arrays, window.size) or rows
+    return [
+        [
+            replace(row, envelope=max(row.envelope, other.envelope))
+            for row, other in zip(rows, others, strict=True)
+        ]
+    ]
 
 
 def _compare_targets(
@@ -308,7 +372,7 @@ def _compare_targets(
     agree but for roundings.
     """
     equal = {target: 0 for target in targets if target != "numpy" and "numpy" in targets}
-    for size in (small, small + 1, *SIZES):
+    for size in (small, small + 1, *(size for size in SIZES if size > small + 1)):
         sized = system.resize({system.index.name: size})
         source = np.random.default_rng(size)
         for batch in BATCHES:
@@ -316,10 +380,12 @@ def _compare_targets(
             for shape in dict.fromkeys(((), batch)):
                 parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
                 time = source.normal(size=shape) if sized.TIME else None
-                one = sized.evaluate(name, state, parameters, time=time, target="numpy")
+                inputs = source.normal(size=(sized.INPUTS.size, *shape)) if sized.INPUTS else None
+                given = (state, parameters, inputs)
+                one = sized.evaluate(name, *given, time=time, target="numpy")
                 one = np.reshape(one, (-1, *batch))  # the energy has no rows
                 for target in equal:
-                    other = sized.evaluate(name, state, parameters, time=time, target=target)
+                    other = sized.evaluate(name, *given, time=time, target=target)
                     exact = target in BUILDS[target].exact and not calls
                     different = _find_differences(one, np.reshape(other, one.shape), exact=exact)
                     if different.any():

@@ -28,7 +28,7 @@ from coadjoint.crosscheck.series import solve
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.family_solvers import FamilySolverText, PartText
-from coadjoint.render.solvers import Line
+from coadjoint.render.recurrences import Line
 from coadjoint.render.targets.body import failure
 from coadjoint.render.targets.c.solver_reader import NumberReader, VectorReader
 from coadjoint.render.targets.numpy.solver_reader import find_function
@@ -222,7 +222,7 @@ def _read_numpy(text: str, part: str) -> Iterator[Item]:
 
 def check_series(
     reference: Reference,
-    names: tuple[tuple[str, ...], tuple[str, ...]],
+    names: tuple[tuple[str, ...], ...],
     system: Any,
     targets: Iterable[str],
 ) -> int:
@@ -230,7 +230,8 @@ def check_series(
 
     Args:
         reference: The equations of a number of members.
-        names: The rows of the state and of the parameters in the order of a family.
+        names: The rows of the state, of the parameters, of inputs and of the time in the order of
+            a family.
         system: The system of so many members.
         targets: ``c`` or ``numpy``, or both.
 
@@ -240,7 +241,7 @@ def check_series(
     Raises:
         CrossCheckError: One is another number, or no point has a series.
     """
-    state, parameters = names
+    state, parameters, inputs, time = names
     source, choice = np.random.default_rng(len(state)), Choice(name="taylor", order=ORDER)
     steppers = {
         target: load(system, choice, target)
@@ -255,15 +256,19 @@ def check_series(
             source.uniform(0.5, 2, len(parameters)),
         )
         values = dict(zip(state, point.tolist(), strict=True))
-        inputs = {name: (value,) for name, value in zip(parameters, given.tolist(), strict=True)}
+        lines = source.uniform(0.5, 2, (len(inputs) + len(time), 2))
+        lines[len(inputs) :, 1] = 1.0  # the rate of the time
+        driven = zip((*inputs, *time), map(tuple, lines.tolist()), strict=True)
+        known = {name: (value,) for name, value in zip(parameters, given.tolist(), strict=True)}
+        known |= dict(driven)
         ordered = {name: values[name] for name in reference.state}
         try:
-            series = solve(partial(reference.evaluate, "rhs"), ordered, inputs, ORDER)
+            series = solve(partial(reference.evaluate, "rhs"), ordered, known, ORDER)
         except (OutsideDomain, ArithmeticError):
             continue
         exact = np.array([[float(each) for each in series[name]] for name in state])
         for target, stepper in steppers.items():
-            found = stepper._expand(_make_lanes(point, given), ORDER)[:, :, 0]
+            found = stepper._expand(_make_lanes(point, given, lines), ORDER)[:, :, 0]
             near = np.abs(found - exact) <= NEAR * np.abs(exact).max(axis=0, initial=1.0)
             if not near.all():
                 row, order = np.argwhere(~near)[0].tolist()
@@ -289,17 +294,17 @@ def check_series(
     return compared
 
 
-def _make_lanes(state: Array, parameters: Array) -> Lanes:
-    """One trajectory at the time 0."""
-    none, nothing = np.zeros(1), np.zeros((0, 1))
+def _make_lanes(state: Array, parameters: Array, lines: Array) -> Lanes:
+    """One trajectory, with values and rates of what drives it, ``(m, 2)``."""
+    none = np.zeros(1)
     return Lanes(
         state=state[:, np.newaxis].copy(),
         time=none,
         end=none,
         step=none,
         parameters=parameters,
-        driving=nothing,
-        slopes=nothing,
+        driving=lines[:, :1],
+        slopes=lines[:, 1:],
         member=np.zeros(1, np.uint64),
         steps=np.zeros(1, np.uint64),
     )

@@ -45,9 +45,10 @@ def check_blocks(system: Any, loops: Loops) -> float:
     state = source.normal(size=loops.blocks * MEMBERS)
     parameters = source.uniform(0.5, 2.0, sized.PARAMETERS.size)
     time = source.normal(size=1) if sized.TIME else None
-    arrays = {"state": state, "parameters": parameters, "time": time}
+    inputs = source.normal(size=sized.INPUTS.size) if sized.INPUTS else None
+    arrays = {"state": state, "parameters": parameters, "inputs": inputs, "time": time}
     now = None if time is None else time[0]
-    values = sized.evaluate(loops.name, state, parameters, time=now, target="numpy")
+    values = sized.evaluate(loops.name, state, parameters, inputs, time=now, target="numpy")
     found = np.reshape(values, (-1, MEMBERS))
     expected = np.stack([_find_rates(loops, arrays, i) for i in range(MEMBERS)], axis=1)
     has_values = np.isfinite(expected).all(axis=0)

@@ -29,8 +29,15 @@ from coadjoint.render.targets.python.reader import read_expression as read_pytho
 #: Numbers of members for which places are compared.
 _SIZES = (1, 2, 3, 5)
 _C_PLACE = re.compile(
-    r"_run\.(state|parameters) \+ \((.*)\) \* _run\.(stride|row) \+ _run\.n( \* _run\.own)?"
+    r"_run\.(state|parameters|inputs) \+ \((.*)\) \* _run\.(stride|row|inputs_row)"
+    r" \+ _run\.n( \* _run\.(?:own|driven))?"
 )
+#: How rows of each array, and trajectories in a row, are apart.
+_C_STRIDES = {
+    "state": ("stride", None),
+    "parameters": ("row", " * _run.own"),
+    "inputs": ("inputs_row", " * _run.driven"),
+}
 _C_TIME = "_run.time + _run.n * _run.timed"
 
 #: Lines of a tile that add terms to sums, and say where sums are.
@@ -85,13 +92,10 @@ def check_family_text(
         for part_name, part in _list_parts(loops):
             for file, read in readers.items():
                 found = read(texts[file], part_name, name)
-                lines[name] += _check_part(part, found, loops.is_periodic, file, part_name)
+                lines[name] += _check_part(part, found, loops.wraps, file, part_name)
         if loops.partners is not None:
             lines[name] += _check_pairs(loops, texts["kernel.c"])
-    shared, indexed = context.shared, context.indexed
-    rows = (sum(len(each.components) for each in group) for group in (shared, indexed))
-    if not context.time:
-        lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], *rows), texts)
+    lines["rhs"] += check_series_text(arrange_family(context.loops["rhs"], context.counts), texts)
     return lines
 
 
@@ -109,14 +113,14 @@ def _list_parts(loops: Loops) -> Iterator[tuple[str, Part]]:
         yield f"{loops.name}_finish", loops.finish
 
 
-def _check_part(part: Part, found: _Text, is_periodic: bool, file: str, name: str) -> int:
+def _check_part(part: Part, found: _Text, wraps: bool, file: str, name: str) -> int:
     """A text does what a part does; how many lines were compared."""
     program = part.program
     names = [read.name for read in part.reads]
     if sorted(found.places) != sorted(names):
         raise failure(f"{file}: {name} reads {sorted(found.places)}; expected {names}", name)
     for read in part.reads:
-        _check_place(read, found, is_periodic, file, name)
+        _check_place(read, found, wraps, file, name)
     sums = {each: int(each.removeprefix(SUM)) for each in program.state[len(names) :]}
     if found.sums != sums:
         raise failure(f"{file}: {name} reads the sums {found.sums}; expected {sums}", name)
@@ -154,24 +158,32 @@ def _check_pairs(loops: Loops, text: str) -> int:
     }
     if tile.steps != reads:
         raise failure(f"kernel.c: lanes of a tile read {tile.steps}; expected {reads}", loops.name)
-    return _check_part(part, replace(tile, steps=pair.steps), loops.is_periodic, "kernel.c", name)
+    return _check_part(part, replace(tile, steps=pair.steps), loops.wraps, "kernel.c", name)
 
 
-def _check_place(read: Read, found: _Text, is_periodic: bool, file: str, name: str) -> None:
+def _check_place(read: Read, found: _Text, wraps: bool, file: str, name: str) -> None:
     """A name is read in the right row, for every member."""
     array, text = found.places[read.name]
     for size in _SIZES:
         for i, j in product(range(size), repeat=2):
-            member = 0 if read.shift is None else j if read.of_partner else i + read.shift
-            if not is_periodic and not 0 <= member < size:
+            member = j if read.of_partner else i + (read.shift or 0)
+            if not wraps and not 0 <= member < size:
+                continue
+            if read.single is not None and not -size <= read.single < size:
                 continue
             row = read.rows + read.blocks * size + (0 if read.shift is None else member % size)
+            if read.single is not None:
+                row += read.single % size
             if array != read.array or _evaluate(text, {"i": i, "j": j, "size": size}) != row:
                 raise failure(f"{file}: {name} reads {read.name} at {array}[{text}]", name)
     step = "_run.timed" if read.array == "time" else ""
+    alike = read.shift is None or read.of_partner
     if read.array == "parameters":
-        step = "_shared" if read.shift is None or read.of_partner else "_indexed"
-    elif read.of_partner:
+        alike = (read.shift is None and read.single is None) or read.of_partner
+        step = "_shared" if alike else "_indexed"
+    elif read.array == "inputs":
+        step = "_run.driven" if alike else "(!_batch || _run.driven)"
+    elif read.array == "state" and alike:
         step = "_batch"
     if file == "kernel.c" and found.steps.get(read.name, "") != step:
         raise failure(f"{file}: the lanes of {name} read {read.name} in other steps", name)
@@ -251,15 +263,14 @@ def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
             read.places[place[1]] = ("time", "0")
             return
         where = _C_PLACE.fullmatch(place[2])
-        if (
-            not where
-            or (where[1] == "state") != (where[3] == "stride")
-            or ((where[1] == "parameters") != bool(where[4]))
-        ):
+        if not where or (where[3], where[4]) != _C_STRIDES[where[1]]:
             raise failure(f"kernel.c: {part}: {line!r} is no place", name)
         row = where[2].replace("_run.", "").replace("_j", "j")
         read.places[place[1]] = (where[1], row)
-    elif step := re.fullmatch(r"const double (\w+) = ([\w.]+) \? _at_\1\[_l\] : _one_\1", line):
+    elif step := re.fullmatch(
+        r"const double (\w+) = ([\w.]+|\(!_batch \|\| _run\.driven\)) \? _at_\1\[_l\] : _one_\1",
+        line,
+    ):
         read.steps[step[1]] = step[2]
     elif value := re.fullmatch(r"const double (\w+) = _at_(\w+)\[_l\]", line):
         if value[1] != value[2]:

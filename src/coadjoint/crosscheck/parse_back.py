@@ -12,7 +12,17 @@ from itertools import zip_longest
 from operator import itemgetter
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Negate, Node, Number, Program, children, with_children
+from coadjoint.lower.program import (
+    Item,
+    Negate,
+    Node,
+    Number,
+    Program,
+    Symbol,
+    children,
+    with_children,
+    write_entries,
+)
 from coadjoint.render.targets.body import Body, failure
 from coadjoint.render.targets.protocol import Target
 
@@ -45,7 +55,14 @@ def as_printed(node: Node) -> Node:
     if isinstance(node, Number):
         nearest = Number(Fraction(abs(node.value.numerator / node.value.denominator)))
         return Negate(nearest) if node.value < 0 else nearest
+    if isinstance(node, Item) and isinstance(node.of, Symbol):
+        return Symbol(f"{node.of.name}[{node.place}]")
     return with_children(node, map(as_printed, children(node)))
+
+
+def printed_lines(name: str, value: Node) -> list[tuple[str, Node]]:
+    """The lines of a statement with their nodes as texts have them."""
+    return [(line, as_printed(each)) for line, each in write_entries(name, value)]
 
 
 def _check_same(program: Program, body: Body, file: str) -> int:
@@ -63,7 +80,9 @@ def _check_same(program: Program, body: Body, file: str) -> int:
     read = {name: body.inputs[name] for name in sorted(body.inputs)}
     if read != wanted:
         raise _difference(program, file, "inputs", read, wanted)
-    statements = [(each.name, as_printed(each.value)) for each in program.statements]
+    statements = [
+        line for each in program.statements for line in printed_lines(each.name, each.value)
+    ]
     outputs = [(row, as_printed(each.value)) for row, each in enumerate(program.outputs)]
     lines = [
         *zip_longest(body.statements, statements),

@@ -25,7 +25,8 @@ from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.kinks import SIDE
 from coadjoint.lower.program import Program, Symbol, evaluate, run, settled, walk
-from coadjoint.render.solvers import Line, SolverText
+from coadjoint.render.recurrences import Line
+from coadjoint.render.solvers import SolverText
 
 Value = TypeVar("Value")
 #: Orders that are compared, at so many points of which so many are tried.

@@ -10,16 +10,38 @@ Read next: `coadjoint.crosscheck.oracle`.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, TypeVar
 
 from coadjoint.crosscheck.oracle import Reference
+from coadjoint.exact.factored import factor
 
 Value = TypeVar("Value")
-#: An operation of two values, or a function by its name, of any number of them.
-Operation = Callable[[Any, Any], Any] | str
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A step of equations that are solved by what an arithmetic knows of them.
+
+    Attributes:
+        place: Which of several numbers is asked for; -1 where equations are solved, -2 where they
+            are taken from their entries.
+    """
+
+    place: int
+
+    def __call__(self, first: Any, *others: Any) -> Any:
+        """The step done to values: equations and right sides, or what has items."""
+        if self.place == FACTOR:
+            return factor([first, *others])
+        return first.solve(others) if self.place == SOLVE else first[self.place]
+
+
+SOLVE, FACTOR = -1, -2
+#: An operation of two values, or a function by its name or a loop, of any number of them.
+Operation = Callable[[Any, Any], Any] | str | Loop
 
 
 class Mark:
@@ -45,6 +67,34 @@ class Mark:
 
     def __neg__(self) -> Mark:
         return self.tape.note(_negate, self, self)
+
+    def zero(self) -> Mark:
+        """The mark of 0."""
+        return self.tape.number(Fraction(0))
+
+    @staticmethod
+    def factor(entries: Sequence[Mark]) -> MarkedEquations:
+        """What solves symmetric equations; see `coadjoint.exact.factored`."""
+        return MarkedEquations(entries[0].tape.note(Loop(FACTOR), *entries))
+
+
+class MarkedEquations:
+    """Symmetric equations of marks.
+
+    Args:
+        of: Their mark.
+    """
+
+    def __init__(self, of: Mark) -> None:
+        self._of = of
+
+    def __getitem__(self, place: int) -> Mark:
+        return self._of.tape.note(Loop(place), self._of)
+
+    def solve(self, known: Sequence[Mark]) -> list[Mark]:
+        """The marks of the unknowns."""
+        found = self._of.tape.note(Loop(SOLVE), self._of, *known)
+        return [found.tape.note(Loop(place), found) for place in range(len(known))]
 
 
 def _negate(value: Any, _: Any) -> Any:
@@ -121,8 +171,10 @@ class Replayed:
         for operation, one, other in known.steps:
             if other >= 0:
                 values.append(operation(values[one], values[other]))
-            else:
+            elif isinstance(operation, str):
                 values.append(call(operation, *[values[place] for place in one]))
+            else:
+                values.append(operation(*[values[place] for place in one]))
         return [values[place] for place in known.outputs]
 
 
@@ -139,7 +191,7 @@ def _record(reference: Reference, function: str, inputs: Mapping[str, Any]) -> _
     steps = list[tuple[Any, Any, int]]()
     for operation, arguments in tape.steps:
         at = [places[mark] for mark in arguments]
-        one, other = (at, -1) if isinstance(operation, str) else at
+        one, other = (at, -1) if isinstance(operation, str | Loop) else at
         steps.append((operation, one, other))
     return _Function(
         names=tuple(names),

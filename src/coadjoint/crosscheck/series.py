@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from functools import lru_cache
 from operator import mul
 from typing import Any
 
@@ -26,8 +27,10 @@ from coadjoint.crosscheck.oracle import (
     is_inside,
     to_digits,
 )
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 
+#: Coefficients that are found at once: those of most rounds.
+ROUNDS = 8
 #: Evaluates rates in any arithmetic: values by name, numbers, functions.
 Rates = Callable[
     [Mapping[str, "Series"], Callable[[Fraction], "Series"], Callable[..., "Series"]],
@@ -76,17 +79,41 @@ def apply(function: str, *arguments: Series) -> Series:
     Raises:
         OutsideDomain: It has no value there, or no slope.
     """
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return arguments[0]
     if not is_inside(function, tuple(Bounded(each.of[0], Decimal(0)) for each in arguments)):
         raise OutsideDomain
     digits, length = DIGITS_OF_MPMATH, len(arguments[0].of)
+    if len(arguments) == 1:
+        return _compose(_differentiate(function, arguments[0].of[0], length), arguments[0])
     of = [[to_digits(c) for c in reversed(each.of)] for each in arguments]
 
     def value(time: Any) -> Any:
         return getattr(digits, function)(*(digits.polyval(each, time) for each in of))
 
     return Series(tuple(map(from_digits, digits.taylor(value, 0, length - 1))))
+
+
+def _differentiate(function: str, at: Decimal, length: int) -> Sequence[Decimal]:
+    """So many Taylor coefficients of a function of one number."""
+    return _list_coefficients(function, at, max(length, ROUNDS))[:length]
+
+
+@lru_cache(maxsize=4096)  # rounds of the iteration begin at the same values
+def _list_coefficients(function: str, at: Decimal, length: int) -> tuple[Decimal, ...]:
+    """The same, remembered."""
+    digits = DIGITS_OF_MPMATH
+    found = digits.taylor(getattr(digits, function), to_digits(at), length - 1)
+    return tuple(map(from_digits, found))
+
+
+def _compose(coefficients: Sequence[Decimal], argument: Series) -> Series:
+    """A function with these Taylor coefficients, of a series that begins where they are taken."""
+    rise = Series((Decimal(0), *argument.of[1:]))
+    total = constant(Decimal(0), len(argument.of))
+    for each in reversed(coefficients):
+        total = total * rise + constant(each, len(argument.of))
+    return total
 
 
 def solve(

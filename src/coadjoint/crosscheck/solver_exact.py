@@ -37,7 +37,7 @@ from coadjoint.crosscheck.series import solve
 from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, STRUCTURED, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.mapped import list_schedules
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.program import run
 from coadjoint.methods import list_structured
 from coadjoint.render.solvers import SolverText
@@ -93,6 +93,7 @@ class Solvers:
     def begin(self, batch: Batch, samples: Array, *, size: float, steps: int) -> Ensemble:
         """Members at the start of a run."""
         rows, members = len(self.subject.programs["rhs"].state), batch.size
+        structured = bool(list_structured(self.functions))
         inputs = batch.arrays.get("inputs", np.zeros((0, members)))
         slopes = np.resize(np.array(SLOPES), len(inputs))[:, np.newaxis] * np.ones(members)
         ensemble = Ensemble(
@@ -108,7 +109,8 @@ class Solvers:
             max_steps=steps,
             seed=SEED,
             bound=BOUND,
-            is_structured=bool(list_structured(self.functions)),
+            remembered=STRUCTURED["midpoint"].count_memory(rows) if structured else 0,
+            is_implicit=structured,
             sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
         ensemble.begin(START)
@@ -237,7 +239,8 @@ def _exact_step(
 
         def move(name: str, x: methods.Row, h: Any) -> methods.Row:
             names = dict(zip(known[name].state, [*x, h], strict=True))
-            return run(known[name], names | parameters, number, apply)
+            rises = run(known[name], names | parameters, number, apply)
+            return [a + rise for a, rise in zip(x, rises, strict=True)]
 
         return [
             (partial(move, name), None if time == 1.0 else number(Fraction(time)))

@@ -23,7 +23,8 @@ from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.compositions import list_schedules
+from coadjoint.lower.mapped import list_maps
 from coadjoint.methods import MAPPED, list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
@@ -163,9 +164,10 @@ class NumpySolver:
         if name == "rk4":
             return RungeKutta4(rates, size, branches=self.branches)
         if name in MAPS:
-            parts = self.module["SCHEDULES"][name]
-            maps = [(self.module[f"find_{each}"], part) for each, part in parts]
-            return Maps(maps, rates, size, branches=self.branches)
+            parts, moved = self.module["SCHEDULES"][name], self.module["MOVED"]
+            maps = [(self.module[f"find_{each}"], part, moved[each]) for each, part in parts]
+            compensated = MAPPED[name].parts > 0
+            return Maps(maps, rates, size, is_compensated=compensated, branches=self.branches)
         if name in self.module.get("STRUCTURED", ()):
             return Structured(name, size, {"rates": rates}, branches=self.branches)
         return METHODS[name](

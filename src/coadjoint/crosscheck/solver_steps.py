@@ -69,7 +69,8 @@ _KEPT: Final = (
     "steps",
     "rejected",
     "status",
-    "low",
+    "late",
+    "memory",
     "sweeps",
 )
 #: What is kept of kinks in addition, where there are some.
@@ -77,10 +78,17 @@ _KINKED: Final = ("kinks", "brief")
 
 
 def choose_size(solvers: Solvers, batch: Batch) -> float:
-    """A step of ordinary length: the median of those that the Taylor method chooses."""
+    """A step of ordinary length: the median of those that the Taylor method chooses.
+
+    Where these end outside of the domain, as of a motion that is a straight line, half the way to
+    the first exit.
+    """
     ensemble = solvers.begin(batch, np.array([START + FAR]), size=0.0, steps=1)
     solvers.advance["taylor"]["numpy"](ensemble, 1)
-    taken = (ensemble.time - START)[np.isfinite(ensemble.time) & (ensemble.time > START)]
+    moved = np.isfinite(ensemble.time) & (ensemble.time > START)
+    taken = (ensemble.time - START)[moved]
+    if moved.any() and (ensemble.status[moved] == Status.DOMAIN).all():
+        return 2.0 ** math.floor(math.log2(float(np.min(taken)) / 2))
     return 2.0 ** round(math.log2(float(np.median(taken)))) if taken.size else 0.125
 
 
@@ -175,8 +183,9 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
             taken = float(ensemble.time[member]) - START
             if not ensemble.steps[member]:  # beyond a branch point: a part of it is tried next
                 taken = float(ensemble.step[member]) / SHORTER
-            if ensemble.status[member] == Status.DOMAIN or not taken > 0:
+            if not taken > 0:
                 continue
+            is_cut = _has_met_kink(ensemble, member) or ensemble.status[member] == Status.DOMAIN
             try:
                 octaves, allowed = _choose(solvers, find_point(solvers, few, member))
             except (OutsideDomain, ArithmeticError, ValueError):
@@ -185,7 +194,7 @@ def check_choice(solvers: Solvers, batch: Batch) -> int:
                 continue
             compared += 1
             octaves_off = math.log2(taken) - octaves
-            if _has_met_kink(ensemble, member):  # which ended the step: it is no longer than that
+            if is_cut:  # at a kink or at the end of the domain: it is no longer than that
                 octaves_off = max(octaves_off, 0.0)
             if abs(octaves_off) > allowed:
                 raise solvers.failure(

@@ -16,11 +16,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import zip_longest
 
-from coadjoint.crosscheck.parse_back import as_printed
+from coadjoint.crosscheck.parse_back import printed_lines
 from coadjoint.derive.setting import STEP
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.compositions import list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
+from coadjoint.methods import Sphere
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import (
     TEMPLATES,
@@ -29,9 +31,9 @@ from coadjoint.render.kernels import (
     elementary_functions,
     name_solver,
 )
+from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import (
     FunctionText,
-    Line,
     SolverText,
     arrange_function,
     arrange_map,
@@ -59,6 +61,7 @@ class SolverTexts:
         files: The printed files by name.
         system: Name of the system.
         kind: What they integrate.
+        noisy_spheres: Spheres on which noise moves the state.
     """
 
     programs: Mapping[str, Program]
@@ -67,6 +70,7 @@ class SolverTexts:
     files: Mapping[str, str]
     system: str
     kind: SolverKind = SOLVER
+    noisy_spheres: tuple[Sphere, ...] = ()
 
 
 def check_solver_texts(texts: SolverTexts) -> int:
@@ -177,7 +181,7 @@ def _orders(solver: SolverText) -> Iterable[Pair | Loop]:
 
 
 def _pairs(lines: Iterable[Line]) -> list[Pair]:
-    return [(line.name, as_printed(line.value)) for line in lines]
+    return [each for line in lines for each in printed_lines(line.name, line.value)]
 
 
 def _check_body(found: SolverBody, expected: SolverBody, file: str, function: str) -> int:
@@ -273,6 +277,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
         fixed_reads=frozenset(),
         branches=solver.branches,
         shared=solver.shared,
+        unknowns=solver.unknowns,
     )
     driving = {"inputs": _rows(program.inputs), "time": _rows(program.time)}
     templates = {file: TEMPLATES[file] for file in texts.kind.files}
@@ -288,11 +293,12 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "held": dict.fromkeys(kinks["held"], nothing),
             "driving": {name: rows for name, rows in driving.items() if rows},
             **describe_noise(texts.programs),
-            **describe_structured(texts.programs),
+            **describe_structured(texts.programs, texts.noisy_spheres),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),
             "maps": dict.fromkeys(list_maps(texts.programs), nothing),
+            "moved": list_moved(texts.programs[name] for name in list_maps(texts.programs)),
             "schedules": list_schedules(list_maps(texts.programs)),
             "exact_maps": not elementary_functions(
                 texts.programs[name] for name in list_maps(texts.programs)

@@ -20,7 +20,7 @@ from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import Reference
 from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
 from coadjoint.crosscheck.replay import Replayed
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 from coadjoint.derive.reference import Reference as Derived
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError
@@ -208,7 +208,7 @@ class Subject:
         called = list[Array]()
 
         def call(function: str, *arguments: Array) -> Array:
-            if function == SETTLE:
+            if function in (SETTLE, SETTLE_LAST):
                 return arguments[0]
             called.append(np.asarray(getattr(np, ELEMENTARY[function].numpy_name)(*arguments)))
             return called[-1]

@@ -57,6 +57,7 @@ def region(equations: Equations, momenta: Mapping[str, Element] = MappingProxyTy
         bounds=tuple(each for each in conditions if each not in known.conditions),
         definitions=_definitions(equations),
         momenta=_definitions(equations) if equations.iterations else momenta,
+        loops=equations.loops,
     )
 
 
@@ -67,13 +68,15 @@ def _definitions(equations: Equations) -> dict[str, Element]:
     """
     setting, given = equations.setting, dict[str, Element]()
     for newton in equations.iterations:
-        names = [setting.velocities[place] for place in newton.block]
+        names = [setting.conjugates[place][0] for place in newton.block]
         found = dict(zip(newton.names, setting.elements(names), strict=True))
         given |= found
         for place, slope in zip(newton.block, newton.slopes, strict=True):
             at = setting.field.substitute(slope, found)
-            given[setting.momenta[place]] = at * setting.weights[place]
-    free = {setting.velocities[place] for newton in equations.iterations for place in newton.block}
+            _, mu, weight = setting.conjugates[place]
+            given[mu] = at * weight
+    places = (place for newton in equations.iterations for place in newton.block)
+    free = {setting.conjugates[place][0] for place in places}
     return given | {n: value for n, value in equations.exact.definitions if n not in free}
 
 
@@ -107,7 +110,8 @@ def _contact(equations: Equations) -> list[tuple[Bound, Element]]:
 
 def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
     """A bound for each root by which velocities follow from momenta, where it may have no value."""
-    setting, velocities = equations.setting, {*equations.setting.velocities}
+    setting = equations.setting
+    velocities = {xi for xi, _, _ in setting.conjugates}
     field, pairs, seen = setting.field, list[tuple[Bound, Element]](), set[str]()
     if setting.spec.lagrangian is None or not setting.momenta or setting.spec.is_first_order:
         return []

@@ -117,6 +117,17 @@ def _declared_observables(setting: Setting) -> tuple[Emitted, ...]:
     return tuple(
         _emit(each, each.unit, in_parts(setting, each.formula), _find_claim(setting, each.name))
         for each in setting.spec.observables
+        if not each.follows
+    )
+
+
+@once
+def list_following(setting: Setting) -> tuple[Emitted, ...]:
+    """The observables of the spec that name what is reconstructed."""
+    return tuple(
+        _emit(each, each.unit, in_parts(setting, each.formula), _find_claim(setting, each.name))
+        for each in setting.spec.observables
+        if each.follows
     )
 
 

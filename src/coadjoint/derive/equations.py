@@ -22,7 +22,7 @@ from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
 from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.derive.mechanics.projection import back_then_onto, nearest_state
-from coadjoint.derive.mechanics.solver import definitions_under, solver_names
+from coadjoint.derive.mechanics.solver import Solve, definitions_under, list_loops
 from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import STEP, Setting, vector_names
@@ -163,7 +163,7 @@ class Equations:
         """Definitions without a closed form: intermediates of a solve, and what rests on them."""
         solved, names = self.intermediates, list[str]()
         for name, value in self.exact.definitions:
-            if name in solved or self.setting.field.reach(value) & set(names):
+            if name in solved or self.setting.field.reach(value) & solved.union(names):
                 names.append(name)
         return tuple(names)
 
@@ -197,13 +197,18 @@ class Equations:
     @cached_property
     def intermediates(self) -> frozenset[str]:
         """Names of L, D, y and z of the solves in the kernel."""
-        names = {name for each in self.exact.solves for name in solver_names(each.block)}
+        names = {name for each in self.exact.solves for name in each.intermediates}
         return frozenset(names.union(self.guesses))
 
     @property
     def guesses(self) -> frozenset[str]:
         """Names of what Newton's iterations in the kernel find."""
         return frozenset(name for newton in self.iterations for name in newton.names)
+
+    @cached_property
+    def loops(self) -> dict[str, Solve]:
+        """The solves that are loops in the kernel, by the symbols for what they give."""
+        return list_loops(self.exact.solves)
 
     @property
     def iterations(self) -> list[Newton]:

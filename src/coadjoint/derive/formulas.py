@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.derive import sandwich as products
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.emitted import list_following
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import turning_residuals
@@ -128,13 +129,33 @@ def energy_gradient(equations: Equations) -> Rows | None:
 
 
 def bracket_vector(equations: Equations) -> Rows | None:
-    """The Poisson tensor times a vector, which follows the state in the first argument."""
+    """The tensor times a vector, which follows the state in the first argument."""
     own = times_vector(equations)
     if own is None:
         return None
     state = equations.setting.state
     lines = [(f"{{{name}, v}}", row) for name, row in zip(state, own.exact.rates, strict=True)]
     return _rows(own, lines, state=(*state, *vector_names(len(state))))
+
+
+def distinguished(equations: Equations) -> Rows | None:
+    """The distinguished functions of Nambu's bracket, where there is an energy as well."""
+    functions = _find_distinguished(equations)
+    return _rows(equations, functions) if functions else None
+
+
+def distinguished_gradient(equations: Equations) -> Rows | None:
+    """Their derivatives by the state, row by row."""
+    state, field = equations.setting.state, equations.setting.field
+    slopes = [
+        (f"d{label}/d{name}", slope)
+        for label, function in _find_distinguished(equations)
+        for name, slope in zip(state, field.gradient(function, state), strict=True)
+    ]
+    if not slopes:
+        return None
+    shape = (len(slopes) // len(state), len(state))
+    return replace(_rows(equations, slopes, shape), may_hide_zeros=True)
 
 
 def sandwich(equations: Equations) -> Rows | None:
@@ -160,6 +181,10 @@ def noise(equations: Equations) -> Rows | None:
     return _rows(equations, entries, (len(state), len(fields)))
 
 
+def noise_vector(equations: Equations) -> None:
+    """Of equal members alone, whose noise is read off from `noise` of a few of them."""
+
+
 def constraint_residual(equations: Equations) -> Rows | None:
     """What vanishes on the constraints, then what vanishes where attitudes are rotations."""
     residuals = [*equations.exact.residuals, *turning_residuals(equations.setting)]
@@ -182,6 +207,17 @@ def reconstruction(equations: Equations) -> Rows | None:
         return None
     state = (*equations.setting.state, *(name for name, _ in followed))
     return _rows(equations, [(f"d{name}/dt", rate) for name, rate in followed], state=state)
+
+
+def reconstructed_observables(equations: Equations) -> Rows | None:
+    """The observables of what is reconstructed, which follows the state in the first argument."""
+    values = [
+        line
+        for each in list_following(equations.setting)
+        for line in zip(each.components, each.values, strict=True)
+    ]
+    state = (*equations.setting.state, *(name for name, _ in equations.followed))
+    return _rows(equations, values, state=state) if values else None
 
 
 def domain(equations: Equations) -> Rows | None:
@@ -210,6 +246,15 @@ def _rates(equations: Equations) -> list[tuple[str, Element]]:
     """The rates with their labels."""
     state, rates = equations.setting.state, equations.exact.rates
     return [(f"d{name}/dt", rate) for name, rate in zip(state, rates, strict=True)]
+
+
+def _find_distinguished(equations: Equations) -> list[tuple[str, Element]]:
+    """The distinguished functions with labels; none where no method asks for them."""
+    setting, poisson = equations.setting, equations.spec.poisson
+    if poisson is None or energy_gradient(equations) is None:
+        return []
+    functions = [equations.close(setting.formula(each)) for each in poisson.functions]
+    return [(f"c{n}", function) for n, function in enumerate(functions, 1)]
 
 
 def _slopes(equations: Equations, by: tuple[str, ...]) -> Rows:

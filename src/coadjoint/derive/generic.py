@@ -41,6 +41,13 @@ def show_members(equations: Equations) -> Iterator[Section]:
         for end, rates in family.ends.items()
         for line in _write_rates(_name_at(family, end), family.states, rates)
     ]
+    if family.noise:
+        yield Section(
+            title=f"Noise of member {i}",
+            law="what increments of Wiener processes do to it, in the sense of Stratonovich",
+            law_latex="",
+            lines=tuple(_write_noise(names, family)),
+        )
     if ends:
         law = "members that lack a neighbour, the first one being 0 and the last one N-1"
         yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends))
@@ -59,7 +66,8 @@ def _name_at(family: Family, end: int) -> Names:
 
 def _name_around(family: Family, own: str, near: Mapping[int, str]) -> Names:
     """How symbols are written; those of the member itself come first."""
-    names = {s: member(symbol(s.name), own) for s in (*family.states, *family.indexed)}
+    listed = (*family.own, *family.indexed_noise)
+    names = {s: member(symbol(s.name), own) for s in listed}
     names |= {s: member(symbol(of.name), near[n]) for (of, n), s in family.neighbours.items()}
     names |= {s: member(symbol(of.name), _other(family)) for of, s in family.partners.items()}
     return names | {each.symbol: member(symbol(each.symbol.name), own) for each in family.pair_sums}
@@ -79,6 +87,14 @@ def _write_rates(
         latex = rate(state.name).latex + own.latex.removeprefix(plain.latex)
         maths = rate(state.name).mathml.replace(plain.mathml, own.mathml)
         left = Left(f"d{own.text}/dt", latex, maths)
+        yield write_line(left, _write(value, names), value.as_ordered_terms(), names)
+
+
+def _write_noise(names: Names, family: Family) -> Iterator[Line]:
+    """What the noise does to each component of a member."""
+    for state, value in zip(family.states, family.noise, strict=True):
+        own = names[state]
+        left = Left(f"noise of {own.text}", rf"\delta {own.latex}", f"<mi>&#x3B4;</mi>{own.mathml}")
         yield write_line(left, _write(value, names), value.as_ordered_terms(), names)
 
 

@@ -16,27 +16,21 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import sympy
 
-from coadjoint.derive.differences import tidy
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
-from coadjoint.derive.written import Written, choose
+from coadjoint.derive.totals import TotalsReader
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
-from coadjoint.families import Family, Sum, Total
-from coadjoint.spec import Formula
-from coadjoint.spec.core import tree
-from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import Members, member_name, place_at, reach
-from coadjoint.spec.core.totals import put_term, split_sums
-from coadjoint.spec.model import Variable, Windows
+from coadjoint.families import Family, Sum
+from coadjoint.spec.core.members import member_name
+from coadjoint.spec.model import Variable
 from coadjoint.spec.spatial import turning_rows
 
 
@@ -52,12 +46,15 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
-    small = max(1 if declared.index.periodic else 2 * declared.reach, 2 if declared.pairs else 1)
+    (before, after), totals = declared.ends, tuple(reader.totals)
+    alone = [n + 1 if n >= 0 else -n for _, n in reader.singles_of(totals)]
+    small = max([before + after, 2 if declared.pairs else 1, *alone])
     pairs = tuple(reader.pair_sums.values()) if declared.pairs else ()
     rates = reader.rates_of(reader.middle)
-    totals = tuple(reader.totals)
     named = {s for each in totals for one in each.sums for s in one.term.free_symbols}
-    every = (*rates, *(rate for end in reader.ends.values() for rate in end))
+    noise, noise_ends = reader.noise_of(reader.middle), reader.noise_ends
+    ends = (*reader.ends.values(), *noise_ends.values())
+    every = (*rates, *noise, *(rate for end in ends for rate in end))
     named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
     return Family(
@@ -76,188 +73,77 @@ def derive_family(equations: Equations) -> Family:
         turned=reader.turned,
         residuals=reader.residuals,
         time=reader.time,
+        shared_inputs=reader.shared_inputs,
+        indexed_inputs=reader.indexed_inputs,
+        noise=noise,
+        noise_ends=noise_ends,
+        shared_noise=tuple(map(sympy.Symbol, declared.shared_noise)),
+        indexed_noise=reader.increments,
+        singles=reader.singles_of(totals),
+        wraps=declared.index.periodic or reader.is_closed,
     )
 
 
 @dataclass(frozen=True)
-class _Reader:
-    """The reading of one window."""
+class _Reader(TotalsReader):
+    """The reading of one window: rates of its members."""
 
-    equations: Equations
-
-    # -- what there is ------------------------------------------------------------------
-
-    @cached_property
-    def declared(self) -> Windows:
-        """What is known of the other members."""
-        family = self.equations.spec.family
-        assert family is not None, self.equations.spec.name
-        return family
-
-    @cached_property
-    def written(self) -> Written:
-        """What the spec says, not multiplied out."""
-        return Written(self.equations)
-
-    @cached_property
-    def members(self) -> Members:
-        """The members that are written out."""
-        declared = self.declared
-        spec = self.equations.spec
-        count = len(spec.state) // len(declared.variables)
-        moving = (each.name.rpartition("_")[0] for each in spec.variables)  # velocities among them
-        return Members(
-            index=declared.index.name,
-            count=count,
-            periodic=declared.index.periodic,
-            names=frozenset((*moving, *declared.indexed)),
-        )
-
-    @cached_property
-    def shared(self) -> tuple[str, ...]:
-        """Components of the parameters that all members share."""
-        known = {each.name: each for each in self.equations.spec.parameters}
-        return tuple(c for name in self.declared.shared for c in known[name].components)
-
-    @property
-    def time(self) -> tuple[sympy.Symbol, ...]:
-        """The symbol of the time, if the spec declares it."""
-        time = self.equations.spec.time
-        return () if time is None else (sympy.Symbol(time.name),)
-
-    @cached_property
-    def components(self) -> dict[str, tuple[str, ...]]:
-        """The components of what a member has, of its generic name, by component."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        generic = dict[str, tuple[str, ...]]()
-        for name in (*self.declared.variables, *self.declared.indexed):
-            each = known[member_name(name, 0)]
-            generic[name] = component_names(name, each.shape, each.form)
-        return generic
-
-    def names_of(self, names: Sequence[str], member: int) -> list[str]:
-        """Components of quantities of one member of the window."""
-        spec = self.equations.spec
-        known = {each.name: each for each in (*spec.variables, *spec.parameters)}
-        return [c for name in names for c in known[member_name(name, member)].components]
-
-    def generic(self, names: Sequence[str]) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the components of generic quantities."""
-        return tuple(sympy.Symbol(c) for name in names for c in self.components[name])
-
-    @cached_property
-    def states(self) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the state of member i."""
-        return self.generic(self.declared.variables)
-
-    @cached_property
-    def indexed(self) -> tuple[sympy.Symbol, ...]:
-        """Symbols of the parameters of member i."""
-        return self.generic(self.declared.indexed)
-
-    @cached_property
-    def partners(self) -> dict[sympy.Symbol, sympy.Symbol]:
-        """Symbols of member j of a pair."""
-        if not self.declared.pairs:
-            return {}
-        own = (*self.states, *self.indexed)
-        return {each: sympy.Symbol(f"{each.name}[j]") for each in own}
-
-    @cached_property
-    def neighbours(self) -> dict[tuple[sympy.Symbol, int], sympy.Symbol]:
-        """Symbols of the neighbours of member i, as far as the window has them."""
-        most = self.members.count
-        return {
-            (each, shift): sympy.Symbol(f"{each.name}[{shift:+d}]")
-            for shift in range(-most, most + 1)
-            if shift
-            for each in (*self.states, *self.indexed)
-        }
-
-    # -- expressions of a member --------------------------------------------------------
-
-    def rename(self, member: int, before: int, after: int) -> dict[sympy.Symbol, sympy.Symbol]:
-        """The generic symbols by those of the window, seen from one of its members."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict[sympy.Symbol, sympy.Symbol]()
-        for shift in range(-before, after + 1):
-            at = self.members.place(member + shift)
-            if at is not None:
-                seen = own if shift == 0 else [self.neighbours[each, shift] for each in own]
-                old = map(sympy.Symbol, self.names_of(names, at))
-                new |= zip(old, seen, strict=True)
-        return new
-
-    def see(
-        self, values: Iterable[sympy.Expr], new: Mapping[Any, Any], written: Iterable[Any] = ()
-    ) -> tuple[sympy.Expr, ...]:
-        """Expressions of the window in generic symbols.
-
-        Args:
-            values: As the exact field has them.
-            new: The generic symbols.
-            written: The same as the spec writes them, if that is known.
-
-        Raises:
-            DerivationError: They depend on members that are not seen.
-        """
-        plain = [self._rename(value, new) for value in values]
-        seen = [value.xreplace(new) for value in written]
-        short = choose(plain, seen, most=0.5)  # to tidy up what is multiplied out takes long
-        if short:
-            return short
-        plain = [tidy(value, self.groups) for value in plain]
-        return choose(plain, seen) or tuple(plain)
-
-    def _rename(self, value: sympy.Expr, new: Mapping[Any, Any]) -> sympy.Expr:
-        """An expression in generic symbols."""
-        left = value.free_symbols - {*new, *map(sympy.Symbol, self.shared), *self.time}
-        if left:
-            spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
-            raise DerivationError(
-                f"{spec.path}: the rate of one member depends on {names}, which is none of its "
-                "neighbours; expected an energy that couples neighbours or pairs. Write the energy "
-                "as sums over members.",
-                found=names,
-            )
-        return value.xreplace(new)
-
-    @cached_property
-    def groups(self) -> list[list[sympy.Symbol]]:
-        """Symbols of each component of the state: of member i, its neighbours and its partner."""
-        groups = {each: [each] for each in self.states}
-        for (each, _), seen in self.neighbours.items():
-            if each in groups:
-                groups[each].append(seen)
-        for each, seen in self.partners.items():
-            if each in groups:
-                groups[each].append(seen)
-        return list(groups.values())
-
-    @property
-    def middle(self) -> int:
-        """A member that has all its neighbours."""
-        return 0 if self.declared.index.periodic else self.declared.reach
+    # -- rates --------------------------------------------------------------------------
 
     def rates_of(self, member: int) -> tuple[sympy.Expr, ...]:
         """The rates of a member in generic symbols, and in those of sums over its partners."""
         if self.declared.pairs:
             return tuple(self._rates_with_pairs(member))
-        reach, names = self.declared.reach, self.names_of(self.declared.variables, member)
-        new = self.rename(member, reach, reach)
+        new, names = self.see_around(member), self.names_of(self.declared.variables, member)
         by_name = dict(zip(self.equations.variables, self.equations.rates, strict=True))
         return self.see((by_name[name] for name in names), new, self.written.rates(names))
 
     @cached_property
     def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
-        """The rates of the members of an open chain that lack neighbours."""
-        if self.declared.index.periodic:
+        """The rates of the members of an open chain that lack neighbours, or are pushed alone."""
+        (first, last), count = self.declared.ends, self.members.count
+        starts = {k: self.rates_of(k) for k in range(first)}
+        return starts | {-k: self.rates_of(count - k) for k in range(last, 0, -1)}
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the rate of a member at one end depends on members at the other end."""
+        places = {symbol: shift for (_, shift), symbol in self.neighbours.items()}
+        for end, rates in self.ends.items():
+            shifts = [places.get(s, 0) for rate in rates for s in rate.free_symbols]
+            if min([0, *shifts]) < -end <= 0 or max([0, *shifts]) >= -end > 0:
+                return True
+        return False
+
+    # -- noise --------------------------------------------------------------------------
+
+    def noise_of(self, member: int) -> tuple[sympy.Expr, ...]:
+        """What increments of Wiener processes do to a member; nothing without noise."""
+        fields = noise_fields(self.equations.setting)
+        if not fields:
+            return ()
+        reach, state = self.declared.reach, self.equations.variables
+        zero = self.equations.setting.field.is_zero
+        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
+        moved = (
+            sympy.Add(
+                *(
+                    self.write(each.field[row]) * sympy.Symbol(each.name)
+                    for each in fields
+                    if not zero(each.field[row])
+                )
+            )
+            for row in rows
+        )
+        return self.see(moved, self.rename(member, reach, reach))
+
+    @cached_property
+    def noise_ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
+        """The same of the members of an open chain that lack neighbours."""
+        if not self.equations.spec.noise:
             return {}
-        reach, count = self.declared.reach, self.members.count
-        starts = {k: self.rates_of(k) for k in range(reach)}
-        return starts | {-k: self.rates_of(count - k) for k in range(reach, 0, -1)}
+        count = self.members.count
+        return {end: self.noise_of(end if end >= 0 else count + end) for end in self.ends}
 
     # -- attitudes ----------------------------------------------------------------------
 
@@ -289,115 +175,47 @@ class _Reader:
         rows = (name for each in self.turning for name in turning_rows(self.equations.spec, each))
         return self.see((self.write(known[name]) for name in rows if known), new)
 
-    # -- sums ---------------------------------------------------------------------------
-
-    def value(self, node: tree.Node) -> tuple[Element, ...]:
-        """The components of a tree of the window."""
-        setting = self.equations.setting
-        return entries(interpret(node, setting.values, setting.field))
-
-    def write(self, element: Element) -> sympy.Expr:
-        """An element as SymPy has it."""
-        return self.equations.setting.field.to_sympy(self.equations.close(element))
-
-    def sums_of(self, formula: Formula) -> Iterator[tuple[tree.Sum, tree.Node]]:
-        """The sums of a formula, each with its term and the constant factor before it."""
-        assert formula.sums is not None, formula.key
-        for each, alone in split_sums(formula.sums):
-            yield each, put_term(alone, each)
-
-    @property
-    def totals(self) -> Iterator[Total]:
-        """The energy and the observables."""
-        spec = self.equations.spec
-        if spec.hamiltonian is not None:
-            yield from self._total("energy", (), spec.hamiltonian)
-        for each in spec.observables:
-            yield from self._total(each.name, each.shape, each.formula)
-
-    def _total(self, name: str, shape: tuple[int, ...], formula: Formula) -> Iterator[Total]:
-        """The components of a total."""
-        sums = list[list[Sum]]()
-        for number, (each, term) in enumerate(self.sums_of(formula), 1):
-            sums.append([])
-            for place, value in enumerate(self._terms(each, term)):
-                symbol = sympy.Symbol(f"{name}_sum{number}_{place + 1}")
-                before, after = reach(each.term)
-                sums[-1].append(
-                    Sum(
-                        symbol=symbol,
-                        term=value,
-                        over="members" if len(each.indices) == 1 else "pairs",
-                        before=before,
-                        after=after,
-                    )
-                )
-        for component, parts in zip(
-            component_names(name, shape), zip(*sums, strict=True), strict=True
-        ):
-            yield Total(component, sympy.Add(*(each.symbol for each in parts)), tuple(parts))
-
-    def _terms(self, each: tree.Sum, term: tree.Node) -> Sequence[sympy.Expr]:
-        """The components of the term of a sum, in generic symbols."""
-        if len(each.indices) > 1:
-            return [self._see_pair(value) for value in self.value(self._place_pair(each, term))]
-        before, after = reach(each.term)
-        at = 0 if self.members.periodic else before
-        placed = place_at(term, {each.indices[0]: at}, self.members)
-        new = self.rename(at, before, after)
-        written = entries(self.written.value(placed))
-        return self.see(map(self.write, self.value(placed)), new, written)
-
     # -- pairs --------------------------------------------------------------------------
 
-    def _place_pair(self, each: tree.Sum, term: tree.Node, *, turned: bool = False) -> tree.Node:
-        """The term of the first two members, or of the same in the other order."""
-        at = (1, 0) if turned else (0, 1)
-        return place_at(term, dict(zip(each.indices, at, strict=True)), self.members)
+    def pair_energy(self, i: int, j: int) -> Element:
+        """What the sums over pairs have of two members."""
+        assert self.energy is not None, self.equations.spec.name
+        values = list[Element]()
+        for each, term in self.sums_of(self.energy):
+            if len(each.indices) > 1:
+                values += self.value(self.place_pair(each, term, (i, j)))
+        return self.equations.setting.field.sum(self.transform(self.energy, values))
 
-    def _see_pair(self, value: Element) -> sympy.Expr:
-        """An element of the first two members in the symbols of a member and its partner."""
-        names = (*self.declared.variables, *self.declared.indexed)
-        own = (*self.states, *self.indexed)
-        new = dict(zip(map(sympy.Symbol, self.names_of(names, 0)), own, strict=True))
-        others = [self.partners[each] for each in own]
-        new |= zip(map(sympy.Symbol, self.names_of(names, 1)), others, strict=True)
-        return self.see([self.write(value)], new)[0]
-
-    @cached_property
-    def pair_energies(self) -> list[Element]:
-        """The term of the first two members, of each sum over pairs in the energy.
+    def check_pairs(self) -> None:
+        """The term of each sum over pairs in the energy is the same for both orders.
 
         Raises:
             DerivationError: One changes when its members change places.
         """
-        spec, field = self.equations.spec, self.equations.setting.field
-        assert spec.hamiltonian is not None, spec.name
-        terms = list[Element]()
-        for each, term in self.sums_of(spec.hamiltonian):
+        spec, field, energy = self.equations.spec, self.equations.setting.field, self.energy
+        assert energy is not None, spec.name
+        for each, term in self.sums_of(energy):
             if len(each.indices) == 1:
                 continue
             (value,), (turned,) = (
-                self.value(self._place_pair(each, term, turned=t)) for t in (False, True)
+                self.value(self.place_pair(each, term, at)) for at in ((0, 1), (1, 0))
             )
             if not field.is_zero(value - turned):
                 i, j = each.indices
                 raise DerivationError(
-                    f"{spec.path}: hamiltonian.h: the term of a pair changes when {i} and {j} "
+                    f"{spec.path}: {energy.key}: the term of a pair changes when {i} and {j} "
                     "change places; expected a term that is the same for both orders. Write it as "
                     "half the sum of both.",
-                    found=spec.hamiltonian.in_one_line,
+                    found=energy.in_one_line,
                 )
-            terms.append(value)
-        return terms
 
     def _flow(self, energy: Element, member: int = 0) -> list[Element]:
         """The brackets of a member's state with a function."""
         tensor, field = self.equations.exact.poisson_tensor, self.equations.setting.field
+        state, names = self.equations.variables, self.names_of(self.declared.variables, member)
         assert tensor is not None, self.equations.route
-        state = self.equations.variables
         slopes = field.gradient(energy, state)
-        rows = [state.index(name) for name in self.names_of(self.declared.variables, member)]
+        rows = [state.index(name) for name in names]
         return [
             field.sum(p * s for p, s in zip(tensor[row], slopes, strict=True) if p and s)
             for row in rows
@@ -407,42 +225,28 @@ class _Reader:
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
         """What the partners add to the rates of a member, by the components to which they add."""
         field, sums = self.equations.setting.field, dict[sympy.Symbol, Sum]()
-        flows = [self._flow(energy) for energy in self.pair_energies]
-        for n, state in enumerate(self.states):
-            term = field.sum(flow[n] for flow in flows)
+        self.check_pairs()
+        flow = self._flow(self.pair_energy(0, 1))
+        for state, term in zip(self.states, flow, strict=True):
             if not field.is_zero(term):
                 symbol = sympy.Symbol(f"{state.name}_pairs")
-                sums[state] = Sum(symbol=symbol, term=self._see_pair(term), over="partners")
+                sums[state] = Sum(symbol=symbol, term=self.see_pair(term), over="partners")
         return sums
-
-    @cached_property
-    def own_energy(self) -> Element:
-        """What the sums over members give to the energy of the window."""
-        spec, values = self.equations.spec, list[Element]()
-        assert spec.hamiltonian is not None, spec.name
-        for each, term in self.sums_of(spec.hamiltonian):
-            if len(each.indices) == 1:
-                before, after = (0, 0) if self.members.periodic else reach(each.term)
-                for at in range(before, self.members.count - after):
-                    values += self.value(place_at(term, {each.indices[0]: at}, self.members))
-        return self.equations.setting.field.sum(values)
-
-    def _forces(self, member: int) -> list[Element]:
-        """What forces add to the rates of a member."""
-        known = dict(zip(self.equations.variables, self.equations.exact.forces, strict=False))
-        zero = self.equations.setting.field.zero
-        return [known.get(name, zero) for name in self.names_of(self.declared.variables, member)]
 
     def _rates_with_pairs(self, member: int) -> Iterator[sympy.Expr]:
         """The rates of a member with sums over its partners.
 
-        What the energy of members and neighbours gives is the member's own share, and so are
-        forces.
+        What is left without the pairs is the member's own share: what members and neighbours do,
+        and forces.
         """
-        width = self.declared.reach
-        new = self.rename(member, width, width)
-        flow, forces = self._flow(self.own_energy, member), self._forces(member)
-        own = (self.write(a + b) for a, b in zip(flow, forces, strict=True))
-        for state, total in zip(self.states, self.see(own, new), strict=True):
+        equations, new = self.equations, self.see_around(member)
+        known = dict(zip(equations.variables, equations.exact.rates, strict=True))
+        names = self.names_of(self.declared.variables, member)
+        own = [equations.close(known[name]) for name in names]
+        for other in range(self.members.count):
+            if other != member:
+                flow = self._flow(self.pair_energy(*sorted((member, other))), member)
+                own = [a - b for a, b in zip(own, flow, strict=True)]
+        for state, total in zip(self.states, self.see(map(self.write, own), new), strict=True):
             pairs = self.pair_sums.get(state)
             yield total if pairs is None else total + pairs.symbol

@@ -7,7 +7,7 @@ numbers that carry their slopes, by the product, quotient and chain rules. The d
 element of the field would be brought to a common denominator, where terms cancel that no formula of
 doubles can cancel without rounding (docs/decisions/envelope.md). Definitions are evaluated in their
 order and never put into one another: there may be many levels of them where velocities are solved
-for.
+for. What a kernel solves by a loop is solved here by what the arithmetic knows of such equations.
 Read next: `coadjoint.lower.check` and `coadjoint.crosscheck.oracle`, which supply the arithmetic.
 """
 
@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.formulas import Rows, rows_of
 from coadjoint.derive.implicit import ImplicitSolve
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST, STEPS
 from coadjoint.derive.sloped import Sloped, add_slopes, scale
 from coadjoint.elementary import Arithmetic, slopes_of
 from coadjoint.exact import Element
@@ -90,7 +90,10 @@ class Reference:
             if solve.newton is not None and reached.intersection(solve.newton.names):
                 known |= solve.newton.find(field, known, number, call, partial(_settle, call))
         implied = {solve.last: solve for solve in self._implicit_solves(function)}
+        loops = rows.of.loops
         for name, definition in definitions:
+            for symbol in field.names_in(definition) & loops.keys() - known.keys():
+                known |= loops[symbol].run_loop(symbol, value) if symbol not in known else {}
             known[name] = value(definition)
             if name in implied:
                 known |= implied[name].differentiate(known, value)
@@ -105,7 +108,8 @@ class Reference:
     @cached_property
     def _solves(self) -> list[ImplicitSolve]:
         """All solves, with their factors."""
-        return [ImplicitSolve.of(self.equations, each) for each in self.equations.exact.solves]
+        solves = (each for each in self.equations.exact.solves if not each.is_loop)
+        return [ImplicitSolve.of(self.equations, each) for each in solves]
 
     def _slopes(
         self, function: str, inputs: Mapping[str, Value], number: Number[Value], call: Apply[Value]
@@ -128,9 +132,9 @@ class Reference:
         return [rate.slopes.get(j, zero) for rate in rates for j in range(columns)]
 
 
-def _settle(call: Apply[Value], _step: int, _place: int, value: Value) -> Value:
+def _settle(call: Apply[Value], step: int, _place: int, value: Value) -> Value:
     """A value that is taken as it is, however it came about."""
-    return call(SETTLE, value)
+    return call(SETTLE if step < STEPS else SETTLE_LAST, value)
 
 
 def _apply(
@@ -142,7 +146,7 @@ def _apply(
     """``f(u)`` with the slopes ``f'(u) u'``."""
     values = tuple(argument.value for argument in arguments)
     value = call(function, *values)
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return Sloped(value, {})
     slopes = slopes_of(function, values, value, Arithmetic(number=number, call=call))
     parts = (scale(each.slopes, slope) for each, slope in zip(arguments, slopes, strict=True))

@@ -17,6 +17,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from coadjoint.algebra.matrices import SparseMatrix, size
+from coadjoint.algebra.planes import find_planes
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.records import Exact
 from coadjoint.derive.setting import Setting, once, vector_names
@@ -41,7 +42,7 @@ def sandwich(equations: Equations) -> Equations | None:
         return None
     if setting.momenta != setting.state or times_vector(equations) is None:
         return None
-    matrices = algebra.matrices
+    matrices = algebra.matrices or find_planes(algebra)
     if len(matrices) != len(setting.state) or not _are_orthogonal(matrices):
         return None
     if not _is_commutator(equations, matrices):

@@ -123,6 +123,21 @@ class Setting:
         return tuple(weights) or (Fraction(1),) * len(self.momenta)
 
     @cached_property
+    def conjugates(self) -> tuple[tuple[str, str, Fraction], ...]:
+        """Momenta with the velocities that they are of, where these are named: v, p, ``{q, p}``.
+
+        Those along an algebra come first, and then those of coordinates next to it.
+        """
+        pairs = zip(self.velocities, self.momenta, self.weights, strict=False)
+        named, spec = list(pairs) if self.momenta else [], self.spec
+        for q in spec.having_role("coordinate") if spec.algebra is not None else ():
+            v, p = (spec.partner(role, q.name) for role in ("velocity", "momentum"))
+            if v is not None and p is not None:
+                weights = pairing_weights(len(p.components), p.form)
+                named += zip(v.components, p.components, weights, strict=True)
+        return tuple(named)
+
+    @cached_property
     def advected(self) -> tuple[Variable, ...]:
         """The advected quantities."""
         return self.spec.having_role("advected")
@@ -248,10 +263,19 @@ class Setting:
             raise fault(self, formula, str(error), formula.text) from error
 
     def in_state_order(
-        self, momentum: Sequence[Element], advected: Mapping[str, Sequence[Element]]
+        self,
+        momentum: Sequence[Element],
+        advected: Mapping[str, Sequence[Element]],
+        others: Mapping[str, Element] = MappingProxyType({}),
     ) -> tuple[Element, ...]:
-        """Values along the algebra's basis and per advected quantity, in the order of the state."""
-        by_name = dict(zip(self.momenta, momentum, strict=True))
+        """Values along the algebra's basis and per advected quantity, in the order of the state.
+
+        Args:
+            momentum: Along the basis.
+            advected: By the names of advected quantities.
+            others: By component: coordinates next to the algebra, and their momenta.
+        """
+        by_name = dict(zip(self.momenta, momentum, strict=True)) | dict(others)
         for variable in self.advected:
             by_name |= dict(zip(variable.components, advected[variable.name], strict=True))
         return self.field.vector(by_name[name] for name in self.state)

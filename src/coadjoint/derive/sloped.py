@@ -6,9 +6,12 @@ Read next: `coadjoint.derive.reference`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from operator import add, mul, truediv
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
+
+from coadjoint.exact.factored import factor as factor_matrix
+from coadjoint.exact.factored import place_of, rows_of
 
 Value = TypeVar("Value")
 
@@ -56,6 +59,48 @@ class Sloped(Generic[Value]):
         return Sloped(
             negative(self.value), {j: negative(slope) for j, slope in self.slopes.items()}
         )
+
+    @staticmethod
+    def factor(entries: Sequence[Sloped[Any]]) -> SlopedEquations:
+        """What solves symmetric equations; see `coadjoint.exact.factored`."""
+        return SlopedEquations(entries)
+
+
+class SlopedEquations:
+    """Symmetric equations ``A x = b``, whose solution has slopes ``A x' = b' - A' x``.
+
+    Args:
+        entries: Of A, on and below the diagonal, row by row.
+    """
+
+    def __init__(self, entries: Sequence[Sloped[Any]]) -> None:
+        self._entries, self._size = entries, rows_of(len(entries))
+        self._values = factor_matrix([each.value for each in entries])
+
+    def __getitem__(self, place: int) -> Sloped[Any]:
+        """A pivot, without its slopes: no function whose slopes are asked for reads one."""
+        return Sloped(self._values[place], {})
+
+    def solve(self, known: Sequence[Sloped[Any]]) -> list[Sloped[Any]]:
+        """The x of ``A x = b``."""
+        x = self._values.solve([each.value for each in known])
+        rows = [dict(each.slopes) for each in known]
+        for i in range(self._size):
+            for j in range(self._size):
+                entry = self._entries[place_of(max(i, j), min(i, j))]
+                rows[i] = add_slopes(rows[i], scale(entry.slopes, negative(x[j])))
+        slopes = list[dict[int, Any]]({} for _ in x)
+        zero = _zero(x[0])
+        for variable in sorted(set[int]().union(*rows)):
+            column = self._values.solve([row.get(variable, zero) for row in rows])
+            for slope, value in zip(slopes, column, strict=True):
+                slope[variable] = value
+        return list(map(Sloped, x, slopes))
+
+
+def _zero(value: Any) -> Any:
+    """0 in the arithmetic of a value, in which ``x - x`` may have an error."""
+    return value.zero() if hasattr(value, "zero") else add(value, negative(value))
 
 
 def negative(value: Value) -> Value:

@@ -10,7 +10,7 @@ Read next: `coadjoint.poisson.momentum_maps`, then `coadjoint.prove.symmetries`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from coadjoint.derive.equations import Equations
@@ -41,6 +41,37 @@ def momentum_maps(setting: Setting, energy: Element | None) -> dict[str, tuple[E
             form of a matrix.
     """
     return {each.name: _values(setting, each, energy) for each in setting.spec.symmetries}
+
+
+def share_of(setting: Setting, symmetry: Symmetry, names: Iterable[str]) -> tuple[Element, ...]:
+    """The share that some components of the state have in J: those of one of equal members.
+
+    Args:
+        setting: Of the state.
+        symmetry: An action that moves each member by itself, and whose J is not declared.
+        names: Components of the state.
+
+    Raises:
+        DerivationError: As `momentum_maps`.
+    """
+    elements, own = _elements(setting, symmetry), frozenset(names)
+    moved = ((x, _moves(setting, symmetry, x)) for x in elements)
+    shares = ({n: value for n, value in moves.items() if n in own} for _, moves in moved)
+    return tuple(_lift(setting, symmetry, moves) for moves in shares)
+
+
+def evaluate_map(
+    setting: Setting, symmetry: Symmetry, evaluate: Callable[[Mapping[str, Value]], Element]
+) -> tuple[Element, ...]:
+    """A part of a declared J along each basis vector.
+
+    Args:
+        setting: Of the state.
+        symmetry: With a declared J.
+        evaluate: The value of the part where the names of the element have these values.
+    """
+    elements = _elements(setting, symmetry)
+    return tuple(evaluate(_name_element(symmetry, element)) for element in elements)
 
 
 def in_formulas(symmetry: Symmetry, components: Sequence[Element]) -> Value:
@@ -215,7 +246,11 @@ def _value(setting: Setting, symmetry: Symmetry, element: Value) -> Element:
     """J of one element, without the part of time."""
     if symmetry.map is not None:
         return _evaluate_at(setting, symmetry.map, symmetry, element)
-    moves = _moves(setting, symmetry, element)
+    return _lift(setting, symmetry, _moves(setting, symmetry, element))
+
+
+def _lift(setting: Setting, symmetry: Symmetry, moves: Moves) -> Element:
+    """The momentum map of moves of positions, or of the state."""
     covector = _covector(setting)
     if moves.keys() <= covector.keys():
         return setting.field.sum(covector[q] * moved for q, moved in moves.items())

@@ -22,6 +22,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import momenta_along
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution
+from coadjoint.derive.mechanics.external import metric
 from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.mechanics.solver import (
     Solve,
@@ -35,6 +36,19 @@ from coadjoint.exact import Element, Field
 from coadjoint.spec import Spec
 
 Tensor = Sequence[Sequence[Element]]
+_BOUND: Final = (
+    "constraints between velocities are kept by multipliers, which do no work where these hold "
+    "alone, and not at the middle of a chord; multipliers for a discrete gradient are not generated"
+)
+_COUPLED: Final = (
+    "its state has velocities that are solved for, whose momenta have a tensor: that of the "
+    "velocities is not in closed form"
+)
+_METRIPLECTIC: Final = (
+    "of a metriplectic motion G dh = 0 holds for the derivative of the energy, and not for a "
+    "discrete gradient, unless the energy is quadratic: then methods of Gauss keep it, and a "
+    "quadratic entropy grows"
+)
 #: Terms of the derivatives of momenta by positions beyond which a product is not written out:
 #: rolling ellipsoids have 60, and Veselova's problem on so(4) has 1900.
 TERMS: Final = 1000
@@ -62,31 +76,55 @@ def times_vector(equations: Equations) -> Equations | None:
     """``J(x) v`` in place of the rates; None where there is no such J in closed form.
 
     It is for motions by a route with an energy and a bracket, whose momenta do not move at a
-    fixed state, and to which no relaxation is added. The certificate proves it of each.
+    fixed state. The certificate proves it of each. A double bracket belongs to it: J is
+    ``P + P G P``.
     """
+    found = find_product(equations)
+    return None if isinstance(found, str) else found
+
+
+@once
+def find_product(equations: Equations) -> Equations | str:
+    """The same, or why there is none, as a clause."""
     setting, exact, spec = equations.setting, equations.exact, equations.spec
-    tensor = exact.poisson_tensor
-    if exact.energy is None or tensor is None or spec.relaxation or equations.chart is not None:
-        return None
+    tensor, relaxation = exact.poisson_tensor, spec.relaxation
+    if relaxation is not None and relaxation.S is not None:
+        return _METRIPLECTIC
+    if spec.constraints and (equations.distribution is None or equations.distribution.kept):
+        return _BOUND
+    if exact.energy is None or tensor is None:
+        return "it expects an energy, and a Poisson or almost-Poisson tensor"
+    if equations.chart is not None or (relaxation and equations.distribution is not None):
+        return _COUPLED
     named = {*setting.state, *setting.parameters, *setting.driving}
     closed = [[equations.close(entry) for entry in row] for row in tensor]
-    if any(setting.field.reach(entry) - named for row in closed for entry in row):
-        return None
+    G = [] if relaxation is None else [list(map(equations.close, r)) for r in metric(setting)]
+    if any(setting.field.reach(entry) - named for row in (*closed, *G) for entry in row):
+        return _COUPLED
     if equations.distribution is not None:
         return _over_distribution(equations, tensor)
-    if spec.constraints:
-        return None
     vector = vector_names(len(setting.state))
     if {*vector} <= {*setting.field.names}:
         own = Exact(
             definitions=(),
-            rates=_apply(setting.field, closed, setting.elements(vector)),
+            rates=_turn(setting.field, closed, G, setting.elements(vector)),
             energy=None,
             emitted=(),
             poisson_tensor=None,
         )
         return replace(equations, exact=own, steps=())
-    return _in_wider_field(equations, closed)
+    return _in_wider_field(equations, closed, G)
+
+
+def _turn(
+    field: Field, tensor: Tensor, G: Tensor, vector: Sequence[Element]
+) -> tuple[Element, ...]:
+    """``P v``, and ``P G P v`` in addition if there is a G."""
+    turned = _apply(field, tensor, vector)
+    if not G:
+        return turned
+    lost = _apply(field, tensor, _apply(field, G, turned))
+    return tuple(a + b for a, b in zip(turned, lost, strict=True))
 
 
 def _apply(field: Field, tensor: Tensor, vector: Sequence[Element]) -> tuple[Element, ...]:
@@ -96,18 +134,20 @@ def _apply(field: Field, tensor: Tensor, vector: Sequence[Element]) -> tuple[Ele
     )
 
 
-def _in_wider_field(equations: Equations, tensor: Tensor) -> Equations | None:
-    """The same in a field of its own; None of a tensor with functions, which stay in theirs."""
+def _in_wider_field(equations: Equations, tensor: Tensor, G: Tensor) -> Equations | str:
+    """The same in a field of its own; not of a tensor with functions, which stay in theirs."""
     setting, field = equations.setting, equations.setting.field
-    if not all(field.is_function_free(entry) for row in tensor for entry in row):
-        return None
+    if not all(field.is_function_free(entry) for row in (*tensor, *G) for entry in row):
+        return "its tensor calls functions"
     vector = vector_names(len(setting.state))
     named = (*setting.state, *vector, *setting.parameters, *setting.driving)
     wide = Field(named, 0, field.positive & {*named})
-    adopted = [[wide.adopt(entry) for entry in row] for row in tensor]
+    adopted, lost = (
+        [[wide.adopt(entry) for entry in row] for row in matrix] for matrix in (tensor, G)
+    )
     own = Exact(
         definitions=(),
-        rates=_apply(wide, adopted, [wide[name] for name in vector]),
+        rates=_turn(wide, adopted, lost, [wide[name] for name in vector]),
         energy=None,
         emitted=(),
         poisson_tensor=None,
@@ -117,24 +157,30 @@ def _in_wider_field(equations: Equations, tensor: Tensor) -> Equations | None:
     )
 
 
-def _over_distribution(equations: Equations, tensor: Tensor) -> Equations | None:
+def _over_distribution(equations: Equations, tensor: Tensor) -> Equations | str:
     """The same where velocities along a distribution are the state, in place of their momenta."""
     setting, of = equations.setting, equations.distribution
     assert of is not None, equations.route
     field, state = setting.field, setting.state
-    if of.kept or setting.driving or _number("eta", 1)[0] not in field.names:
-        return None
+    if setting.driving:
+        return "inputs or the time move its momenta"
+    if _number("eta", 1)[0] not in field.names:
+        return _COUPLED
     along = map(equations.close, momenta_along(setting, list(zip(*of.B, strict=True))))
     momenta = dict(zip(of.independent, along, strict=True))
     if any(field.reach(each) - {*state, *setting.parameters} for each in momenta.values()):
-        return None
+        return _COUPLED
     positions = [name for name in state if name not in momenta]
     slopes = {
         name: dict(zip(positions, field.gradient(each, positions), strict=True))
         for name, each in momenta.items()
     }
-    if sum(len(field.terms(x)) for each in slopes.values() for x in each.values()) > TERMS:
-        return None
+    count = sum(len(field.terms(x)) for each in slopes.values() for x in each.values())
+    if count > TERMS:
+        return (
+            f"derivatives of its momenta by positions have {count} terms, and products of the "
+            f"tensor are written out up to {TERMS}: a limit on cost, not on the method"
+        )
     mass = _Mass(equations, of, tensor)
     vector = dict(zip(state, setting.elements(vector_names(len(state))), strict=True))
     eta = mass.divide("eta", vector)

@@ -9,7 +9,7 @@ Read next: `coadjoint.derive.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -19,7 +19,7 @@ import sympy
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import interpret
-from coadjoint.exact import Field
+from coadjoint.exact import Element, Field
 from coadjoint.exact.field import SYMPY_FUNCTIONS
 from coadjoint.spec.core import tree
 
@@ -68,12 +68,17 @@ class Written:
         setting = self.equations.setting
         return {name: _write(setting.field, value) for name, value in setting.values.items()}
 
-    def value(self, node: tree.Node) -> Any:
-        """The value of a tree, of any shape; of one that asks for signs none, ``()``."""
+    def value(self, node: tree.Node, known: Mapping[str, Any] | None = None) -> Any:
+        """The value of a tree, of any shape; of one that asks for signs none, ``()``.
+
+        Args:
+            node: The tree.
+            known: Values of further names.
+        """
         called = (part.function for part in tree.walk(node) if isinstance(part, tree.Call))
         if not _SIGNED.isdisjoint(called):
             return ()
-        return interpret(node, self._values, cast("Field", _AsWritten()))
+        return interpret(node, {**self._values, **(known or {})}, cast("Field", _AsWritten()))
 
     @cached_property
     def _energy(self) -> sympy.Expr | None:
@@ -81,10 +86,28 @@ class Written:
         energy = self.equations.spec.hamiltonian
         return None if energy is None else self.value(energy.tree) or None
 
+    @cached_property
+    def _velocities(self) -> dict[sympy.Symbol, sympy.Expr]:
+        """What velocities are in the state, by their symbols."""
+        field, known = self.equations.setting.field, dict[sympy.Symbol, sympy.Expr]()
+        for name, value in self.equations.exact.definitions:
+            known[sympy.Symbol(name)] = field.to_sympy(value).xreplace(known)
+        return known
+
+    def with_velocities(self, element: Element) -> sympy.Expr:
+        """An element in which velocities are put as they are defined, and not multiplied out."""
+        return self.equations.setting.field.to_sympy(element).xreplace(self._velocities)
+
     def rates(self, names: Iterable[str]) -> list[sympy.Expr]:
-        """The rates of components of the state by the bracket; none where there is none."""
+        """The rates of components of the state by the bracket; none where there is none.
+
+        Without a Hamiltonian they are those of the route, in which velocities have names.
+        """
         equations = self.equations
         tensor, state = equations.exact.poisson_tensor, equations.variables
+        if equations.spec.hamiltonian is None:
+            known = dict(zip(state, equations.exact.rates, strict=True))
+            return [self.with_velocities(known[name]) for name in names]
         if self._energy is None or tensor is None:
             return []
         field, rates = equations.setting.field, list[sympy.Expr]()

@@ -96,12 +96,18 @@ class Field(Rationals):
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
         self._slopes: dict[str, list[Element]] = {}
+        self._derivatives: dict[tuple[str, str], Element] = {}
+        #: The order in which functions were adjoined, and what they reach.
+        self._turns: dict[str, int] = {}
+        self._reached: dict[str, frozenset[str]] = {}
+        self._rests: dict[str, frozenset[str]] = {}
 
     def assume(self, conditions: Iterable[Condition]) -> None:
         """Assume further conditions."""
         self.region = replace(self.region, conditions=(*self.region.conditions, *conditions))
         self.relations.clear()
         self._slopes.clear()
+        self._derivatives.clear()
 
     def _take_numbers(self, known: Numbers, own: Sequence[str], p: PolyElement) -> Element:
         """A polynomial over algebraic numbers, each written by functions of this field."""
@@ -177,6 +183,7 @@ class Field(Rationals):
 
     def _adjoin(self, function: str, arguments: tuple[Element, ...], partner: str = "") -> Element:
         generator = self._free.pop(0)
+        self._turns[generator] = len(self._turns)
         self.adjoined[generator] = Adjoined(generator, function, arguments, partner)
         if all(map(self._is_plain, arguments)):
             self._called[function, arguments] = generator
@@ -322,15 +329,22 @@ class Field(Rationals):
     def derivative(self, element: Element, name: str) -> Element:
         """Partial derivative by a symbol, through adjoined functions by the chain rule."""
         here = name in self.names_in(element)
-        result = element.diff(self._position[name]) if here else self.zero
+        parts = [element.diff(self._position[name])] if here else []
         for generator in self._calls_in(element):
-            result += self.slope(element, generator) * self._derivative_of(
-                self.adjoined[generator], name
-            )
-        return result
+            inner = self._derivative_of(self.adjoined[generator], name)
+            if inner != 0:  # most functions are of other symbols where there are many
+                parts.append(self.slope(element, generator) * inner)
+        return self.sum(parts)
 
     def _derivative_of(self, known: Adjoined, name: str) -> Element:
-        """Derivative of an adjoined function by a symbol."""
+        """Derivative of an adjoined function by a symbol, remembered."""
+        place = (known.generator, name)
+        if place not in self._derivatives:
+            self._derivatives[place] = self._differentiate(known, name)
+        return self._derivatives[place]
+
+    def _differentiate(self, known: Adjoined, name: str) -> Element:
+        """The same by the chain rule."""
         inner = [self.derivative(argument, name) for argument in known.arguments]
         if all(each == 0 for each in inner):
             return self.zero
@@ -381,8 +395,8 @@ class Field(Rationals):
 
     def _calls_in(self, element: Element) -> list[str]:
         """Adjoined generators that occur, in the order in which they were adjoined."""
-        present = self.names_in(element) if self.adjoined else frozenset()
-        return [generator for generator in self.adjoined if generator in present]
+        present = self.names_in(element) & self.adjoined.keys() if self.adjoined else ()
+        return sorted(present, key=self._turns.__getitem__)
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
         """The element with symbols replaced by elements; symbols not named stay."""
@@ -397,11 +411,29 @@ class Field(Rationals):
         return self._replace(element, new)
 
     def reach(self, element: Element) -> frozenset[str]:
-        """Symbols that occur in an element or in the arguments of its functions."""
-        names = self.names_in(element) - self.adjoined.keys()
-        for generator in self._calls_in(element):
-            names = names.union(*map(self.reach, self.adjoined[generator].arguments))
-        return names
+        """Symbols that occur in an element or in the arguments of its functions.
+
+        With a symbol come those on which it rests: see `rest`.
+        """
+        names = self.names_in(element)
+        called = names & self.adjoined.keys()
+        if called:
+            names = (names - called).union(*map(self._reach_of, called))
+        return names.union(*(self._rests[each] for each in names & self._rests.keys()))
+
+    def _reach_of(self, generator: str) -> frozenset[str]:
+        """The same of the arguments of a function, remembered."""
+        if generator not in self._reached:
+            arguments = self.adjoined[generator].arguments
+            self._reached[generator] = frozenset[str]().union(*map(self.reach, arguments))
+        return self._reached[generator]
+
+    def rest(self, name: str, elements: Iterable[Element]) -> Element:
+        """A symbol for what a kernel computes of some elements by a loop, without a formula."""
+        known = self._rests.get(name, frozenset())
+        self._rests[name] = known.union(*map(self.reach, elements))
+        self._reached.clear()
+        return self[name]
 
     def write_in_sines(self, p: PolyElement) -> PolyElement:
         """A polynomial with even powers of cosines written by sines: ``1 - cos^2`` as ``sin^2``."""

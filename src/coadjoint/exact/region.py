@@ -8,9 +8,10 @@ Read next: `coadjoint.prove.points`, which draws points in it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any, Protocol
 
 from coadjoint.exact.element import Element
 
@@ -28,6 +29,17 @@ class Condition:
     strict: bool
 
 
+class Loop(Protocol):
+    """Equations that have no written solution: see `coadjoint.exact.factored`."""
+
+    @property
+    def sides(self) -> Sequence[Element]:
+        """Both sides."""
+
+    def run_loop(self, symbol: str, value: Callable[[Element], Any]) -> dict[str, Any]:
+        """Values of a symbol and others, given what takes elements into an arithmetic."""
+
+
 @dataclass(frozen=True)
 class Region:
     """Where a system is defined and its motion has values.
@@ -41,6 +53,7 @@ class Region:
             normal forms know nothing of it.
         definitions: Values of further names, each in terms of symbols and of names before it.
         momenta: Momenta in terms of velocities, for functions that are written in velocities.
+        loops: What gives symbols that definitions name and that have no formula.
     """
 
     parameters: frozenset[str] = frozenset()
@@ -49,3 +62,4 @@ class Region:
     bounds: tuple[Condition, ...] = ()
     definitions: Mapping[str, Element] = field(default_factory=dict)
     momenta: Mapping[str, Element] = field(default_factory=dict)
+    loops: Mapping[str, Loop] = field(default_factory=dict)

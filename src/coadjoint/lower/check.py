@@ -14,14 +14,14 @@ from typing import Any
 
 from coadjoint.derive import Equations
 from coadjoint.derive.formulas import rows_of
-from coadjoint.derive.mechanics.iteration import SETTLE
+from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS, TABLE_ENTRIES
-from coadjoint.lower.program import LEVELS, ZERO, Output, Program, run
+from coadjoint.lower.program import LEVELS, ZERO, Output, Program, count_loop, run
 from coadjoint.lower.vanishing import find_vanishing
 
 #: Points modulo a prime at which Programs without a closed form are compared.
@@ -70,6 +70,8 @@ def check_size(equations: Equations, program: Program) -> None:
         LimitError: More operations or statements than docs/limits.md allows.
     """
     operations = sum(sum(program.operation_counts(level).values()) for level in LEVELS)
+    loops = (count_loop(statement.value) for statement in program.statements)
+    operations -= sum(sum(counts.values()) for counts in loops)
     # Outputs that are zero everywhere are set by one loop, and those of a table by another one.
     results = sum(output.value != ZERO for output in program.outputs)
     statements = len(program.statements) + (0 if program.table else results)
@@ -162,6 +164,6 @@ def call_residue(function: str, *arguments: Residue, prime: int) -> Residue:
 
     Lowering knows no relation between values of functions, so it may not need any.
     """
-    if function == SETTLE:
+    if function in (SETTLE, SETTLE_LAST):
         return arguments[0]
     return draw(f"{function} {' '.join(str(each.value) for each in arguments)}", prime)

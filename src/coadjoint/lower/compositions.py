@@ -1,7 +1,8 @@
-"""Compositions: how much of each flow stands where in a step of a method.
+"""Compositions: how much of each flow, or of each step, stands where in a step of a method.
 
 Comes in: a number of parts and an order. Goes out: a `Schedule`, pairs of a flow and the part of
-the step that it takes, from the first that acts to the last one.
+the step that it takes, from the first that acts to the last one; and lengths of the steps of a
+symmetric method of which one of a higher order is composed.
 
 Those of Blanes and Moan are published with 15 digits; here they have 50, by Newton on the
 conditions of order, and the tests hold them to these, in the free algebra. In doubles the
@@ -12,28 +13,33 @@ Read next: `coadjoint.lower.flows`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from decimal import Context, Decimal, localcontext
+from fractions import Fraction
 from functools import cache
-from typing import Any, Final
-
-import mpmath
+from typing import Final
 
 #: Flows, by their places, and parts of a step, in the order in which they act.
 Schedule = tuple[tuple[int, float], ...]
-Coefficients = tuple[Any, ...]
-DIGITS: Final = 50
+Coefficients = tuple[Decimal, ...]
+#: Methods that are compositions of flows, with their orders.
+SPLITTINGS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6}
+#: Methods of a single map of their own names.
+SINGLE: Final = ("kahan", "exact_body")
+#: The arithmetic of coefficients.
+DIGITS: Final = Context(prec=60)
 
 
-def _mirror(outer: Sequence[Any]) -> Coefficients:
+def _mirror(outer: Sequence[Decimal]) -> Coefficients:
     """Symmetric coefficients with the sum 1."""
-    return (*outer, 1 - 2 * mpmath.fsum(outer), *reversed(outer))
+    return (*outer, 1 - 2 * sum(outer, Decimal(0)), *reversed(outer))
 
 
 def _complete(a: Sequence[str], b: Sequence[str]) -> tuple[Coefficients, Coefficients]:
     """Coefficients of two flows from the outer ones of each."""
-    with mpmath.workdps(DIGITS):
-        one, two = list(map(mpmath.mpf, a)), list(map(mpmath.mpf, b))
-        last = mpmath.mpf(1) / 2 - mpmath.fsum(two)
+    with localcontext(DIGITS):
+        one, two = list(map(Decimal, a)), list(map(Decimal, b))
+        last = Decimal("0.5") - sum(two, Decimal(0))
         return _mirror(one), (*two, last, last, *reversed(two))
 
 
@@ -74,8 +80,8 @@ def blanes_moan6() -> tuple[Coefficients, Coefficients]:
 
 def strang() -> tuple[Coefficients, Coefficients]:
     """The symmetric product of two flows, of order 2. G. Strang, SIAM J. Numer. Anal. 5 (1968)."""
-    half = mpmath.mpf(1) / 2
-    return (half, half), (mpmath.mpf(1),)
+    half = Decimal("0.5")
+    return (half, half), (Decimal(1),)
 
 
 #: Parts of two flows in turn, by the order of their product.
@@ -89,10 +95,11 @@ def find_sweeps(a: Coefficients, b: Coefficients) -> Coefficients:
     ``exp(c A) exp(c B)`` and ``exp(c B) exp(c A)``. It has the same order for sweeps through any
     number of flows: R. I. McLachlan, SIAM Journal on Scientific Computing 16 (1995) 151.
     """
-    sweeps: list[Any] = []
-    for n in range(len(a) + len(b) - 1):
-        whole = (a, b)[n % 2][n // 2]
-        sweeps.append(whole - sweeps[-1] if sweeps else whole)
+    sweeps: list[Decimal] = []
+    with localcontext(DIGITS):
+        for n in range(len(a) + len(b) - 1):
+            whole = (a, b)[n % 2][n // 2]
+            sweeps.append(whole - sweeps[-1] if sweeps else whole)
     return tuple(sweeps)
 
 
@@ -103,16 +110,53 @@ def schedule(parts: int, order: int) -> Schedule:
     >>> schedule(3, 2)
     ((0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5))
     """
-    with mpmath.workdps(DIGITS):
+    with localcontext(DIGITS):
         sweeps = find_sweeps(*PAIRS[order]())
         forth = range(parts)
         flows = [(n, c) for k, c in enumerate(sweeps) for n in (forth, forth[::-1])[k % 2]]
         return _round(_merge(flows))
 
 
-def _merge(flows: Sequence[tuple[int, Any]]) -> list[tuple[int, Any]]:
+def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
+    """The methods of a system: which map acts for which part of a step, in order.
+
+    Args:
+        maps: The names of its maps.
+    """
+    names = tuple(maps)
+    flows = [name for name in names if name.startswith("flow")]
+    found: dict[str, tuple[tuple[str, float], ...]] = {}
+    for method, order in SPLITTINGS.items() if flows else ():
+        own: Schedule = schedule(len(flows), order) if len(flows) > 1 else ((0, 1.0),)
+        found[method] = tuple((flows[part], time) for part, time in own)
+    return found | {name: ((name, 1.0),) for name in SINGLE if name in names}
+
+
+def suzuki() -> Coefficients:
+    """Order 4 from five steps. M. Suzuki, Physics Letters A 146 (1990) 319."""
+    with localcontext(DIGITS):
+        outer = 1 / (4 - Decimal(4) ** (Decimal(1) / 3))
+        return _mirror((outer, outer))
+
+
+def kahan_li() -> Coefficients:
+    """Order 6 from nine. W. Kahan and R.-C. Li, Mathematics of Computation 66 (1997) 1089, s9odr6a.
+
+    As printed by Hairer, Lubich and Wanner, Geometric Numerical Integration, V.3.2.
+    """
+    outer = (
+        "0.39216144400731413928",
+        "0.33259913678935943860",
+        "-0.70624617255763935981",
+        "0.08221359629355080023",
+    )
+    with localcontext(DIGITS):
+        return _mirror(tuple(map(Decimal, outer)))
+
+
+def _merge(flows: Sequence[tuple[int, Decimal]]) -> list[tuple[int, Decimal]]:
     """Flows of one part that follow one another, as one."""
-    merged: list[tuple[int, Any]] = []
+    merged: list[tuple[int, Decimal]] = []
     for part, time in flows:
         if merged and merged[-1][0] == part:
             time = merged.pop()[1] + time
@@ -120,7 +164,7 @@ def _merge(flows: Sequence[tuple[int, Any]]) -> list[tuple[int, Any]]:
     return merged
 
 
-def _round(flows: Sequence[tuple[int, Any]]) -> Schedule:
+def _round(flows: Sequence[tuple[int, Decimal]]) -> Schedule:
     """Coefficients as doubles, symmetric, those of each part with the sum 1 to a rounding.
 
     The one in the middle is what the others leave; of a part that has none there, two are.
@@ -129,8 +173,16 @@ def _round(flows: Sequence[tuple[int, Any]]) -> Schedule:
     for part in {part for part, _ in flows}:
         places = [n for n, (own, _) in enumerate(flows) if own == part]
         middle = {places[(len(places) - 1) // 2], places[len(places) // 2]}
-        with mpmath.workdps(DIGITS):
-            rest = 1 - mpmath.fsum(rounded[n] for n in places if n not in middle)
-            for n in middle:
-                rounded[n] = float(rest / len(middle))
+        rest = 1 - sum(Fraction(rounded[n]) for n in places if n not in middle)
+        for n in middle:
+            rounded[n] = float(rest / len(middle))
     return tuple((part, time) for (part, _), time in zip(flows, rounded, strict=True))
+
+
+def _round_steps(lengths: Coefficients) -> tuple[float, ...]:
+    """Lengths of steps as doubles with the sum 1."""
+    return tuple(length for _, length in _round([(0, each) for each in lengths]))
+
+
+#: Lengths of the steps of which one of a symmetric method is composed, by its order.
+COMPOSITIONS: Final = {2: (1.0,), 4: _round_steps(suzuki()), 6: _round_steps(kahan_li())}

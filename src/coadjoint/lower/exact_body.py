@@ -1,6 +1,6 @@
 """The exact flow of Euler's top as a Program: sums, products, quotients and two roots.
 
-Comes in: Equations. Goes out: the state after a step ``_h``, or in words why there is none.
+Comes in: Equations. Goes out: what a step ``_h`` adds to the state, or in words why there is none.
 Read next: `coadjoint.derive.euler_top`, which proves the formulas.
 """
 
@@ -97,8 +97,8 @@ def lower_exact_body(equations: Equations) -> Program | str:
     )
     outputs = [
         (
-            f"{name} after {STEP}",
-            graph.add(x, multiply(graph.add(multiply(x, subtract(lost, short)), moved), under)),
+            f"rise of {name} in {STEP}",
+            multiply(graph.add(multiply(x, subtract(lost, short)), moved), under),
         )
         for name, (x, short, moved) in zip(setting.state, results, strict=True)
     ]

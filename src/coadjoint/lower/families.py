@@ -52,12 +52,14 @@ class Read:
 
     Attributes:
         name: In texts.
-        array: ``state``, ``parameters`` or ``time``.
+        array: ``state``, ``parameters``, ``inputs`` or ``time``.
         rows: Rows before it that do not depend on N.
         blocks: Rows before it for each member.
         shift: How far behind member i the member is that it belongs to; None if all members share
             it.
         of_partner: Whether it belongs to member j of a pair.
+        single: The number of the member to which it belongs, whatever i is, counted from 0 or from
+            N as -1, -2 and so on; None if it is none of these.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Read:
     blocks: int
     shift: int | None = 0
     of_partner: bool = False
+    single: int | None = None
 
 
 @dataclass(frozen=True)
@@ -110,8 +113,9 @@ class Loops:
 
     Attributes:
         name: One of `coadjoint.kernel_functions`.
-        is_periodic: Whether member N-1 is followed by member 0.
+        wraps: Whether member N-1 is followed by member 0 where neighbours are read.
         blocks: Rows of its first argument for each member.
+        rows: Further rows of it, which all members share.
         shape: Of a result that does not depend on N, else None.
         partners: Terms of the sums over partners, if there are any: of member i, then of member j.
         member: The rates of member i.
@@ -121,7 +125,7 @@ class Loops:
     """
 
     name: str
-    is_periodic: bool
+    wraps: bool
     blocks: int
     shape: tuple[int, ...] | None
     partners: Part | None = None
@@ -129,6 +133,7 @@ class Loops:
     ends: tuple[tuple[int, Part], ...] = ()
     totals: tuple[Totals, ...] = ()
     finish: Part | None = None
+    rows: int = 0
 
     @property
     def pair_sums(self) -> int:
@@ -169,6 +174,8 @@ def lower_family(family: Family) -> dict[str, Loops]:
     if family.turned:
         functions.append(lowering.of_members("constraint_residual", family.residuals))
         functions.append(lowering.of_members("projection", family.turned))
+    if family.noise:
+        functions.append(lowering.noise())
     return {each.name: each for each in functions}
 
 
@@ -199,6 +206,16 @@ class _Lowering:
             symbol: Read(name="", array="parameters", rows=len(family.shared), blocks=n)
             for n, symbol in enumerate(family.indexed)
         }
+        before = len(family.shared_inputs)
+        rows |= {
+            symbol: Read(name="", array="inputs", rows=before, blocks=n)
+            for n, symbol in enumerate(family.indexed_inputs)
+        }
+        alike, below = len(family.shared_noise), len(family.states)
+        rows |= {
+            symbol: Read(name="", array="state", rows=alike, blocks=below + n)
+            for n, symbol in enumerate(family.indexed_noise)
+        }
         #: Symbols of member i, and not of its partner or of all.
         self._own = frozenset((*rows, *family.neighbours.values()))
         naming = _Names()
@@ -208,6 +225,13 @@ class _Lowering:
         for n, symbol in enumerate(family.shared):
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="parameters", rows=n, blocks=0, shift=None)
+        for n, symbol in enumerate(family.shared_inputs):
+            name = naming.find(symbol.name)
+            self._reads[symbol] = Read(name=name, array="inputs", rows=n, blocks=0, shift=None)
+        for n, symbol in enumerate(family.shared_noise):
+            name = naming.find(symbol.name)
+            read = Read(name=name, array="state", rows=n, blocks=below, shift=None)
+            self._reads[symbol] = read
         for symbol in family.time:
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="time", rows=0, blocks=0, shift=None)
@@ -217,13 +241,17 @@ class _Lowering:
         for component, symbol in family.partners.items():
             name = naming.find(f"{component.name}_j")
             self._reads[symbol] = replace(rows[component], name=name, of_partner=True)
+        for (component, number), symbol in family.singles.items():
+            end = f"first{number or ''}" if number >= 0 else f"last{-1 - number or ''}"
+            name = naming.find(f"{component.name}_{end}")
+            self._reads[symbol] = replace(rows[component], name=name, shift=None, single=number)
         #: The vector of a derivative, which stands below the state.
+        self._moving = [
+            read for read in self._reads.values() if read.array == "state" and read.blocks < below
+        ]
         self._vector = [
-            replace(
-                read, name=naming.find(f"h_{read.name}"), blocks=read.blocks + len(family.states)
-            )
-            for read in self._reads.values()
-            if read.array == "state"
+            replace(read, name=naming.find(f"h_{read.name}"), blocks=read.blocks + below)
+            for read in self._moving
         ]
         #: The name of the other member of a pair, of each name that one of them has.
         self._others = self._pair_names()
@@ -231,6 +259,7 @@ class _Lowering:
     def _pair_names(self) -> dict[str, str]:
         """Names that change places with the members of a pair."""
         reads = (*self._reads.values(), *self._vector)
+        reads = tuple(read for read in reads if read.shift is not None)
         places = {(r.array, r.blocks, r.of_partner): r.name for r in reads if r.shift == 0}
         return {
             name: places[array, blocks, not of_partner]
@@ -257,7 +286,7 @@ class _Lowering:
         terms = [each.term for each in family.pair_sums]
         found = Loops(
             name=name,
-            is_periodic=family.index.periodic,
+            wraps=family.wraps,
             blocks=len(family.states) * (2 if along else 1),
             shape=None,
             partners=lower(terms, of_pair=True) if terms else None,
@@ -273,10 +302,25 @@ class _Lowering:
         """A function of each member alone."""
         return Loops(
             name=name,
-            is_periodic=self.family.index.periodic,
+            wraps=self.family.wraps,
             blocks=len(self.family.states),
             shape=None,
             member=self._part(name, trees, {}),
+        )
+
+    def noise(self) -> Loops:
+        """What increments of Wiener processes do to each member; they stand below the state."""
+        family = self.family
+        assert all(symbol not in family.partners for symbol in family.indexed_noise), "no pairs"
+        ends = family.noise_ends.items()
+        return Loops(
+            name="noise_vector",
+            wraps=family.wraps,
+            blocks=len(family.states) + len(family.indexed_noise),
+            shape=None,
+            member=self._part("noise_vector", family.noise, {}),
+            ends=tuple((end, self._part("noise_vector", trees, {})) for end, trees in ends),
+            rows=len(family.shared_noise),
         )
 
     def totals(self, name: str, totals: Sequence[Total], shape: tuple[int, ...]) -> Loops:
@@ -291,7 +335,7 @@ class _Lowering:
             names |= {each.symbol: f"{SUM}{len(names) + n}" for n, each in enumerate(sums)}
         return Loops(
             name=name,
-            is_periodic=self.family.index.periodic,
+            wraps=self.family.wraps,
             blocks=len(self.family.states),
             shape=shape,
             totals=tuple(
@@ -321,7 +365,8 @@ class _Lowering:
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
             of_pair: Whether both members of a pair have them: those of member j follow.
         """
-        own, shared = self.family.states, (*self.family.shared, *self.family.time)
+        family = self.family
+        own, shared = family.states, (*family.shared, *family.shared_inputs, *family.time)
         is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
         ways = (leave,) if is_long else (factor_whole, factor, leave)
         forms = ([form(tree, own, shared) for tree in trees] for form in ways)
@@ -365,9 +410,8 @@ class _Lowering:
         known: dict[int, dict[str, int]] = {
             graph.symbol(read.name): {} for read in self._reads.values()
         }
-        moving = [read.name for read in self._reads.values() if read.array == "state"]
-        for name, read in zip(moving, self._vector, strict=True):
-            known[graph.symbol(name)] = {"": graph.symbol(read.name)}
+        for one, read in zip(self._moving, self._vector, strict=True):
+            known[graph.symbol(one.name)] = {"": graph.symbol(read.name)}
         for name, slope in sums.items():
             known[graph.symbol(name)] = {"": graph.symbol(slope)}
         zero = graph.number(0)

@@ -1,4 +1,6 @@
-"""Flows as Programs: the state after a time ``_h``, which stands below it in the first argument.
+"""Flows as Programs: what a time ``_h``, below the state in the first argument, adds to a state.
+
+The sum with the state is the method's, which keeps what rounding takes of it.
 
 Comes in: a `Splitting`, or the rates of a quadratic motion. Goes out: a Program for each flow of
 the parts, held to the elements that were proved; or that of a step of Kahan's method, held to the
@@ -43,7 +45,8 @@ def _lower_flow(equations: Equations, name: str, part: Part) -> Program:
     names = tuple(part.flow.define(field))
     own = replace(equations, exact=replace(equations.exact, definitions=names, solves=()))
     lines = [
-        (f"{row} after {STEP}", value) for row, value in zip(state, part.flow.values, strict=True)
+        (f"rise of {row} in {STEP}", value - field[row])
+        for row, value in zip(state, part.flow.values, strict=True)
     ]
     program = lower_rows(own, name, lines, (*state, STEP))
     _check(equations, part, program)
@@ -68,7 +71,7 @@ def _check(equations: Equations, part: Part, program: Program) -> None:
             known[name] = field.evaluate(element, known, number, call)
         rows = zip(equations.setting.state, part.flow.values, found, strict=True)
         for row, value, one in rows:
-            if field.evaluate(value, known, number, call) != one:
+            if field.evaluate(value, known, number, call) != known[row] + one:
                 raise CrossCheckError(
                     f"{equations.spec.name}: lowering changed {program.name}, output {row}. This "
                     "is a fault of coadjoint, please report it.",

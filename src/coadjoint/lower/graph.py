@@ -14,7 +14,17 @@ from fractions import Fraction
 from functools import reduce
 
 from coadjoint.elementary import Arithmetic, slopes_of
-from coadjoint.lower.program import Call, Node, Number, Symbol, children, operation
+from coadjoint.lower.program import (
+    Call,
+    Factors,
+    Item,
+    Node,
+    Number,
+    Solution,
+    Symbol,
+    children,
+    operation,
+)
 
 
 class Graph:
@@ -126,6 +136,22 @@ class Graph:
         """``function(arguments)``."""
         return self._intern("call", arguments, function)
 
+    # -- loops --------------------------------------------------------------------------
+
+    def factors(self, entries: Sequence[int]) -> int:
+        """L and D of a symmetric matrix, given on and below the diagonal."""
+        return self._intern("factors", tuple(entries))
+
+    def solution(self, factors: int, known: Sequence[int]) -> int:
+        """The unknowns of symmetric equations."""
+        return self._intern("solution", (factors, *known))
+
+    def item(self, several: int, place: int) -> int:
+        """One of several numbers."""
+        return self._intern("item", (several,), Fraction(place))
+
+    # -- sums and products --------------------------------------------------------------
+
     def sum(self, terms: Iterable[int]) -> int:
         """Terms in pairs, pairs of pairs and so on, a term without a minus sign first.
 
@@ -163,6 +189,13 @@ class Graph:
             case Call(function=function):
                 return self.call(function, *(self.insert(each, values) for each in children(tree)))
         operands = [self.insert(child, values) for child in children(tree)]
+        match tree:
+            case Factors():
+                return self.factors(operands)
+            case Solution():
+                return self.solution(operands[0], operands[1:])
+            case Item(place=place):
+                return self.item(operands[0], place)
         return int(getattr(self, str(operation(tree)))(*operands))
 
     # -- names that change places -------------------------------------------------------

@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from coadjoint.derive import Equations
-from coadjoint.derive.mechanics.iteration import Newton, iterate_name, rate_name
+from coadjoint.derive.mechanics.iteration import Newton, iterate_name, rate_name, slope_name
 from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel, solver_names
 from coadjoint.exact import Element
 from coadjoint.lower.graph import Graph
+from coadjoint.lower.sums import Lowering
 
 
 @dataclass(frozen=True)
@@ -38,28 +39,24 @@ class Noded:
         return Noded(self.graph, self.graph.negate(self.node))
 
 
-def insert_guesses(
-    equations: Equations, graph: Graph, definitions: Iterable[tuple[str, Element]]
-) -> list[tuple[str, int]]:
-    """The guesses that definitions name, each after the steps towards it.
-
-    Args:
-        equations: Which iterations there are.
-        graph: Where nodes are made.
-        definitions: What is defined in the Program.
-    """
+def find_iterations(
+    equations: Equations, definitions: Iterable[tuple[str, Element]]
+) -> list[Newton]:
+    """The iterations for guesses that definitions name."""
     field = equations.setting.field
     reached = frozenset[str]().union(*(field.reach(value) for _, value in definitions))
-    lines = list[tuple[str, int]]()
-    for newton in equations.iterations:
-        if reached.intersection(newton.names):
-            lines += _insert(equations, graph, newton)
-    return lines
+    return [each for each in equations.iterations if reached.intersection(each.names)]
 
 
-def _insert(equations: Equations, graph: Graph, newton: Newton) -> list[tuple[str, int]]:
-    """One iteration."""
-    field, lines = equations.setting.field, list[tuple[str, int]]()
+def insert_guess(lowering: Lowering, newton: Newton) -> list[tuple[str, int]]:
+    """A guess after the steps towards it.
+
+    Args:
+        lowering: Where nodes are made; it knows what is evaluated in each step.
+        newton: The iteration.
+    """
+    field, graph, lines = lowering.field, lowering.graph, list[tuple[str, int]]()
+    curved = [lowering.node(each) for each in newton.curved]
     names = frozenset[str]().union(*map(field.reach, newton.elements)) - {*newton.names}
 
     def number(value: Fraction) -> Noded:
@@ -72,15 +69,21 @@ def _insert(equations: Equations, graph: Graph, newton: Newton) -> list[tuple[st
         lines.append((iterate_name(newton.block[place], step), value.node))
         return Noded(graph, graph.symbol(lines[-1][0]))
 
+    def exchange(values: list[Noded]) -> list[Noded]:
+        nodes = dict(zip(newton.names, (each.node for each in values), strict=True))
+        known = {graph.symbol(name): node for name, node in nodes.items()}
+        return [Noded(graph, graph.exchange(each, {}, known)) for each in curved]
+
     known = {name: Noded(graph, graph.symbol(name)) for name in names}
-    found = newton.find(field, known, number, call, settle)
+    found = newton.find(field, known, number, call, settle, exchange)
     return [*lines, *((name, value.node) for name, value in found.items())]
 
 
 def with_carried_velocities(equations: Equations) -> tuple[Equations, list[str]]:
     """Equations in which the velocities that iterations find are state, and their names.
 
-    They change as ``d2l/dxi2 xi' = d/dt (mu - dl/dxi)``, the last at fixed velocities.
+    They change as ``d2l/dxi2 xi' = d/dt (mu - dl/dxi)``, the last at fixed velocities. Where it
+    has rates of inputs, these are state, too: inputs are straight lines between their jumps.
     """
     field, exact = equations.setting.field, equations.exact
     found = [each for each in exact.solves if each.newton is not None]
@@ -102,6 +105,9 @@ def with_carried_velocities(equations: Equations) -> tuple[Equations, list[str]]
         definitions += solve_in_kernel(field, own)
         solves.append(own)
     rates = [field[rate_name(place)] for each in found for place in each.block]
+    reached = frozenset[str]().union(*(field.reach(value) for _, value in definitions))
+    turning = sorted(reached.intersection(_input_slopes(equations)))
+    names, rates = [*names, *turning], [*rates, *(field.zero for _ in turning)]
     carried = replace(
         exact, definitions=tuple(definitions), rates=(*exact.rates, *rates), solves=tuple(solves)
     )
@@ -109,8 +115,17 @@ def with_carried_velocities(equations: Equations) -> tuple[Equations, list[str]]
 
 
 def _rate(equations: Equations, element: Element) -> Element:
-    """The rate of a function of the state and the time, velocities being constant."""
+    """The rate of a function of state, inputs and time, velocities being constant."""
     field, state = equations.setting.field, equations.setting.state
     slopes = zip(field.gradient(element, state), equations.exact.rates, strict=True)
     explicit = field.gradient(element, equations.setting.time)
-    return field.sum([*(slope * rate for slope, rate in slopes if slope != 0), *explicit])
+    inputs = _input_slopes(equations)
+    driven = zip(field.gradient(element, [*inputs.values()]), inputs, strict=True)
+    moving = [slope * rate for slope, rate in slopes if slope != 0]
+    moving += [slope * field[name] for slope, name in driven if slope != 0]
+    return field.sum([*moving, *explicit])
+
+
+def _input_slopes(equations: Equations) -> dict[str, str]:
+    """Components of the inputs by the names of their rates."""
+    return {slope_name(place): name for place, name in enumerate(equations.setting.inputs)}

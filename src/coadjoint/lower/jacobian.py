@@ -59,9 +59,12 @@ def residual_slopes(equations: Equations, variables: Sequence[str]) -> list[Resi
 
 
 def factors_of_solves(equations: Equations) -> list[dict[tuple[int, int], Element]]:
-    """L, U and one over D of every solve, by row and column."""
+    """L, U and one over D of every solve, by row and column; none of one that is a loop."""
     field, definitions = equations.setting.field, dict(equations.exact.definitions)
-    return [factors(field, solve, definitions) for solve in equations.exact.solves]
+    return [
+        {} if solve.is_loop else factors(field, solve, definitions)
+        for solve in equations.exact.solves
+    ]
 
 
 def jacobian(
@@ -113,7 +116,10 @@ def jacobian(
         own = [rows.get(first + k, {}) for k in range(len(solve.names))]
         right = [_differentiate_through(graph, row, slopes, columns) for row in own]
         own_factors = {place: next(factors_of) for place in places}
-        solved |= _solve_slopes(graph, solve, columns, right, own_factors)
+        if solve.is_loop:
+            solved |= _solve_by_loop(graph, solve, columns, right, definitions)
+        else:
+            solved |= _solve_slopes(graph, solve, columns, right, own_factors)
         first += len(solve.names)
     outputs = []
     for output, value in zip(rhs.outputs, values[:n], strict=False):
@@ -168,6 +174,27 @@ def _insert_definitions(
         known = definitions if statement.name in defined else temporaries
         known[statement.name] = graph.insert(statement.value, temporaries)
     return definitions, [graph.insert(output.value, temporaries) for output in rhs.outputs]
+
+
+def _solve_by_loop(
+    graph: Graph,
+    solve: Solve,
+    variables: Sequence[str],
+    residuals: Sequence[Sequence[int]],
+    definitions: Mapping[str, int],
+) -> dict[str, Slopes]:
+    """``x' = A^-1 r`` by the loop that gave x; see `_solve_slopes`."""
+    slopes: dict[str, Slopes] = {name: {} for name in solve.names}
+    for column, component in enumerate(variables):
+        right = [row[column] for row in residuals]
+        if all(map(graph.is_zero, right)):
+            continue
+        unknown = next(definitions[name] for name in solve.names if name in definitions)
+        factors = graph.operands[graph.operands[unknown][0]][0]
+        solution = graph.solution(factors, right)
+        for place, name in enumerate(solve.names):
+            slopes[name][component] = graph.item(solution, place)
+    return slopes
 
 
 def _solve_slopes(

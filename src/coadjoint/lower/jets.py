@@ -13,10 +13,12 @@ Derivatives, 2008, ch. 13)::
     function  f' = p a'      f[k] = sum_{m=1..k} m a[m] p[k-m] / k
     function  d f' = a'      f[k] = (a[k] - sum_{m=1..k-1} m f[m] d[k-m] / k) / d[0]
     atan2     d f' = x y' - y x'
+    solve     A x = b        A[0] x[k] = b[k] - sum_{m=1..k} A[m] x[k-m]
 
 The table of functions gives p, as ``f`` of ``exp`` and ``cos(a)`` of ``sin``, or d, as ``a`` of
-``log`` and ``sqrt(1 - a*a)`` of ``asin``. The coefficients of the state are the rates,
-``x[k+1] = rate[k] / (k + 1)``. What depends on parameters alone is its own order 0.
+``log`` and ``sqrt(1 - a*a)`` of ``asin``. Equations that a loop solves are factored at order 0
+alone. The coefficients of the state are the rates, ``x[k+1] = rate[k] / (k + 1)``. What depends on
+parameters alone is its own order 0.
 Read next: `coadjoint.render.solvers`.
 """
 
@@ -26,7 +28,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.motion import Function, Meaning, Plan, Quotient, find_plan
+from coadjoint.exact.factored import place_of, rows_of
+from coadjoint.lower.motion import (
+    Coupled,
+    Function,
+    Meaning,
+    Plan,
+    Quotient,
+    Unknown,
+    find_plan,
+)
 from coadjoint.lower.polynomials import (
     Constant,
     Polynomial,
@@ -40,10 +51,13 @@ from coadjoint.lower.program import (
     ZERO,
     Call,
     Divide,
+    Factors,
+    Item,
     Multiply,
     Node,
     Number,
     Program,
+    Solution,
     Statement,
     Symbol,
     walk,
@@ -64,6 +78,8 @@ class Cell:
         factors: Of a function other than a root, by argument, what multiplies its rate in the rate
             of the function, and whether with a minus: a name, or "" for one.
         divisor: What the sum of these is divided by: a name, or "".
+        entries: Of a solution, the matrix on and below the diagonal, in names of cells.
+        tails: Of a solution, the right side at orders k > 0.
     """
 
     name: str
@@ -72,6 +88,26 @@ class Cell:
     depth: int
     factors: tuple[tuple[str, bool], ...] = ()
     divisor: str = ""
+    entries: tuple[Node, ...] = ()
+    tails: tuple[Node, ...] = ()
+
+    @property
+    def unknowns(self) -> list[str]:
+        """Of a solution, the names of the numbers that it has."""
+        return [f"{self.name}_{place + 1}" for place in range(len(self.tails))]
+
+    def list_products(self, moving: frozenset[str]) -> list[list[tuple[str, str]]]:
+        """Of a solution, entries that move times unknowns, row by row."""
+        size = range(len(self.tails))
+        rows = [[self.entries[place_of(max(i, j), min(i, j))] for j in size] for i in size]
+        return [
+            [
+                (entry.name, unknown)
+                for entry, unknown in zip(row, self.unknowns, strict=True)
+                if isinstance(entry, Symbol) and entry.name in moving
+            ]
+            for row in rows
+        ]
 
 
 @dataclass(frozen=True)
@@ -104,19 +140,25 @@ class Jets:
         """Names of cells of which some recurrence reads all orders."""
         found = set[str]()
         for cell in self.cells:
-            if cell.tail is None:
+            if cell.tail is None or isinstance(cell.value, Factors):
                 found |= _reads_all_orders(cell)
         return frozenset(found).intersection(cell.name for cell in self.cells)
 
     @property
     def products(self) -> int:
         """Sums over pairs of coefficients at each order, which are nearly all of the cost."""
-        return sum(cell.tail is None for cell in self.cells)
+        pairs = (cell.list_products(self.moving) for cell in self.cells if cell.tails)
+        loops = sum(len(row) for rows in pairs for row in rows)
+        return loops + sum(cell.tail is None and not cell.tails for cell in self.cells)
 
 
 def _reads_all_orders(cell: Cell) -> set[str]:
     """The names of which the recurrence of a cell reads coefficients of all orders."""
     match cell.value:
+        case Factors():
+            return set(_names(cell.value))
+        case Solution():
+            return set(cell.unknowns)
         case Multiply():
             return set(_names(cell.value))
         case Divide(right=right):
@@ -176,8 +218,28 @@ class _Making:
                 self._recurrence(Divide(over, Symbol(below)), name)
             case Function(name=function, of=arguments):
                 self._recurrence(Call(function, *map(Symbol, arguments)), name, meaning)
+            case Coupled():
+                self._make_solution(name, meaning)
+            case Unknown(of=of, place=place):
+                own = Item(Symbol(of), place)
+                self._append(Cell(name=name, value=own, tail=own, depth=self._depth[of]))
             case _:
                 self._make_sum(name, meaning)
+
+    def _make_solution(self, name: str, meaning: Coupled) -> None:
+        """The cells of L and D, once, and of what solves equations with them."""
+        entries = tuple(self._combine(each)[0] for each in meaning.entries)
+        value = Factors(rows_of(len(entries)), entries)
+        if meaning.factors not in self._depth:
+            depth = self._depth_of(value)
+            self._append(Cell(name=meaning.factors, value=value, tail=ZERO, depth=depth))
+        sides = [self._combine(each) for each in meaning.known]
+        known = Solution(Symbol(meaning.factors), tuple(whole for whole, _ in sides))
+        depth = 1 + max(self._depth_of(known), self._depth_of(value))
+        tails = tuple(tail for _, tail in sides)
+        self._append(
+            Cell(name=name, value=known, tail=None, depth=depth, entries=entries, tails=tails)
+        )
 
     def _make_sum(self, name: str, meaning: Polynomial) -> None:
         """A kept polynomial; where it is a product alone, the recurrence has the name."""

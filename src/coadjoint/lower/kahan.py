@@ -5,9 +5,9 @@ W. Kahan, Unconventional numerical methods for trajectory calculations (1993); E
 R. I. McLachlan, B. Owren and G. R. W. Quispel, Journal of Physics A 46 (2013) 025201: of many
 integrable motions it keeps modified integrals. It is no Poisson map.
 
-Comes in: Equations. Goes out: the state after a step ``_h`` as a Program, by elimination in the
-order of the state without exchanges: the matrix is the identity to first order. Or, in words, why
-there is none.
+Comes in: Equations. Goes out: what a step ``_h`` adds to the state as a Program, by elimination in
+the order of the state without exchanges: the matrix is the identity to first order. Or, in words,
+why there is none.
 Read next: `coadjoint.lower.flows`.
 """
 
@@ -126,7 +126,7 @@ def _eliminate(
             rest = subtract(rest, matrix[k][j], change[j])
         change[k] = define(f"_d{k + 1}", graph.multiply(rest, inverse[k]))
     outputs = [
-        (f"{name} after {STEP}", graph.add(graph.symbol(name), each))
+        (f"rise of {name} in {STEP}", each)
         for name, each in zip(setting.state, change, strict=True)
     ]
     naming = Naming(graph, lines, outputs, setting.parameters)
@@ -151,8 +151,7 @@ def _check(
             """Functions of parameters are numbers; the quotient by a prime knows none."""
             raise AssertionError(f"{function}{arguments} in a quadratic motion")
 
-        ends = run(program, values, number, call)
-        change = [end + -values[name] for name, end in zip(state, ends, strict=True)]
+        change = run(program, values, number, call)
         for name, rate, row, own in zip(state, rates, slopes, change, strict=True):
             moved = field.evaluate(rate, values, number, call)
             for slope, each in zip(row, change, strict=True):

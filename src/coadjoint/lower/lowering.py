@@ -19,7 +19,7 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.definitions import inline_single_uses, shorten
-from coadjoint.lower.guesses import insert_guesses, with_carried_velocities
+from coadjoint.lower.guesses import find_iterations, insert_guess, with_carried_velocities
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
 from coadjoint.lower.minors import entries_of, find_solve, is_faster, set_factored, solve_by_minors
 from coadjoint.lower.naming import Naming
@@ -223,6 +223,7 @@ def _jacobian(name: str, rows: Rows, rhs: Program) -> Program:
 def count_slopes(equations: Equations) -> int:
     """The products that a Jacobian through all solves takes: factors times components."""
     factors = sum(map(len, factors_of_solves(equations)))
+    factors += sum(len(each.block) ** 2 for each in equations.exact.solves if each.is_loop)
     return factors * len(equations.setting.state)
 
 
@@ -243,12 +244,14 @@ def _program(
     asked = outputs if solve is None else entries_of(solve, outputs)
     shorter = [(n, each if is_short else _shorten(equations, each)) for n, each in asked]
     definitions, parts = inline_single_uses(equations, shorter, closed)
-    lowering = Lowering(
-        equations, [element for _, element in (*definitions, *parts)], scales, nested
-    )
+    iterations = find_iterations(equations, definitions)
+    curved = [each for newton in iterations for each in newton.curved]
+    elements = [*(element for _, element in (*definitions, *parts)), *curved]
+    lowering = Lowering(equations, elements, scales, nested)
     named = [(label, lowering.node(element)) for label, element in definitions]
     results = [(label, lowering.node(element)) for label, element in parts]
-    named = [*insert_guesses(equations, lowering.graph, definitions), *named]
+    guesses = [line for newton in iterations for line in insert_guess(lowering, newton)]
+    named = [*guesses, *named]
     if solve is not None:
         lines, results = solve_by_minors(lowering.graph, solve, dict(results), outputs)
         named += lines

@@ -13,17 +13,13 @@ from typing import Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.splittings import NoSplitting, find_splitting
-from coadjoint.lower.compositions import Schedule, schedule
+from coadjoint.lower.compositions import SINGLE, SPLITTINGS
 from coadjoint.lower.exact_body import lower_exact_body
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kahan import lower_kahan
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.program import Program
+from coadjoint.lower.program import ZERO, Program
 
-#: Methods that are compositions of flows, with their orders.
-SPLITTINGS: Final = {"splitting": 2, "splitting4": 4, "splitting6": 6}
-#: Methods of a single map of their own names.
-SINGLE: Final = ("kahan", "exact_body")
 #: Every method that is a sequence of maps.
 COMPOSED: Final = (*SPLITTINGS, *SINGLE)
 
@@ -74,16 +70,9 @@ def list_maps(programs: Iterable[str]) -> list[str]:
     return [name for name in programs if name in SINGLE or name.startswith("flow")]
 
 
-def list_schedules(maps: Iterable[str]) -> dict[str, tuple[tuple[str, float], ...]]:
-    """The methods of a system: which map acts for which part of a step, in order.
-
-    Args:
-        maps: The names of its maps.
-    """
-    names = tuple(maps)
-    flows = [name for name in names if name.startswith("flow")]
-    found: dict[str, tuple[tuple[str, float], ...]] = {}
-    for method, order in SPLITTINGS.items() if flows else ():
-        own: Schedule = schedule(len(flows), order) if len(flows) > 1 else ((0, 1.0),)
-        found[method] = tuple((flows[part], time) for part, time in own)
-    return found | {name: ((name, 1.0),) for name in SINGLE if name in names}
+def list_moved(maps: Iterable[Program]) -> dict[str, tuple[int, ...]]:
+    """The rows of the state to which each map adds something."""
+    return {
+        each.name: tuple(row for row, out in enumerate(each.outputs) if out.value != ZERO)
+        for each in maps
+    }

@@ -36,11 +36,14 @@ from coadjoint.lower.program import (
     Add,
     Call,
     Divide,
+    Factors,
+    Item,
     Multiply,
     Negate,
     Node,
     Number,
     Program,
+    Solution,
     Statement,
     Symbol,
     children,
@@ -94,7 +97,37 @@ class Function:
     divisor: str = ""
 
 
-Meaning = Polynomial | Quotient | Function
+@dataclass(frozen=True)
+class Coupled:
+    """What solves symmetric equations by a loop.
+
+    Attributes:
+        factors: The name of L and D.
+        entries: Of the matrix, on and below the diagonal; each is a name, or does not move.
+        known: The right side.
+        unknowns: The names of what solves them.
+    """
+
+    factors: str
+    entries: tuple[Polynomial, ...]
+    known: tuple[Polynomial, ...]
+    unknowns: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One of the numbers that solve equations.
+
+    Attributes:
+        of: The name of all of them.
+        place: Which one.
+    """
+
+    of: str
+    place: int
+
+
+Meaning = Polynomial | Quotient | Function | Coupled | Unknown
 
 
 @dataclass(frozen=True)
@@ -194,14 +227,19 @@ class _Planning:
         self._values |= {name: moving(name) for name in driven}
         self._meanings: dict[str, Meaning] = {}
         self._names: dict[object, str] = {}
+        self._matrices: dict[str, tuple[Polynomial, ...]] = {}
 
     def plan(self) -> Plan:
         """All of it."""
         for statement in self.rhs.statements_at("member"):
-            self._values[statement.name] = self._keep(statement)
+            if isinstance(statement.value, Factors | Solution):
+                self._keep_loop(statement.name, statement.value)
+            else:
+                self._values[statement.name] = self._keep(statement)
         rates = tuple(self._polynomial(output.value) for output in self.rhs.outputs)
         meanings = {name: self._meanings[name] for name in self._read(rates)}
         polynomials = [*(m for m in meanings.values() if isinstance(m, dict)), *rates]
+        polynomials += [p for m in meanings.values() if isinstance(m, Coupled) for p in m.known]
         terms = [product for each in polynomials for product, _ in each]
         products = [product for product in terms if len(product) > 1]
         # each of them takes a product of its own, however much they share
@@ -250,6 +288,21 @@ class _Planning:
             return whole
         return self._name(whole, statement.name)
 
+    def _keep_loop(self, name: str, value: Factors | Solution) -> None:
+        """The entries of a matrix under names; the unknowns of equations as values of their own."""
+        wholes = [self._polynomial(each) for each in children(value)[isinstance(value, Solution) :]]
+        if isinstance(value, Factors):
+            moving_ones = ((moving(self._as_name(w)) if _moves(w) else w) for w in wholes)
+            self._matrices[name] = tuple(moving_ones)
+            return
+        assert isinstance(value.factors, Symbol), value
+        factors = value.factors.name
+        unknowns = tuple(f"{name}_{place + 1}" for place in range(len(wholes)))
+        entries, known = self._matrices[factors], tuple(wholes)
+        self._meanings[name] = Coupled(factors, entries, known, unknowns)
+        for place, own in enumerate(unknowns):
+            self._meanings[own] = Unknown(name, place)
+
     def _name(self, whole: Polynomial, name: str) -> Polynomial:
         """A polynomial under a name, or under the one that it has."""
         key = frozenset(whole.items())
@@ -285,6 +338,8 @@ class _Planning:
                 if not any(map(_moves, wholes)):
                     return self._fixed(Call(function, *map(_constant_node, wholes)))
                 return self._function(function, tuple(map(self._as_name, wholes)))
+            case Item(of=Symbol(name=of), place=place):
+                return moving(f"{of}_{place + 1}")
         raise AssertionError(node)
 
     def _function(self, function: str, arguments: tuple[str, ...]) -> Polynomial:
@@ -356,6 +411,8 @@ def _names_behind(meaning: Meaning) -> Iterator[str]:
     """The names that a meaning reads of which orders below are enough: they may depend on it."""
     if isinstance(meaning, Function) and not meaning.divisor:
         yield from (name for name, _ in meaning.factors if name)
+    if isinstance(meaning, Coupled):  # each of its sums has all of them
+        yield from meaning.unknowns
 
 
 def _parts_of_slope(slope: Node) -> tuple[bool, Node, Node]:
@@ -390,6 +447,10 @@ def _names_in(meaning: Meaning) -> Iterator[str]:
     match meaning:
         case Quotient(above=above, below=below):
             yield from filter(None, [above, below])
+        case Unknown(of=of):
+            yield of
+        case Coupled(entries=entries, known=known):
+            yield from (name for each in (*entries, *known) for name in _names_in(each))
         case Function(of=names, factors=factors, divisor=divisor):
             yield from names
             if divisor:  # it does not depend on the value

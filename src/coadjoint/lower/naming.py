@@ -13,18 +13,25 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
+from coadjoint.exact.factored import rows_of
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.program import (
     OPERATIONS,
     Call,
+    Factors,
+    Item,
     Negate,
     Node,
     Number,
     Output,
     Program,
+    Solution,
     Statement,
     Symbol,
 )
+
+#: Nodes of several numbers, which have a name of their own wherever they are used.
+SEVERAL = ("factors", "solution")
 
 
 class Naming:
@@ -70,7 +77,9 @@ class Naming:
     # -- what depends on what -----------------------------------------------------------
 
     def _is_fixed(self, node: int) -> bool:
-        """Whether a node depends on parameters alone."""
+        """Whether a node depends on parameters alone; what a loop gives is of each member."""
+        if self.graph.kinds[node] in SEVERAL:
+            return False
         if self.graph.kinds[node] == "symbol":
             return self._fixed.get(str(self.graph.payload[node]), False)
         return all(map(self._is_fixed, self.graph.operands[node]))
@@ -103,7 +112,7 @@ class Naming:
         """State a definition, by whose name later operations read its value."""
         tree = Symbol(self._names[node]) if node in self._names else self._tree(node)
         self._state(name, tree, self._fixed[name])
-        if self.graph.kinds[node] not in ("number", "symbol", "negate"):
+        if self.graph.kinds[node] not in ("number", "symbol", "negate", "item"):
             self._names.setdefault(node, name)
 
     def _state(self, name: str, value: Node, fixed: bool) -> None:
@@ -117,14 +126,14 @@ class Naming:
             fixed: Whether the operation that reads it depends on parameters alone.
         """
         kind = self.graph.kinds[node]
-        if kind in ("number", "symbol"):
+        if kind in ("number", "symbol", "item"):
             return self._tree(node)
         if kind == "negate":
             return Negate(self._inline(self.graph.operands[node][0], fixed))
         if node in self._names:
             return Symbol(self._names[node])
-        own = self._is_fixed(node)
-        if (self._uses[node] < 2 and own == fixed) or self._is_constant(node):
+        own, several = self._is_fixed(node), kind in SEVERAL
+        if not several and ((self._uses[node] < 2 and own == fixed) or self._is_constant(node)):
             return self._tree(node)
         tree = self._tree(node)
         prefix = "_p" if own else "_t"
@@ -149,6 +158,13 @@ class Naming:
             return Symbol(str(payload))
         fixed = self._is_fixed(node)
         operands = [self._inline(operand, fixed) for operand in self.graph.operands[node]]
-        if kind == "call":
-            return Call(str(payload), *operands)
+        match kind:
+            case "call":
+                return Call(str(payload), *operands)
+            case "factors":
+                return Factors(rows_of(len(operands)), tuple(operands))
+            case "solution":
+                return Solution(operands[0], tuple(operands[1:]))
+            case "item":
+                return Item(operands[0], int(payload))
         return OPERATIONS[kind](*operands)

@@ -8,13 +8,14 @@ Read next: `coadjoint.methods`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Final
 
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.program import Program, run
-from coadjoint.methods import ACTION, Sphere
+from coadjoint.methods import ACTION, DISTINGUISHED, Sphere
 
 
 class NotLinearError(Exception):
@@ -86,6 +87,20 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
     Args:
         programs: The functions of a kernel by name.
     """
+    if not is_product(programs):
+        return False
+    bracket = programs["bracket_vector"]
+    vector = bracket.state[len(programs["rhs"].state) :]
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        turned = run(bracket, at, number, call_modulo)
+        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
+
+    return vanish(find, bracket.names)
+
+
+def is_product(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are ``bracket_vector`` of the gradient of the energy, likewise."""
     if not {*ACTION} <= programs.keys() or "noise" in programs:
         return False
     rates, slopes, bracket = (programs[name] for name in ("rhs", *ACTION))
@@ -99,10 +114,48 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
             strict=True,
         )
         yield from (a + -b for a, b in pairs)
-        turned = run(bracket, at, number, call_modulo)
-        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
 
     return vanish(find, bracket.names)
+
+
+#: Coordinates beyond which Nambu's product has too many minors: their number doubles with each.
+COORDINATES: Final = 6
+
+
+def is_nambu(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are Nambu's product of the gradients of distinguished functions and energy.
+
+    It is asked at points modulo primes.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    if not {*DISTINGUISHED, "energy_gradient"} <= programs.keys() or "noise" in programs:
+        return False
+    rates, slopes = programs["rhs"], programs["energy_gradient"]
+    others, n = programs["distinguished_gradient"], len(rates.state)
+    if n > COORDINATES:
+        return False
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        listed = run(others, at, number, call_modulo)
+        rows = [listed[first : first + n] for first in range(0, len(listed), n)]
+        rows.insert(0, run(slopes, at, number, call_modulo))
+        for i, rate in enumerate(run(rates, at, number, call_modulo)):
+            cofactor = _expand(rows, [j for j in range(n) if j != i])
+            yield rate + (-cofactor if i % 2 else cofactor)
+
+    return vanish(find, {*rates.names, *slopes.names, *others.names})
+
+
+def _expand(rows: Sequence[Sequence[Residue]], columns: Sequence[int]) -> Residue:
+    """A determinant of residues, along the first row."""
+    first, *rest = rows
+    if not rest:
+        return first[columns[0]]
+    parts = (first[j] * _expand(rest, [k for k in columns if k != j]) for j in columns)
+    signed = [-part if place % 2 else part for place, part in enumerate(parts)]
+    return sum(signed[1:], signed[0])
 
 
 #: Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k`` by i and j, as entries by k.
@@ -135,6 +188,17 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
                 return ()
             place += 1
     return tuple(found)
+
+
+def find_noisy_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
+    """The same of a motion with noise, whose processes have Hamiltonians of their own.
+
+    What a process does is the bracket with its Hamiltonian, as it was derived.
+    """
+    still = {name: each for name, each in programs.items() if name != "noise"}
+    if "noise" not in programs or not stays_on_orbits(still):
+        return ()
+    return find_spheres(still)
 
 
 def _find_brackets(program: Program, n: int) -> Brackets:

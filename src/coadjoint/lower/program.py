@@ -13,10 +13,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
-from coadjoint.derive.mechanics.iteration import is_guess
+from coadjoint.derive.mechanics.iteration import is_step
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.exact.factored import count_factor, count_solve, factor
 
 Value = TypeVar("Value")
 
@@ -85,7 +86,50 @@ class Call:
     other: Node | None = None
 
 
-Node = Number | Symbol | Negate | Add | Multiply | Divide | Call
+@dataclass(frozen=True, slots=True)
+class Factors:
+    """L and D of a symmetric matrix by the loop of `coadjoint.exact.factored`: several numbers.
+
+    It is the value of a statement, and no operand but that of `Solution` and `Item` by its name.
+
+    Attributes:
+        size: How many rows the matrix has.
+        entries: On and below the diagonal, row by row.
+    """
+
+    size: int
+    entries: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The x of ``A x = b`` by the same module: several numbers, the value of a statement.
+
+    Attributes:
+        factors: The name of L and D.
+        known: b.
+    """
+
+    factors: Node
+    known: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One of several numbers: an unknown of a solution, or an entry of L and D.
+
+    Attributes:
+        of: The name of these numbers.
+        place: Which one, counted from 0.
+    """
+
+    of: Node
+    place: int
+
+
+Node = Number | Symbol | Negate | Add | Multiply | Divide | Call | Factors | Solution | Item
+#: Statements of several numbers.
+Several = Factors | Solution
 #: The nodes that are operations on others, by the name of what they cost.
 OPERATIONS: Mapping[str, type[Add | Multiply | Divide | Negate]] = {
     "add": Add,
@@ -249,6 +293,11 @@ class Program:
         if self.table is None:
             yield from (output.value for output in self.outputs)
 
+    @property
+    def solves_by_loop(self) -> bool:
+        """Whether a statement is a loop that solves equations."""
+        return any(isinstance(statement.value, Factors) for statement in self.statements)
+
     def names_used(self) -> frozenset[str]:
         """Names that some statement or output reads."""
         nodes = (node for value in self.values() for node in walk(value))
@@ -269,6 +318,8 @@ class Program:
             counts |= {"add": products - len(self.outputs), "multiply": 2 * products}
         for value in values:
             for node in walk(value):
+                for loop, own in count_loop(node).items():
+                    counts[loop] += own
                 kind = operation(node)
                 if kind:
                     counts[kind] += 1
@@ -277,8 +328,18 @@ class Program:
         return {kind: count for kind, count in counts.items() if count}
 
 
+def count_loop(node: Node) -> dict[str, int]:
+    """Operations of the loop that a node is, by kind; none of other nodes."""
+    match node:
+        case Factors(size=size):
+            return count_factor(size)
+        case Solution(known=known):
+            return count_solve(len(known))
+    return {}
+
+
 def operation(node: Node) -> str | None:
-    """The operation that a node costs, or None for a leaf."""
+    """The operation that a node costs, or None for a leaf and for a loop."""
     if isinstance(node, Call):
         return node.function
     return next((name for name, kind in OPERATIONS.items() if isinstance(node, kind)), None)
@@ -291,15 +352,44 @@ def children(node: Node) -> tuple[Node, ...]:
             return (left, right)
         case Call(argument=argument, other=other):
             return (argument,) if other is None else (argument, other)
-        case Negate(operand=operand):
+        case Negate(operand=operand) | Item(of=operand):
             return (operand,)
+        case Factors(entries=entries):
+            return entries
+        case Solution(factors=factors, known=known):
+            return (factors, *known)
     return ()
+
+
+def write_entries(name: str, value: Node) -> list[tuple[str, Node]]:
+    """A statement as texts have it: operands of a loop one by one, then the loop without them.
+
+    >>> write_entries("x", ONE)
+    [('x', Number(value=Fraction(1, 1)))]
+    """
+    match value:
+        case Factors(size=size, entries=entries):
+            last: Node = Factors(size, ())
+        case Solution(factors=factors, known=entries):
+            last = Solution(factors, ())
+        case _:
+            return [(name, value)]
+    return [*((f"{name}[{n}]", each) for n, each in enumerate(entries)), (name, last)]
 
 
 def with_children(node: Node, operands: Iterable[Node]) -> Node:
     """The operation of a node on other operands; a leaf as it is."""
-    if isinstance(node, Call):
-        return Call(node.function, *operands)
+    match node:
+        case Call(function=function):
+            return Call(function, *operands)
+        case Factors(size=size):
+            return Factors(size, tuple(operands))
+        case Solution():
+            factors, *known = operands
+            return Solution(factors, tuple(known))
+        case Item(place=place):
+            (of,) = operands
+            return Item(of, place)
     return node if isinstance(node, Number | Symbol) else type(node)(*operands)
 
 
@@ -333,6 +423,11 @@ def evaluate(
             return call(function, *(evaluate(u, values, number, call) for u in children(node)))
         case Negate(operand=operand):
             return -evaluate(operand, values, number, call)  # type: ignore[operator, no-any-return]
+        case Item(of=of, place=place):
+            several: Any = evaluate(of, values, number, call)
+            return several[place]  # type: ignore[no-any-return]
+        case Factors() | Solution():
+            return _evaluate_several(node, values, number, call)  # type: ignore[no-any-return]
     left = evaluate(node.left, values, number, call)
     right = evaluate(node.right, values, number, call)
     match node:
@@ -343,12 +438,23 @@ def evaluate(
     return left / right  # type: ignore[operator, no-any-return]
 
 
+def _evaluate_several(
+    node: Several,
+    values: Mapping[str, Any],
+    number: Callable[[Fraction], Any],
+    call: Callable[..., Any],
+) -> Any:
+    """L and D, or the unknowns."""
+    first, *rest = (evaluate(each, values, number, call) for each in children(node))
+    return factor([first, *rest]) if isinstance(node, Factors) else first.solve(rest)
+
+
 def settled(name: str, value: Value) -> Value:
-    """A value by its name: what an iteration finds is taken as it is, however it came about.
+    """A value by its name: steps of an iteration are taken as they are, however they came about.
 
     Arithmetics that know where a value came from, such as those of errors, forget it.
     """
-    settle = getattr(value, "settled", None) if is_guess(name) else None
+    settle = getattr(value, "settled", None) if is_step(name) else None
     return value if settle is None else settle()
 
 

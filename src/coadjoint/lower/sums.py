@@ -14,7 +14,9 @@ from fractions import Fraction
 from typing import Any
 
 from coadjoint.derive import Equations
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, Field
+from coadjoint.exact.factored import place_of
 from coadjoint.exact.rationals import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, list_products, nest
@@ -75,10 +77,15 @@ class Lowering:
         self._state = self._members.difference(setting.inputs, setting.time)
         self._forms: dict[tuple[int, int], Form] = {}
         self._marks: set[Any] = set()
+        self._factors: dict[tuple[str, int], bool] = {}
+        self._constants: dict[tuple[Fraction, tuple[tuple[str, int], ...]], Element] = {}
         self._numbers = equations.numbers
         self._kept: list[Element] = []
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
-        for element in elements:
+        written = list(elements)
+        self._loops = loops_under(equations, written)
+        self._solved: dict[str, int] = {}
+        for element in (*written, *(side for each in self._loops for side in each.sides)):
             self._form(element, _MEMBER)
         self._coefficients_by_name = dict(self._coefficients.values())
         self._shared: dict[int, dict[Product, Product]] = {}
@@ -205,23 +212,36 @@ class Lowering:
 
     def _is_factor(self, name: str, level: int) -> bool:
         """Whether a generator belongs into products rather than into coefficients."""
-        moving = {_DRIVEN: self._members, _MEMBER: self._state}
-        return level == _FIXED or bool(self.field.reach(self.field[name]) & moving[level])
+        if (name, level) not in self._factors:
+            moving = {_DRIVEN: self._members, _MEMBER: self._state}
+            moves = level == _FIXED or self.field.reach(self.field[name]) & moving[level]
+            self._factors[name, level] = bool(moves)
+        return self._factors[name, level]
 
     def _collect(self, written: Written, level: int) -> dict[Product, Element]:
         """Numerator terms by their product, with the coefficient polynomial of each."""
         parts: dict[Product, Element] = {}
         for term in written.monomials:
             product: list[str] = []
-            coefficient = self.field.number(term.number)
+            rest: list[tuple[str, int]] = []
             for name, power in term.powers:
                 if self._is_factor(name, level):
                     product += [name] * power
                 else:
-                    coefficient = coefficient * self.field[name] ** power
+                    rest.append((name, power))
+            coefficient = self._constant(term.number, tuple(rest))
             known = parts.get(tuple(product))
             parts[tuple(product)] = coefficient if known is None else known + coefficient
         return parts
+
+    def _constant(self, number: Fraction, powers: tuple[tuple[str, int], ...]) -> Element:
+        """A number times powers, remembered: few different ones stand in many terms."""
+        if (number, powers) not in self._constants:
+            made = self.field.number(number)
+            for name, power in powers:
+                made = made * self.field[name] ** power
+            self._constants[number, powers] = made
+        return self._constants[number, powers]
 
     def _split_denominator(
         self, written: Written, level: int
@@ -302,10 +322,32 @@ class Lowering:
             return self.graph.multiply(lead, self._factor(component))
         known = self.field.adjoined.get(name)
         if known is None:
+            for each in self._loops:
+                if name in each.loop_symbols:
+                    return self._item(each, name)
             return self.graph.node_of_name(name, self._numbers)
         levels = [(argument, self._level(argument)) for argument in known.arguments]
         arguments = (self._build(self._form(each, level), level) for each, level in levels)
         return self.graph.call(known.function, *arguments)
+
+    def _item(self, solve: Solve, name: str) -> int:
+        """The node of what a loop gives."""
+        if name not in self._solved:
+            factors = self.graph.factors(list(map(self.node, solve.entries)))
+            solution = self.graph.solution(factors, list(map(self.node, solve.known)))
+            size = range(len(solve.block))
+            nodes = [self.graph.item(factors, place_of(n, n)) for n in size]
+            nodes += [self.graph.item(solution, n) for n in size]
+            self._solved |= zip(solve.loop_symbols, nodes, strict=True)
+        return self._solved[name]
+
+
+def loops_under(equations: Equations, elements: Iterable[Element]) -> list[Solve]:
+    """The loops whose symbols elements have."""
+    if not equations.loops:
+        return []
+    names = frozenset[str]().union(*map(equations.setting.field.names_in, elements))
+    return [each for each in equations.exact.solves if names.intersection(each.loop_symbols)]
 
 
 def _mark(element: Element) -> Any:

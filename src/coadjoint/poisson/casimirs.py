@@ -24,6 +24,11 @@ from coadjoint.limits import INVARIANT_TERMS, MONOMIALS
 from coadjoint.poisson.brackets import lie_poisson
 from coadjoint.poisson.invariants import has_trace_form, matrix_invariants
 from coadjoint.poisson.irrational import UNKNOWNS, AlgebraicCasimirs, numbers_of
+from coadjoint.poisson.parametric import (
+    MONOMIALS_OF_ONE,
+    find_constants,
+    parametric_casimirs,
+)
 from coadjoint.poisson.polynomial_bracket import PolynomialBracket
 from coadjoint.poisson.search import independent_polynomials, polynomial_casimirs, quotients
 from coadjoint.poisson.structure import PoissonStructure
@@ -242,6 +247,8 @@ def _search(
     numbers = None if algebra is None else numbers_of(algebra)
     if algebra is not None and numbers is not None:
         return _search_over_numbers(structure, algebra, numbers, degree, expected, known)
+    if constants := find_constants(structure):
+        return _search_with_parameters(structure, constants, degree, expected, known)
     bracket = PolynomialBracket(structure)
     reached = _reduce_degree(structure.dimension, degree)
     polynomials, ways, searched = list[PolyElement](), list[str](), list[str]()
@@ -288,6 +295,29 @@ def _search(
         searched=tuple(searched),
         degree=reached,
         skipped=skipped,
+    )
+
+
+def _search_with_parameters(
+    structure: PoissonStructure,
+    constants: Sequence[str],
+    degree: int,
+    expected: int,
+    known: Sequence[Element],
+) -> SummandSearch:
+    """The same for entries with parameters and pi: short polynomials up to a degree."""
+    reached = _reduce_degree(structure.dimension, degree)
+    found = parametric_casimirs(structure, constants, reached, expected)
+    generators = select_independent(structure, [*known, *found])[len(known) :]
+    way = "monomials at random parameters, and coefficients that are functions of these"
+    most = f"of at most {MONOMIALS_OF_ONE} monomials"
+    return SummandSearch(
+        structure=structure,
+        known=len(known),
+        generators=tuple(generators),
+        expected=expected,
+        ways=(way,) * bool(generators),
+        searched=(f"polynomials of degree <= {reached} {most} at random parameters",),
     )
 
 

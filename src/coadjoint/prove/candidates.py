@@ -55,6 +55,9 @@ from coadjoint.spec.spatial import spatial_momenta
 DEGREES = (2, 2)
 #: Monomials among which integrals are searched for; 200 take about a second.
 MONOMIALS = 200
+#: Unknowns that are solved for together up to which integrals are searched for: each of the random
+#: points takes as long as all functions of their differences.
+SOLVED = 16
 #: Products of known integrals that are tried.
 PRODUCTS = 1000
 #: How a function that a search has found is called.
@@ -208,6 +211,12 @@ class CandidateSearch(PolynomialFamily):
 
 def about_candidates(motion: Motion) -> Iterator[Examined]:
     """All integrals up to a degree: from those that are known, or found beyond them."""
+    coupled = max(map(len, motion.matrices), default=0)
+    if coupled > SOLVED:
+        reason = f"{coupled} unknowns are solved for together, more than {SOLVED}"
+        text = f"integrals of low degree were not searched for: {reason}"
+        yield text, "integrals", lambda: Discovery("no search")
+        return
     known = known_integrals(motion)
     search, where = CandidateSearch(motion, known), _almost_all(motion)
     if search.samples.obstacle:

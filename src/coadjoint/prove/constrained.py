@@ -14,6 +14,7 @@ Read next: `coadjoint.prove.claims`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -30,6 +31,7 @@ from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import adjugate, determinant, dot
 from coadjoint.exact.ranks import generic_rank, source_of_ranks
+from coadjoint.exact.residues import Residue, call_modulo, draw, residue
 from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.energy import Balance
@@ -41,6 +43,11 @@ from coadjoint.prove.zero import Decision, Examined
 
 #: No combination of the equations of motion.
 NO_DIRECTION: Mapping[str, Element] = MappingProxyType({})
+#: Why a loop solves its equations.
+LOOPS = (
+    "L D L^T of any symmetric matrix whose leading minors are not zero, with both substitutions "
+    "(Golub and Van Loan, Matrix Computations, 4th ed., sec. 4.1.2)"
+)
 #: Characters of a determinant that a statement shows.
 SHORT = 60
 
@@ -154,7 +161,7 @@ class ConstrainedRates(Motion):
         of kept constraints are zero: with these the columns of A are ``A eta``.
         """
         field = self.field
-        for weights in self._weights(block, direction):
+        for weights in self._likely_first(block, c, direction):
             turned = (dot(weights, column) for column in zip(*block.matrix, strict=True))
             if all(map(self._vanishes, (x - y for x, y in zip(turned, c, strict=True)))):
                 return dot(weights, block.known)
@@ -179,6 +186,40 @@ class ConstrainedRates(Motion):
     def _determinants(self) -> dict[str, Element]:
         """The determinant of every solve, by the name of its first unknown."""
         return {solve.names[0]: determinant(solve.matrix) for solve in self.solves}
+
+    def _likely_first(self, block: Solve, c: Row, direction: Mapping[str, Element]) -> list[Row]:
+        """Combinations of the equations of a block, those first that give c modulo a prime."""
+        listed = list(self._weights(block, direction))
+        try:
+            (*columns, sides) = [list(map(self._residue, row)) for row in (*block.matrix, c)]
+            weights = [
+                [(n, self._residue(w)) for n, w in enumerate(row) if w != 0] for row in listed
+            ]
+        except ZeroDivisionError:  # a pole, or no square root
+            return listed
+
+        def differs(place: int) -> bool:
+            pairs = weights[place]
+            return any(
+                sum(w.value * columns[n][column].value for n, w in pairs) % side.prime != side.value
+                for column, side in enumerate(sides)
+            )
+
+        return [listed[place] for place in sorted(range(len(listed)), key=differs)]
+
+    def _residue(self, element: Element) -> Residue:
+        """The value of an element at a point modulo a prime."""
+        return self.field.evaluate(element, self._point, residue, call_modulo)
+
+    @cached_property
+    def _point(self) -> dict[str, Residue]:
+        """A point modulo a prime, with the values of functions as far as there are some."""
+        field = self.field
+        at = {name: draw(name) for name in field.names}
+        for generator in field.adjoined:
+            with suppress(ZeroDivisionError):
+                at[generator] = field.evaluate(field[generator], at, residue, call_modulo)
+        return at
 
     def _weights(self, block: Solve, direction: Mapping[str, Element]) -> Iterator[Row]:
         """Combinations of the equations of a block that are worth a trial."""
@@ -322,11 +363,20 @@ def about_constraints(motion: ConstrainedRates) -> Iterator[Examined]:
     matrix, factored = "B^T M B", "L D L^T"
     if not all(solve.symmetric for solve in motion.equations.exact.solves):
         matrix, factored = "[[B^T M B, A^T + C], [A, 0]], with forces k + C lambda", "W U"
-    yield (
-        f"the kernel solves for the accelerations: {factored} = {matrix}",
-        "constraint",
-        lambda: _solve_defects(motion.equations),
-    )
+    solved = f"the kernel solves for the accelerations: {factored} = {matrix}"
+    yield from about_loops(motion.equations, solved, "constraint")
+    solves = motion.equations.exact.solves
+    if not solves or not all(solve.is_loop for solve in solves):
+        yield solved, "constraint", lambda: _solve_defects(motion.equations)
+
+
+def about_loops(equations: Equations, text: str, kind: str) -> Iterator[Examined]:
+    """That loops of the kernel solve their equations, which they do for any matrix."""
+    sizes = [len(each.block) for each in equations.exact.solves if each.is_loop]
+    if sizes:
+        rows = " and ".join(map(str, sizes))
+        decision = Decision(verdict=Verdict.PROVED, method=LOOPS)
+        yield f"{text}, by a loop over {rows} rows", kind, lambda: decision
 
 
 def about_kept(motion: ConstrainedRates) -> Iterator[Examined]:

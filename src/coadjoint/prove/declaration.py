@@ -18,6 +18,7 @@ from coadjoint.declared import KernelContext, Quantity
 from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
+from coadjoint.derive.emitted import list_following
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
@@ -26,6 +27,7 @@ from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove.driven import while_constant
+from coadjoint.prove.family_methods import FamilyFacts
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.render.families import FamilyContext
 from coadjoint.spec import Spec
@@ -65,6 +67,7 @@ def kernel_context(
         programs=tuple(programs.values()),
         supported=supported,
         reconstructed=tuple(_declare_followed(spec, each) for each in spec.reconstruction),
+        reconstructed_observables=tuple(map(_quantity, list_following(equations.setting))),
         inputs=tuple(map(_quantity, spec.inputs)),
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
         unit_of_time=spec.units.time,
@@ -79,7 +82,12 @@ def kernel_context(
 
 
 def family_context(
-    equations: Equations, family: Family, loops: dict[str, Loops], supported: int = 0
+    equations: Equations,
+    family: Family,
+    loops: dict[str, Loops],
+    supported: int = 0,
+    facts: FamilyFacts | None = None,
+    methods: Iterable[JudgedMethod] = (),
 ) -> FamilyContext:
     """What the generated files of a system of equal members say.
 
@@ -88,12 +96,15 @@ def family_context(
         family: Those of the generic member.
         loops: Its functions.
         supported: How many claims are numerically supported and not proved.
+        facts: What decides which methods keep structure.
+        methods: These, as they are judged.
     """
     spec = equations.spec
     declared = spec.family
     assert declared is not None, spec.name
     first, *others = spec.routes
-    known: dict[str, Any] = {each.name: each for each in (*spec.variables, *spec.parameters)}
+    quantities = (*spec.variables, *spec.parameters, *spec.inputs)
+    known: dict[str, Any] = {each.name: each for each in quantities}
     kept = {each.name: each for each in equations.exact.emitted}
 
     def name_generic(name: str) -> Quantity:
@@ -118,6 +129,10 @@ def family_context(
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),
+        shared_inputs=tuple(_quantity(known[name]) for name in declared.shared_inputs),
+        indexed_inputs=tuple(map(name_generic, declared.indexed_inputs)),
+        shared_noise=tuple(map(_name_process, declared.shared_noise)),
+        indexed_noise=tuple(map(_name_process, declared.indexed_noise)),
         defaults={
             name: tuple(float(value) for component in values for value in component)
             for name, values in declared.defaults.items()
@@ -126,15 +141,24 @@ def family_context(
         observables=tuple(
             _observable(equations, kept[name])
             for name in (
-                *(["energy"] if spec.hamiltonian else []),
+                *(each.name for each in family.totals if each.name == "energy"),
                 *(o.name for o in spec.observables),
+                *(each.name for each in spec.symmetries),
             )
         ),
         loops=loops,
         supported=supported,
         unit_of_time=spec.units.time,
         time=tuple(map(_quantity, [] if spec.time is None else [spec.time])),
+        methods=tuple(each for each in methods if each.applies),
+        spheres={} if facts is None else {facts.radii[s.rows[0]]: s.rows for s in facts.spheres},
+        positions=() if facts is None else facts.positions,
     )
+
+
+def _name_process(name: str) -> Quantity:
+    """A Wiener process as the generated package declares it."""
+    return Quantity(name=name, shape=(), unit="", components=(name,))
 
 
 def family_lines(family: Family) -> tuple[str, ...]:
@@ -159,7 +183,7 @@ def family_lines(family: Family) -> tuple[str, ...]:
     >>> family_lines(ring)
     ('dq[i]/dt = q[i-1] - q[i]',)
     """
-    i, own = family.index.name, (*family.states, *family.indexed)
+    i, own = family.index.name, (*family.own, *family.indexed_noise)
 
     def name(member: str) -> dict[Any, Any]:
         """Symbols of a member and those next to it, as they are shown."""
@@ -184,6 +208,10 @@ def family_lines(family: Family) -> tuple[str, ...]:
             f"d{each}[{member}]/dt = {rate.xreplace(shown)}".replace("**", "^")
             for each, rate in zip(family.states, rates, strict=True)
         ]
+    if family.noise:
+        lines.append("with noise, in the sense of Stratonovich:")
+    for each, moved in zip(family.states, family.noise, strict=False):
+        lines.append(f"d{each}[{i}] = ... + {moved.xreplace(generic)}".replace("**", "^"))
     return tuple(lines)
 
 

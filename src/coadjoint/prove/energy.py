@@ -137,7 +137,10 @@ class Balance:
         if reduction is not None:  # R names those of the whole system
             moving = reduction.whole.having_role("velocity")
             return tuple(name for each in moving for name in each.components)
-        return self.setting.velocities if distribution is None else distribution.frame.velocities
+        if distribution is not None:
+            return distribution.frame.velocities
+        named = self.setting.conjugates
+        return tuple(xi for xi, _, _ in named) if named else self.setting.velocities
 
     @property
     def _distribution(self) -> Distribution | None:

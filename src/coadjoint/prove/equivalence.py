@@ -50,9 +50,8 @@ class LegendreMap:
         self.setting, self.lagrangian = setting, setting.lagrangian
         self.slopes = mechanics(setting).momenta
         # where velocities are themselves the state there is nothing to pull back
-        scaled = zip(self.slopes, setting.weights or (1,) * len(self.slopes), strict=True)
-        given = [slope * w for slope, w in scaled] if setting.momenta else []
-        self.momenta = dict(zip(setting.momenta, given, strict=True))
+        pairs = zip(self.slopes, setting.conjugates, strict=bool(setting.momenta))
+        self.momenta = {mu: slope * w for slope, (_, mu, w) in pairs}
         self._images: dict[str, dict[str, Element]] = {}
 
     @staticmethod
@@ -152,7 +151,8 @@ class LegendreMap:
     def energy_defects(self, equations: Equations) -> list[Element]:
         """``h(dl/dxi, a) - (<dl/dxi, xi> - l)``."""
         field = self.setting.field
-        pairs = zip(self.slopes, self.setting.velocities, strict=True)
+        names = mechanics(self.setting).frame.velocities
+        pairs = zip(self.slopes, names, strict=True)
         energy = sum((slope * field[xi] for slope, xi in pairs), -self.lagrangian)
         assert equations.exact.energy is not None, "a Lagrangian has an energy"
         return [self.pull_back(equations, equations.exact.energy) - energy]
@@ -161,15 +161,15 @@ class LegendreMap:
         """``dh/dmu - xi`` at ``mu = dl/dxi``."""
         field = self.setting.field
         assert equations.exact.energy is not None, "a Lagrangian has an energy"
-        names = self.setting.velocities
-        slopes = field.gradient(equations.exact.energy, self.setting.momenta)
+        momenta = [mu for _, mu, _ in self.setting.conjugates]
+        slopes = field.gradient(equations.exact.energy, momenta)
         # at fixed velocities, if h is stationary in those that keep their names
         inner = field.gradient(equations.exact.energy, kept_velocities(equations))
         return [
             *(self.pull_back(equations, slope) for slope in inner),
             *(
                 self.pull_back(equations, slope) * w - field[xi]
-                for slope, xi, w in zip(slopes, names, self.setting.weights, strict=True)
+                for slope, (xi, _, w) in zip(slopes, self.setting.conjugates, strict=True)
             ),
         ]
 
@@ -188,7 +188,9 @@ def _keeps_sign(field: Field, matrix: Matrix) -> bool:
 
 def kept_velocities(equations: Equations) -> list[str]:
     """Velocities that the kernel solves for."""
-    return [name for name in equations.setting.velocities if name in equations.kept]
+    setting = equations.setting
+    named = [xi for xi, _, _ in setting.conjugates] if setting.momenta else setting.velocities
+    return [name for name in named if name in equations.kept]
 
 
 def in_velocities(equations: Equations, elements: Iterable[Element]) -> list[Element]:
@@ -207,5 +209,5 @@ def in_velocities(equations: Equations, elements: Iterable[Element]) -> list[Ele
 @once
 def _solved_momenta(equations: Equations) -> dict[str, Element]:
     """The momenta of the velocities that the kernel solves for, in velocities."""
-    pairs = zip(equations.setting.velocities, LegendreMap(equations).momenta.items(), strict=True)
-    return {mu: slope for xi, (mu, slope) in pairs if xi in equations.kept}
+    momenta, pairs = LegendreMap(equations).momenta, equations.setting.conjugates
+    return {mu: momenta[mu] for xi, mu, _ in pairs if xi in equations.kept}

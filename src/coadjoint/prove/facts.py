@@ -19,7 +19,7 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.orbits import find_spheres, is_bracket, stays_on_orbits
+from coadjoint.lower.orbits import find_spheres, is_bracket, is_product, stays_on_orbits
 from coadjoint.lower.program import Program, run
 from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
@@ -297,6 +297,32 @@ class Facts:
     def is_bracket(self) -> bool:
         """Whether the motion is an antisymmetric tensor times the gradient of its energy."""
         return is_bracket(self.programs)
+
+    @cached_property
+    def relaxes(self) -> bool:
+        """Whether the motion is ``P + P G P`` times the gradient of its energy, G semidefinite.
+
+        That no energy grows by it is what the certificate has proved.
+        """
+        relaxation = self.spec.relaxation
+        is_double = relaxation is not None and relaxation.S is None
+        is_proved = "G is positive semidefinite" in self._proved
+        return is_double and is_proved and is_product(self.programs)
+
+    @property
+    def is_dissipative(self) -> bool:
+        """Whether friction or a symmetric bracket is declared, by which energy is lost."""
+        return self.spec.dissipation is not None or self.spec.relaxation is not None
+
+    @cached_property
+    def grows(self) -> bool:
+        """Whether a metriplectic motion has an entropy of degree 2 at the most."""
+        relaxation = self.spec.relaxation
+        if relaxation is None or relaxation.S is None:
+            return False
+        value = self.equations.close(self.equations.setting.formula(relaxation.S))
+        is_proved = "G is positive semidefinite" in self._proved
+        return is_proved and self.find_degree([value]) is not None
 
     @cached_property
     def is_turned_by_tensor(self) -> bool:

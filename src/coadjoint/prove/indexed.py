@@ -8,6 +8,8 @@ over the members, and so is its rate:
   all N >= 2 w, if each term reads w + 1 members. It vanishes if F(2 w) and F(2 w + 1) do, and then
   every F(N) does. A shorter ring is a longer one that repeats itself;
 * in an open chain, F(N+1) - F(N) is a function of the last w + 1 members: likewise from w on;
+* where members stand alone at the ends of a chain, the new one is put in the middle: what reads an
+  end does not change, and F(N+1) - F(N) is as in a ring;
 * with pairs, the rate of a sum over members is a sum of terms of one member and of two. If it
   vanishes for 2 members and for 3, both sums vanish for every N;
 * with pairs and neighbours, what two new members far from each other add together, and not each
@@ -30,13 +32,20 @@ from coadjoint.derive import derive
 from coadjoint.exact.dense import commutator
 from coadjoint.exact.text import WHILE
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.noise import tell_kept
 from coadjoint.prove.zero import Decision, decide_zero, make_entry
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.faults import list_names
+from coadjoint.spec.core.totals import has_sum
 from coadjoint.spec.model import Lax, Spec, Windows
 from coadjoint.spec.spatial import describe_gram, gram_name
 
 _ORDER = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
+#: What a statement says of a momentum map that is conserved.
+_NOETHER = "by Noether's theorem"
+#: The entries of a cocycle, which name members, and what is said of it in their place.
+_COCYCLE = re.compile(r"the constant 2-cocycle .*")
+_OF_ALL = "a constant 2-cocycle Sigma, the sum of those of all members"
 _ALGEBRA = "the algebra of all members satisfies the Jacobi identity"
 
 
@@ -59,6 +68,7 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
     general = zip(list_windows(spec), certificates, strict=True)
     kept = [_merge(_keep_general(family, *each)) for each in general]
     windows, rest = kept[: len(family.windows)], kept[len(family.windows) :]
+    windows = _keep_common(windows)
     assert len({tuple(c.statement for c in each) for each in windows}) == 1, spec.name
     claims = [_join(family, same) for same in zip(*windows, strict=True)]
     claims += [_examine_lax(family)] if family.lax else []
@@ -68,6 +78,15 @@ def extend(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
         loaded = [claim for each in rest for claim in each if claim.statement in own]
         claims += [replace(claim, statement=claim.statement + scope) for claim in loaded]
     return Certificate(spec.name, tuple(claims))
+
+
+def _keep_common(windows: Sequence[list[Claim]]) -> list[list[Claim]]:
+    """The claims of windows, without what is said of a symmetry in some of them alone.
+
+    Of a momentum map that is not conserved a statement shows the rate, and names members in it.
+    """
+    common = set.intersection(*({claim.statement for claim in each} for each in windows))
+    return [[c for c in each if c.kind != "symmetry" or c.statement in common] for each in windows]
 
 
 def bind_size(spec: Spec, certificate: Certificate) -> Certificate:
@@ -168,10 +187,13 @@ def _keep_general(family: Windows, window: Spec, certificate: Certificate) -> It
     for claim in certificate.claims:
         if claim.kind == "algebra":
             yield replace(claim, statement=_ALGEBRA)
-        elif claim.kind in ("conserved", "attitude"):
-            yield replace(claim, statement=_say_of_member(claim.statement, words))
+        elif claim.kind in ("conserved", "attitude", "noise"):
+            if not (claim.kind == "noise" and " commute" in claim.statement):  # of some members
+                yield replace(claim, statement=_say_of_member(claim.statement, words))
         elif claim.kind in ("jacobi", "equivalence") or claim.statement in casimirs:
             yield claim
+        elif claim.kind == "symmetry" and not claim.statement.startswith("the flow of "):
+            yield replace(claim, statement=_COCYCLE.sub(_OF_ALL, claim.statement))
 
 
 def _list_words(family: Windows, window: Spec) -> dict[str, str]:
@@ -186,7 +208,12 @@ def _list_words(family: Windows, window: Spec) -> dict[str, str]:
             words[gram_name(each)] = describe_gram(window, each).replace(
                 each.name, f"{generic}[{i}]"
             )
-    return words
+    own = family.indexed_noise
+    return words | {
+        each.name: f"{generic}[{i}]"
+        for each in window.noise
+        if (generic := each.name.rpartition("_")[0]) in own and each.name not in family.shared_noise
+    }
 
 
 def _say_of_member(statement: str, words: Mapping[str, str]) -> str:
@@ -233,11 +260,22 @@ def _generalise(method: str) -> str:
     return f"{head}{WHILE}no function of any members jumps" if jumps else head
 
 
+def _list_of_members(family: Windows) -> frozenset[str]:
+    """Statements of what each member conserves, and keeps where there is noise."""
+    casimirs = family.windows[0].casimirs if family.windows[0].noise else ()
+    own = (each for each in casimirs if each.sums is not None and not has_sum(each.sums))
+    return family.of_members.union(map(tell_kept, own))
+
+
 def _reason(family: Windows, claim: Claim) -> str:
     """Why so many numbers of members are enough."""
-    if claim.statement.startswith("the energy") and not family.windows[0].is_forced:
+    small = family.windows[0]
+    if claim.statement.startswith("the energy") and not (small.is_forced or small.noise):
+        if small.hamiltonian is None:
+            return "the Lagrangian does not name the time"
         return "the bracket of each member is antisymmetric"
-    if claim.kind != "conserved" or claim.statement in family.of_members:
+    is_total = claim.kind == "conserved" or _NOETHER in claim.statement
+    if not is_total or claim.statement in _list_of_members(family):
         if family.pairs:
             if len(family.windows) > 2:
                 return "each of its terms reads members next to each other, or those and a partner"

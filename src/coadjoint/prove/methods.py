@@ -10,14 +10,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Final
 
 from coadjoint.derive import Equations
+from coadjoint.derive.times_vector import find_product
 from coadjoint.exact.residues import Residue, call_modulo, vanish
+from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.mapped import SPLITTINGS, Maps, list_schedules
+from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program, run
-from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, StructuredMethod
+from coadjoint.methods import (
+    BACKWARD,
+    MAPPED,
+    NOISY,
+    STRUCTURED,
+    JudgedMethod,
+    StructuredMethod,
+    list_backward,
+)
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
 from coadjoint.render.solvers import describe_structured, select_programs
@@ -27,7 +38,7 @@ SWEEPS: Final = "about a dozen sweeps"
 #: The degree up to which the mean of a gradient is exact: Gauss's formula has four nodes.
 MEAN_DEGREE: Final = 8
 #: Steps of order 2 that make one of each order.
-_STEPS: Final = {2: 1, 4: 5, 6: 9}
+STEPS: Final = {2: 1, 4: 5, 6: 9}
 
 
 @dataclass(frozen=True)
@@ -67,28 +78,58 @@ def judge_methods(
     offered = {each.name for each in describe_structured(solved)["structured"]["methods"]}
     refusals = dict(maps.refusals)
     refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
+    refusals |= (
+        dict.fromkeys(list_backward() - refusals.keys(), BACKWARD) if facts.is_dissipative else {}
+    )
     known = {program.name: program for program in maps.programs}
+    return facts, judge(facts, refusals, known)
+
+
+def judge(
+    facts: Facts,
+    refusals: Mapping[str, str],
+    maps: Mapping[str, Program],
+    rules: Mapping[str, Rule] = MappingProxyType({}),
+) -> tuple[JudgedMethod, ...]:
+    """Every method of the list, judged.
+
+    Args:
+        facts: Of the system.
+        refusals: Why methods do not apply, by name, as far as they do not.
+        maps: What explicit methods make a step of, by name.
+        rules: By files of methods, in the place of those of a system without an index.
+    """
+    every = {**_RULES, **rules}
     judged = {
         name: JudgedMethod(name=name, order=method.order, decides=refusals[name])
         if name in refusals
-        else _judge(facts, method, known)
+        else _judge(every, facts, method, maps)
         for name, method in {**STRUCTURED, **MAPPED}.items()
     }
-    return facts, _rank(facts, judged)
+    return _rank(facts, judged)
 
 
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
-    """Why a method does not apply, as a clause."""
+    """Why a method does not apply, as a clause; of one that does, whether it goes back in time."""
     if facts.is_noisy:
-        return "motions with noise have methods of their own, heun and midpoint"
+        return "motions with noise have methods of their own: " + ", ".join(NOISY)
     if facts.has_kinks:
         return "its rates have kinks, at which explicit methods end their steps"
+    if method.file in ("discrete_gradient", "average_gradient"):
+        found = find_product(facts.equations)
+        if isinstance(found, str):
+            return found
     return f"it expects {method.expects}"
 
 
-def _judge(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> JudgedMethod:
+def _judge(
+    rules: Mapping[str, Rule],
+    facts: Facts,
+    method: StructuredMethod,
+    maps: Mapping[str, Program],
+) -> JudgedMethod:
     """A method that applies."""
-    found = _RULES.get(method.file, _judge_unknown)(facts, method, maps)
+    found = rules.get(method.file, _judge_unknown)(facts, method, maps)
     names = [each.name for each in found.exactly]
     return JudgedMethod(
         name=method.name,
@@ -125,10 +166,12 @@ def _judge_runge_kutta(
     elif not exactly:
         said.append("no integral is seen to be of degree 2 or less")
     said += ["the Poisson tensor is constant"] * is_symplectic
+    if facts.grows and any(each.name == "energy" for each in exactly):
+        said.append("the entropy, of degree 2, grows by dS.G dS at the stages")
     is_gauss = method.file == "gauss"
-    stages = method.order // 2 if is_gauss else _STEPS[method.order]
+    stages = method.order // 2 if is_gauss else STEPS[method.order]
     each = "stage" if is_gauss else "midpoint"
-    cost = f"{SWEEPS} of {_count(stages, each)}"
+    cost = f"{SWEEPS} of {count(stages, each)}"
     return Judgement(exactly, is_symplectic, "; ".join(said), cost)
 
 
@@ -149,14 +192,14 @@ _ACTION: Final = "the motion is the bracket with its energy, and the bracket is 
 
 def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
     """Coadjoint actions are Poisson maps where they come from a discrete principle."""
-    stages = _STEPS[method.order]
-    cost = f"{SWEEPS} of {_count(stages, 'coadjoint arc')}, each a dozen brackets"
+    stages = STEPS[method.order]
+    cost = f"{SWEEPS} of {count(stages, 'coadjoint arc')}, each a dozen brackets"
     if method.file == "isospectral_midpoint":
-        cost = f"{SWEEPS} of {_count(stages, 'midpoint')}, each with two products of matrices"
+        cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
     return Judgement(_on_orbits(facts), True, _ACTION, cost)
 
 
-def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
     """The spherical midpoint, which on one sphere is the midpoint with another length of step.
 
     There ``X(s m) = s^2 X(m)`` of a field that is homogeneous and quadratic, so that all quadratic
@@ -164,7 +207,7 @@ def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progr
     """
     exactly, decides = (
         _on_orbits(facts),
-        f"its orbits are those of {_count(len(facts.spheres), 'sphere')}",
+        f"its orbits are those of {count(len(facts.spheres), 'sphere')}",
     )
     (one, *others) = facts.spheres
     alone = not others and not one.tangent and len(facts.state) == len(one.rows)
@@ -175,7 +218,7 @@ def _judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progr
             if each in exactly or (each.is_kept_within_steps and each.degree == 2)
         )
         decides += ", on which the energy is quadratic"
-    cost = f"{SWEEPS} of {_count(_STEPS[method.order], 'midpoint')}"
+    cost = f"{SWEEPS} of {count(STEPS[method.order], 'midpoint')}"
     return Judgement(exactly, True, decides, cost)
 
 
@@ -196,8 +239,8 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
     if not is_flow:
         return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
     parts = len(used)
-    decides = f"the energy is the sum of {_count(parts, 'part')} whose flows are in closed form"
-    return Judgement(exactly, True, decides, _count(len(schedule), "explicit map"))
+    decides = f"the energy is the sum of {count(parts, 'part')} whose flows are in closed form"
+    return Judgement(exactly, True, decides, count(len(schedule), "explicit map"))
 
 
 def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -206,29 +249,45 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
     The mean of a gradient is one by Gauss's formula, of polynomials. C changes by its gradient at
     the middle of a step times the tensor there, which is zero.
     """
-    steps = _count(_STEPS[method.order], "middle")
+    steps = count(STEPS[method.order], "middle")
     is_mean = method.file == "average_gradient"
     cost = f"{SWEEPS} of {steps}, each with {'five gradients' if is_mean else 'two energies'}"
-    if not facts.is_bracket:
-        balance = "the energy changes by the power at the middles of steps of what acts on it"
-        return Judgement((), False, balance, cost)
     is_moved = facts.is_moved and not facts.is_turned_by_tensor
     seen = [each for each in facts.integrals if not is_moved]
     has_mean = (
         facts.energy is not None and facts.find_degree([facts.energy], MEAN_DEGREE) is not None
     )
+    is_exact = has_mean or not is_mean
     exactly = tuple(
         each
         for each in seen
-        if (each.name == "energy" and (has_mean or not is_mean))
-        or (each.degree is not None and facts.is_kept_by_tensor(each.values))
+        if (each.name == "energy" and is_exact and facts.is_bracket)
+        or (
+            each.degree is not None
+            and each.is_kept_within_steps
+            and facts.is_kept_by_tensor(each.values)
+        )
     )
+    if not facts.is_bracket:
+        return Judgement(exactly, False, _tell_balance(facts, is_exact=is_exact), cost)
     decides = "the motion is an antisymmetric tensor times the gradient of its energy"
     if is_mean and not has_mean:
         decides += f", which is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
     if is_moved:
         decides += "; after each step the state is moved, so that integrals are not kept"
     return Judgement(exactly, False, decides, cost)
+
+
+def _tell_balance(facts: Facts, *, is_exact: bool) -> str:
+    """How the energy changes in a step with the discrete gradient g, by what acts on the motion."""
+    if not is_exact:
+        return f"the energy is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
+    if facts.relaxes:
+        return (
+            "the motion is P + P G P times the gradient of its energy: a step takes "
+            "h (P g).G (P g) of the energy, g its discrete gradient, and never adds to it"
+        )
+    return "a step adds h g.f to the energy, f what acts at its middle, g the discrete gradient"
 
 
 def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -243,7 +302,7 @@ _RULES: Final[Mapping[str, Rule]] = {
     "gauss": _judge_runge_kutta,
     "coadjoint_mean": _judge_orbits,
     "isospectral_midpoint": _judge_orbits,
-    "spherical_midpoint": _judge_spheres,
+    "spherical_midpoint": judge_spheres,
     "sequence": _judge_maps,
     "discrete_gradient": _judge_gradients,
     "average_gradient": _judge_gradients,
@@ -259,7 +318,8 @@ def _keeps(facts: Facts, each: Kept, program: Program) -> bool:
         return False
 
     def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
-        there = at | dict(zip(facts.state, run(program, at, number, call_modulo), strict=True))
+        rises = zip(facts.state, run(program, at, number, call_modulo), strict=True)
+        there = at | {name: at[name] + rise for name, rise in rises}
         for value in each.values:
             start, end = (field.evaluate(value, dict(x), number, call_modulo) for x in (at, there))
             yield start + -end
@@ -304,6 +364,8 @@ def _prefer_first(facts: Facts) -> Sequence[str]:
         return ["splitting4", *general] if facts.is_separable else general
     if facts.is_canonical:
         return ["splitting4"] if facts.is_separable else []
+    if facts.relaxes and all(each.degree is not None for each in facts.integrals):
+        return ["discrete_gradient"]
     return ["splitting4", "discrete_gradient"] if facts.is_hamiltonian else []
 
 
@@ -317,6 +379,6 @@ def _be(integrals: Sequence[Kept]) -> str:
     return "is" if len(integrals) == 1 else "are"
 
 
-def _count(number: int, what: str) -> str:
+def count(number: int, what: str) -> str:
     """A number of things: ``one midpoint``, ``5 midpoints``."""
     return f"one {what}" if number == 1 else f"{number} {what}s"

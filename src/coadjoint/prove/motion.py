@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Any, Self
 
 from coadjoint.derive import Equations
+from coadjoint.derive.emitted import list_following
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Equation, Row
@@ -215,7 +216,11 @@ class Motion:
     def emitted(self) -> dict[str, Value]:
         """The energy and the observables, by the names that claims use."""
         known: dict[str, Value] = dict(self.equations.exact.observables)
-        return known | {each.name: each.whole for each in self.equations.exact.emitted}
+        following = list_following(self.setting)
+        parts = (zip(each.components, each.values, strict=True) for each in following)
+        known |= {name: value for pairs in parts for name, value in pairs}
+        emitted = (*self.equations.exact.emitted, *following)
+        return known | {each.name: each.whole for each in emitted}
 
     @property
     def at_all_times(self) -> str:

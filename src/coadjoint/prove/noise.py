@@ -26,6 +26,7 @@ from coadjoint.prove.findings import finding, first_nonzero, for_parameters
 from coadjoint.prove.identities import casimir_defects, gradient, noise_rates
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.zero import Examined
+from coadjoint.spec import Formula
 
 
 def has_noise(motion: Motion) -> bool:
@@ -55,12 +56,17 @@ def about_noise(motion: Motion) -> Iterator[Examined]:
     for casimir in motion.spec.casimirs:
         parts = motion.setting.components(casimir)
         yield (
-            f"the noise keeps {casimir.in_one_line} on each path: {{C, h_k}} = 0",
+            tell_kept(casimir),
             "conserved",
             partial(_list_rates, first, parts),
         )
     for one, other in combinations(fields, 2):
         yield _about_pair(motion, one, other)
+
+
+def tell_kept(casimir: Formula) -> str:
+    """The statement that the noise keeps a Casimir."""
+    return f"the noise keeps {casimir.in_one_line} on each path: {{C, h_k}} = 0"
 
 
 def _field_defects(first: Equations, each: NoiseField) -> list[Element]:

@@ -166,12 +166,15 @@ class Points:
         """Everything that has a value at a point."""
         conditions = (each.element for each in self._conditions)
         own = (*self.elements, *self._defined, *self._roots)
-        return (*own, *self.definitions.values(), *conditions)
+        loops = self.ring.region.loops
+        names = frozenset[str]().union(*map(self.ring.names_in, self.definitions.values()))
+        sides = (e for name in sorted(names & loops.keys()) for e in loops[name].sides)
+        return (*own, *self.definitions.values(), *sides, *conditions)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The symbols that are free, in the order of the field."""
-        given = self.definitions.keys() | self.branch.solved.keys()
+        given = self.definitions.keys() | self.branch.solved.keys() | self.ring.region.loops.keys()
         reached = self._reachable(self._involved) - given
         return tuple(name for name in self.ring.names if name in reached)
 
@@ -206,7 +209,10 @@ class Points:
             ValueError: A function is not defined there.
         """
         numbers, dependent = self._numbers(free), Values()
+        loops = self.ring.region.loops
         for name, element in (*self.branch.solved.items(), *self.definitions.items()):
+            for symbol in self.ring.names_in(element) & loops.keys() - numbers.keys():
+                numbers.update(loops[symbol].run_loop(symbol, lambda e: self.value(e, numbers)))
             numbers[name] = dependent[name] = self.value(element, numbers)
         return {**free, **dependent}
 

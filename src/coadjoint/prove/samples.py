@@ -255,7 +255,13 @@ class Samples:
         allowed = self._allow(point) | self._transform(point)
         point.update({name: x.value for name, x in allowed.items()})
         call.learn(values | allowed)
+        loops = self.motion.equations.loops
         for name, definition in self._needed:
+            for symbol in self.field.names_in(definition) & loops.keys() - point.keys():
+                given = loops[symbol].run_loop(
+                    symbol, lambda e: Residue(point.value(e), self.prime)
+                )
+                point.update({each: x.value for each, x in given.items()})
             point[name] = point.value(definition)
         return point
 
@@ -264,11 +270,11 @@ class Samples:
         setting, found = self.motion.setting, Values()
         for newton in self.motion.equations.iterations:
             for place, guess in zip(newton.block, newton.names, strict=True):
-                found[guess] = found[setting.velocities[place]] = self._draw()
+                found[guess] = found[setting.conjugates[place][0]] = self._draw()
                 point[guess] = found[guess].value
             for place, slope in zip(newton.block, newton.slopes, strict=True):
-                weighted = slope * setting.weights[place]
-                found[setting.momenta[place]] = Residue(point.value(weighted), self.prime)
+                _, mu, weight = setting.conjugates[place]
+                found[mu] = Residue(point.value(slope * weight), self.prime)
         return found
 
     def _on_sphere(self, variable: Variable) -> list[Residue]:

@@ -8,17 +8,20 @@ Read next: `coadjoint.render.kernels`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.families import Index
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower import normals
+from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
+from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod
 from coadjoint.render.environment import names_read, render_templates
-from coadjoint.render.family_solvers import arrange_family
+from coadjoint.render.family_solvers import Counts, arrange_family
 from coadjoint.render.kernels import (
     declaration,
     elementary_functions,
@@ -31,7 +34,9 @@ from coadjoint.render.kernels import (
     tuple_text,
     wrap,
 )
+from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
+from coadjoint.solve.methods import spherical_midpoint
 
 
 @dataclass(frozen=True)
@@ -98,6 +103,7 @@ class FamilyFunction:
         costs: Its operations, as lines.
         shape: Of its result where that does not depend on N.
         blocks: Rows of its first argument for each member.
+        rows: Further rows of it, which all members share.
         reach: Members at both ends of which each is computed alone.
         ends_before: Members at the beginning that have rates of their own.
         ends_after: Such members at the end.
@@ -111,6 +117,7 @@ class FamilyFunction:
     costs: list[str]
     shape: str
     blocks: int
+    rows: int
     reach: int
     ends_before: int
     ends_after: int
@@ -130,33 +137,44 @@ def _row(read: Read, member: str) -> str:
     return " + ".join([*addends, member] if member else addends) or "0"
 
 
-def _python_place(read: Read, is_periodic: bool) -> str:
+def _fixed_row(read: Read) -> str:
+    """The row of what does not depend on i: of all members, or of one at an end."""
+    if read.single is None:
+        return _row(read, "")
+    if read.single >= 0:
+        return _row(replace(read, rows=read.rows + read.single), "")
+    return f"{_row(replace(read, blocks=read.blocks + 1), '')} - {-read.single}"
+
+
+def _python_place(read: Read, wraps: bool) -> str:
     """Where Python and NumPy read."""
     if read.shift is None:
-        return f"{read.array}[{read.rows}]"
+        return f"{read.array}[{_fixed_row(read)}]"
     member = "j" if read.of_partner else "i"
     if read.shift:
         sign = "+" if read.shift > 0 else "-"
         member = f"i {sign} {abs(read.shift)}"
-        member = f"({member}) % size" if is_periodic else member
+        member = f"({member}) % size" if wraps else member
     return f"{read.array}[{_row(read, member)}]"
 
 
-def _c_place(read: Read, is_periodic: bool) -> str:
+def _c_place(read: Read, wraps: bool) -> str:
     """Where C reads, the address of the first lane."""
-    row = str(read.rows)
+    row = _fixed_row(read).replace("size", "_run.size")
     if read.shift is not None:
         member = "_j" if read.of_partner else "_run.i"
         if read.shift:
             sign, word = ("+", "after") if read.shift > 0 else ("-", "before")
             member = f"_run.i {sign} {abs(read.shift)}"
-            if is_periodic:
+            if wraps:
                 member = f"{word}(_run.i, {abs(read.shift)}, _run.size)"
         row = _row(read, member).replace("size", "_run.size").replace("_run._run.", "_run.")
     if read.array == "time":
         return "_run.time + _run.n * _run.timed"
     if read.array == "state":
         return f"_run.state + ({row}) * _run.stride + _run.n"
+    if read.array == "inputs":
+        return f"_run.inputs + ({row}) * _run.inputs_row + _run.n * _run.driven"
     return f"_run.parameters + ({row}) * _run.row + _run.n * _run.own"
 
 
@@ -165,7 +183,12 @@ def _c_step(read: Read) -> str:
     if read.array == "time":
         return "_run.timed"
     if read.array == "state":
-        return "_batch" if read.of_partner else ""
+        return "_batch" if read.of_partner or read.shift is None else ""
+    if read.array == "inputs":
+        alike = read.shift is None or read.of_partner
+        return "_run.driven" if alike else "!_batch || _run.driven"
+    if read.single is not None:
+        return "_indexed"
     return "_shared" if read.shift is None or read.of_partner else "_indexed"
 
 
@@ -188,7 +211,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
     edges += [max(place + 1, -place) for place, _ in loops.ends]
 
     def text(part: Part | None, *, to: str = "") -> PartText | None:
-        return None if part is None else _arrange(part, loops.is_periodic, target, to)
+        return None if part is None else _arrange(part, loops.wraps, target, to)
 
     member, finish = text(loops.member, to="member"), text(loops.finish, to="total")
     return FamilyFunction(
@@ -197,6 +220,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         costs=costs,
         shape="" if loops.shape is None else str(loops.shape),
         blocks=loops.blocks,
+        rows=loops.rows,
         reach=max(edges),
         ends_before=len(loops.first_ends),
         ends_after=len(loops.last_ends),
@@ -204,12 +228,11 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         pair_sums=loops.pair_sums,
         member=member,
         ends=tuple(
-            (place, _arrange(part, loops.is_periodic, target, "member"))
-            for place, part in loops.ends
+            (place, _arrange(part, loops.wraps, target, "member")) for place, part in loops.ends
         ),
         totals=tuple(
             TotalsText(
-                part=_arrange(each.part, loops.is_periodic, target, ""),
+                part=_arrange(each.part, loops.wraps, target, ""),
                 over=each.over,
                 before=each.before,
                 after=each.after,
@@ -222,7 +245,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
     )
 
 
-def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
+def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
     """A part as the templates of a target read it."""
     place, program = PLACES[target], part.program
     names = program.state[len(part.reads) :]
@@ -231,7 +254,7 @@ def _arrange(part: Part, is_periodic: bool, target: str, to: str) -> PartText:
         reads=tuple(
             ReadText(
                 name=read.name,
-                place=place(read, is_periodic),
+                place=place(read, wraps),
                 step=_c_step(read) if target == "c" else "",
                 of="all" if read.shift is None else "partner" if read.of_partner else "member",
             )
@@ -271,7 +294,15 @@ class FamilyContext:
         repeating: Names of the quantities of which they repeat.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
-        time: The time, if the functions take it: then there are no solvers in C, and no series.
+        time: The time, if the functions take it.
+        shared_inputs: Quantities of the inputs that members share, in order.
+        indexed_inputs: Quantities of the inputs of a member, in order.
+        shared_noise: Wiener processes that move all members, in order.
+        indexed_noise: Those of each member, in order.
+        methods: Methods that keep structure and apply, as they are judged.
+        spheres: The components of a member that are a vector on a sphere, by the name of the square
+            of its radius.
+        positions: Those that are positions, where the energy is ``T(p) + V(q)``.
     """
 
     name: str
@@ -291,6 +322,27 @@ class FamilyContext:
     supported: int = 0
     unit_of_time: str = "s"
     time: tuple[Quantity, ...] = ()
+    shared_inputs: tuple[Quantity, ...] = ()
+    indexed_inputs: tuple[Quantity, ...] = ()
+    shared_noise: tuple[Quantity, ...] = ()
+    indexed_noise: tuple[Quantity, ...] = ()
+    methods: tuple[JudgedMethod, ...] = ()
+    spheres: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    positions: tuple[int, ...] = ()
+
+    @property
+    def counts(self) -> Counts:
+        """How many rows of parameters there are, and of what drives members."""
+        groups = (self.shared, self.indexed, self.shared_inputs, self.indexed_inputs)
+        rows = (sum(len(each.components) for each in group) for group in groups)
+        shared, indexed, inputs_before, inputs = rows
+        return Counts(
+            shared=shared,
+            indexed=indexed,
+            inputs_before=inputs_before,
+            inputs=inputs,
+            time=len(self.time),
+        )
 
 
 #: Template of each file of a family, and the target in whose words it says where names are read.
@@ -314,7 +366,6 @@ def render_family(context: FamilyContext) -> dict[str, str]:
         return {
             file: _render_file(context, template, target, identity)
             for file, (template, target) in FAMILY_FILES.items()
-            if not (context.time and file.startswith("solver."))
         }
 
     return identify(render)
@@ -325,6 +376,9 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     programs = [part.program for loops in context.loops.values() for part in loops.parts]
     shared, table = rows_of(context.shared), dop853()
     indexed = rows_of(context.indexed, len(shared))
+    shared_inputs = rows_of(context.shared_inputs)
+    has_inputs = context.shared_inputs or context.indexed_inputs
+    inputs, time = ", inputs" if has_inputs else "", ", time" if context.time else ""
     values: dict[str, Any] = {
         "name": context.name,
         "spec": context.spec,
@@ -333,7 +387,12 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "lanes": LANES,
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
-        "time": ", time" if context.time else "",
+        "inputs": inputs,
+        "time": time,
+        "driving": inputs + time,
+        "noise": bool(context.shared_noise or context.indexed_noise),
+        "input_rows": shared_inputs,
+        "indexed_input_rows": rows_of(context.indexed_inputs, len(shared_inputs)),
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),
         "equations": wrap(context.equations),
         "state": rows_of(context.state),
@@ -350,7 +409,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             "SHARED": list(map(declaration, context.shared)),
             "INDEXED": list(map(declaration, context.indexed)),
             "OBSERVABLES": list(map(declaration, context.observables)),
-            **({"TIME": list(map(declaration, context.time))} if context.time else {}),
+            **_declare_driving(context),
         },
         "shapes": [
             f"{quote(name)}: {tell_shape(loops, context)}" for name, loops in context.loops.items()
@@ -362,10 +421,15 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
-            *(["time=TIME"] * bool(context.time)),
+            *(f"{name.lower()}={name}" for name in _declare_driving(context)),
+            *(["methods=METHODS"] * bool(context.methods)),
+            *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
+            *([f"positions={context.positions}"] * bool(context.positions)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
+        "methods": list(map(declaration, context.methods)),
+        "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
@@ -375,8 +439,55 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     }
     names = names_read(template)
     if "solver" in names:
-        values["solver"] = arrange_family(context.loops["rhs"], len(shared), len(indexed))
+        values["solver"] = arrange_family(context.loops["rhs"], context.counts)
+    if "normals" in names:
+        values |= {"normals": list_normals(), "sweeps": normals.SWEEPS}
     return render_templates((template,), {name: values[name] for name in names})[template]
+
+
+def _declare_driving(context: FamilyContext) -> dict[str, list[list[str]]]:
+    """What drives the members, by its names in the package, as far as there is any."""
+    groups = {
+        "SHARED_INPUTS": context.shared_inputs,
+        "INDEXED_INPUTS": context.indexed_inputs,
+        "TIME": context.time,
+        "SHARED_NOISE": context.shared_noise,
+        "INDEXED_NOISE": context.indexed_noise,
+    }
+    return {name: list(map(declaration, group)) for name, group in groups.items() if group}
+
+
+def describe_steps(context: FamilyContext) -> dict[str, Any]:
+    """What the solver in C reads of methods that keep structure."""
+    every = {**STRUCTURED, **MAPPED}
+    own = [every[each.name] for each in context.methods]
+    implicit = [each for each in own if each.name in STRUCTURED]
+    schedules = list_schedules(("flow1", "flow2"))
+    flows = {"flow1": 0, "flow2": 1}
+    count = sum(len(each.components) for each in context.state)
+    return {
+        "names": {each.macro: (each.file, each.order) for each in implicit},
+        "stages": {
+            order: list(map(repr, COMPOSITIONS[order]))
+            for order in sorted({each.order for each in implicit})
+        },
+        "spheres": [rows[0] for rows in context.spheres.values()],
+        "schedules": {
+            each.macro: [(flows[flow], repr(part)) for flow, part in schedules[each.name]]
+            for each in own
+            if each.name in MAPPED
+        },
+        "positions": [int(n in context.positions) for n in range(count)],
+        "sweeps": normals.SWEEPS,
+        "near": spherical_midpoint.NEAR,
+        "roundings": spherical_midpoint.ROUNDINGS,
+    }
+
+
+def _tell_spheres(context: FamilyContext) -> str:
+    """The vectors on spheres, as a generated package declares them."""
+    entries = (f"{quote(name)}: {rows}" for name, rows in context.spheres.items())
+    return "{" + ", ".join(entries) + "}"
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

@@ -14,7 +14,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.families import SUM, Loops, Read
 from coadjoint.lower.family_jets import PartJets, make_family_jets
 from coadjoint.lower.program import Call, Symbol, walk
-from coadjoint.render.solvers import (
+from coadjoint.render.recurrences import (
     Line,
     Stage,
     arrange_first,
@@ -95,10 +95,13 @@ class FamilySolverText:
         before: How many members at the beginning have rates of their own.
         after: How many at the end.
         components: Rows of the state for each member.
+        inputs: Inputs of each member, whose coefficients stand below those of the state.
+        inputs_before: Inputs that all members share.
+        driving: Rows of what drives all members alike: these inputs, and the time below them.
         shared: Parameters that all members share.
         indexed: Parameters of each member.
         reach: How far the members are apart that a part reads, at the most.
-        is_periodic: Whether the last member is followed by the first.
+        wraps: Whether the last member is followed by the first where neighbours are read.
         functions: Elementary functions that are called, with their arguments, sqrt left out.
         orders: Whether factors k are read.
         branches: Whether rates have branch points or jumps.
@@ -110,10 +113,13 @@ class FamilySolverText:
     before: int
     after: int
     components: int
+    inputs: int
+    inputs_before: int
+    driving: int
     shared: int
     indexed: int
     reach: int
-    is_periodic: bool
+    wraps: bool
     functions: tuple[tuple[str, str], ...]
     orders: bool
     branches: bool
@@ -125,15 +131,33 @@ class FamilySolverText:
         return (*pairs, self.member, *(part for _, part in self.ends))
 
 
-def arrange_family(rates: Loops, shared: int, indexed: int) -> FamilySolverText:
+@dataclass(frozen=True)
+class Counts:
+    """How many rows arrays have that all members share, and for each member.
+
+    Attributes:
+        shared: Parameters that all members share.
+        indexed: Parameters of each member.
+        inputs_before: Inputs that all members share.
+        inputs: Inputs of each member.
+        time: 1 where kernels take the time.
+    """
+
+    shared: int
+    indexed: int
+    inputs_before: int = 0
+    inputs: int = 0
+    time: int = 0
+
+
+def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
     """The recurrences of rates.
 
     Args:
         rates: The function ``rhs`` of a family.
-        shared: How many parameters all members share.
-        indexed: How many each member has.
+        counts: What else it reads.
     """
-    parts = [_arrange_part(each, shared) for each in make_family_jets(rates)]
+    parts = [_arrange_part(each, counts, rates.blocks) for each in make_family_jets(rates)]
     by_name = {part.name: part for part in parts}
     lines = [line for part in parts for line in list_lines(part)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
@@ -145,10 +169,13 @@ def arrange_family(rates: Loops, shared: int, indexed: int) -> FamilySolverText:
         before=len(rates.first_ends),
         after=len(rates.last_ends),
         components=rates.blocks,
-        shared=shared,
-        indexed=indexed,
+        inputs=counts.inputs,
+        inputs_before=counts.inputs_before,
+        driving=counts.inputs_before + counts.time,
+        shared=counts.shared,
+        indexed=counts.indexed,
         reach=max(part.reach for part in rates.parts),
-        is_periodic=rates.is_periodic,
+        wraps=rates.wraps,
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         orders="_orders[_m]" in read,
         branches=any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls),
@@ -163,7 +190,7 @@ def list_lines(part: PartText) -> Iterator[Line]:
     yield from part.results
 
 
-def _arrange_part(part: PartJets, shared: int) -> PartText:
+def _arrange_part(part: PartJets, counts: Counts, components: int) -> PartText:
     """The recurrences of a part."""
     jets = part.jets
     moving = jets.kept.union(jets.state)
@@ -176,7 +203,7 @@ def _arrange_part(part: PartJets, shared: int) -> PartText:
     text = PartText(
         name=part.name,
         summary=_SUMMARIES[part.name.split("_")[0]],
-        places=tuple(_list_places(part, shared)),
+        places=tuple(_list_places(part, counts, components)),
         kept=tuple(cell.name for cell in jets.cells if cell.name in moving),
         fixed=fixed,
         first=tuple(first),
@@ -208,14 +235,14 @@ def _read(*groups: Iterable[Line]) -> frozenset[str]:
     return frozenset(name for lines in groups for line in lines for name in list_names(line.value))
 
 
-def _list_places(part: PartJets, shared: int) -> Iterator[Place]:
+def _list_places(part: PartJets, counts: Counts, components: int) -> Iterator[Place]:
     """Where the names of a part are read, as far as its recurrences read them."""
     jets = part.jets
     nodes = [each.value for each in jets.fixed]
     nodes += [node for cell in jets.cells for node in (cell.value, cell.tail) if node is not None]
     nodes += [node for rate in jets.rates for node in rate]
     read = {each.name for node in nodes for each in walk(node) if isinstance(each, Symbol)}
-    for place in (_find_place(each, shared) for each in part.part.reads):
+    for place in (_find_place(each, counts, components) for each in part.part.reads):
         if place.name in read:
             yield place
     for name in part.program.state:
@@ -223,13 +250,18 @@ def _list_places(part: PartJets, shared: int) -> Iterator[Place]:
             yield Place(name, "total", (int(name.removeprefix(SUM)),), moves=True)
 
 
-def _find_place(read: Read, shared: int) -> Place:
+def _find_place(read: Read, counts: Counts, components: int) -> Place:
     """Where one name is read."""
+    if read.array == "time":
+        return Place(read.name, "driving", (counts.inputs_before,), moves=True)
     if read.shift is None:
-        return Place(read.name, "shared", (read.rows,), moves=False)
-    moves, function = read.array == "state", "partner" if read.of_partner else "own"
-    assert read.rows == (0 if moves else shared), read
-    arguments: tuple[int, ...] = (read.blocks,)
+        moves = read.array == "inputs"
+        return Place(read.name, "driving" if moves else "shared", (read.rows,), moves)
+    moves, function = read.array != "parameters", "partner" if read.of_partner else "own"
+    before = {"state": 0, "parameters": counts.shared, "inputs": counts.inputs_before}
+    assert read.rows == before[read.array], read
+    block = read.blocks + (components if read.array == "inputs" else 0)
+    arguments: tuple[int, ...] = (block,)
     if read.shift and not read.of_partner:
-        function, arguments = "near", (read.blocks, read.shift)
+        function, arguments = "near", (block, read.shift)
     return Place(read.name, function if moves else f"{function}_value", arguments, moves)

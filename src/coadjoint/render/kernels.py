@@ -18,8 +18,10 @@ from typing import Any, Final
 from coadjoint.declared import Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.mapped import list_maps, list_schedules
+from coadjoint.lower.mapped import list_maps, list_moved
+from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -37,6 +39,7 @@ from coadjoint.render.solvers import (
     arrange,
     arrange_function,
     arrange_map,
+    count_unknowns,
     describe_noise,
     describe_structured,
     select_programs,
@@ -157,9 +160,19 @@ def list_called(programs: Iterable[Program]) -> list[str]:
     return sorted(name for name in FUNCTIONS if name in called)
 
 
+def find_chunk(unknowns: int) -> int:
+    """How many members the NumPy kernel evaluates at a time, given how many unknowns it solves for.
+
+    >>> find_chunk(0), find_chunk(20)
+    (11000, 500)
+    """
+    return 210_000 // (unknowns * (unknowns + 1)) if unknowns else CHUNK
+
+
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The rendered files, given the id."""
     table, firsts = arrange_table(context.programs)
+    unknowns = count_unknowns(context.programs)
     state = rows_of(context.state)
     reconstructed = rows_of(context.reconstructed, len(state))
     shared: dict[str, Any] = {
@@ -171,7 +184,7 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
         "driving": {
             array: rows_of(quantities)
             for array, quantities in _optional(context).items()
-            if array != "reconstructed"
+            if not array.startswith("reconstructed")
         },
     }
     texts = _render_files(
@@ -180,7 +193,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
             **shared,
             "state": state,
             "reconstructed": reconstructed,
-            "chunk": CHUNK,
+            "chunk": find_chunk(unknowns),
+            "unknowns": unknowns,
             "routes": wrap([*context.routes, *note_unproved(context.supported)]),
             "equations": wrap(context.equations),
             "functions": [
@@ -202,7 +216,9 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
     )
     for kind in list_kinds([program.name for program in context.programs]):
         rows = state if kind == SOLVER else [*state, *reconstructed]
-        texts |= _render_files(kind.files, shared | {"state": rows} | _solver(context, kind))
+        texts |= _render_files(
+            kind.files, shared | {"state": rows} | describe_solver(context, kind)
+        )
     return {file: texts[file] for file in TEMPLATES if file in texts}
 
 
@@ -213,19 +229,20 @@ def _render_files(files: Iterable[str], values: Mapping[str, Any]) -> dict[str, 
     return {file: rendered[template] for file, template in templates.items()}
 
 
-def _solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
+def describe_solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     """What the templates of solvers read alone."""
     solved = hold_sides(select_programs(context.programs, kind, context.maps))
     table = dop853()
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
-        **describe_structured(solved),
+        **describe_structured(solved, find_noisy_spheres({p.name: p for p in context.programs})),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
         **arrange_sides(solved),
         "solved": {name: arrange_function(name, each) for name, each in solved.items()},
         "maps": {name: arrange_map(solved[name]) for name in list_maps(solved)},
+        "moved": list_moved(solved[name] for name in list_maps(solved)),
         "schedules": list_schedules(list_maps(solved)),
         "exact_maps": not elementary_functions(solved[name] for name in list_maps(solved)),
         "refusals": dict(context.refusals) if kind == SOLVER else {},
@@ -291,7 +308,7 @@ def _tables(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
 
 def _optional(context: KernelContext) -> dict[str, tuple[Quantity, ...]]:
     """The quantities that only some systems have, as far as this one has them."""
-    names = ("reconstructed", "inputs", "time")
+    names = ("reconstructed", "reconstructed_observables", "inputs", "time")
     return {name: getattr(context, name) for name in names if getattr(context, name)}
 
 

@@ -13,19 +13,24 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Final
+from typing import ClassVar, Final
 
 from coadjoint.errors import SpecError
 from coadjoint.lower.program import (
     Add,
     Call,
     Divide,
+    Factors,
+    Item,
     Multiply,
     Negate,
     Node,
     Number,
+    Several,
+    Solution,
     Symbol,
     children,
+    write_entries,
 )
 
 WIDTH: Final = 100
@@ -88,6 +93,8 @@ class Printer:
     function_suffix: str = ""
     names: Mapping[str, str] = field(default_factory=dict)
     ends_with_comma: bool = True
+    #: What stands before the names of the loops that solve equations.
+    loop_prefix: ClassVar[str] = ""
 
     def text(self, node: Node) -> str:
         """``node`` on one line."""
@@ -99,10 +106,13 @@ class Printer:
             case Call(function=function):
                 arguments = ", ".join(map(self.argument, children(node)))
                 return f"{self._name(function)}({arguments})"
+            case Item(of=of, place=place):
+                return f"{self.text(of)}[{place}]"
             case Negate(operand=operand):
                 return "-" + self._operand(operand, ATOM)  # so never "--x", a decrement in C
             case Add() | Multiply() | Divide():
                 return self._chain_text(node)
+        raise AssertionError(node)  # a loop, which is no expression
 
     def argument(self, node: Node) -> str:
         """``node`` as the argument of a function."""
@@ -129,6 +139,8 @@ class Printer:
         >>> Printer("np.").assignment(Symbol("Pi1"), "out[0]", 4, "dPi1/dt")
         'out[0] = Pi1  # dPi1/dt'
         """
+        if isinstance(node, Several):
+            return self.loop(node, to, column)
         note = f"  # {comment}" if comment else ""
         line = f"{to} = {self.text(node)}"
         if column + len(line) + len(note) <= WIDTH or isinstance(node, Symbol | Number):
@@ -138,6 +150,29 @@ class Printer:
             note = "  # in this order"
         inner = self.break_lines(node, WIDTH - column - 4)
         return indent([f"{to} = ({note}", *("    " + text for text in inner), ")"], column)
+
+    def loop(self, node: Several, to: str, column: int) -> str:
+        """A list with its entries, and the loop over them that puts its results in their place.
+
+        >>> print(Printer("").loop(Factors(1, (Symbol("a"),)), "f", column=0))
+        f = [0.0] * 1
+        f[0] = a
+        _factor(f, 1)
+        """
+        lines = self._write_loop(node, to, column)
+        return indent([f"{to} = [0.0] * {len(lines) - 1}", *lines], column)
+
+    def _write_loop(self, node: Several, name: str, column: int) -> list[str]:
+        """The lines that fill an array, and the call of the loop."""
+        *entries, (_, last) = write_entries(name, node)
+        given = f"{name}, {last.size}" if isinstance(last, Factors) else ""
+        if isinstance(last, Solution):
+            given = f"{self.text(last.factors)}, {name}, {len(entries)}"
+        called = "factor" if isinstance(last, Factors) else "solve"
+        return [
+            *(self.assignment(value, to, column) for to, value in entries),
+            f"{self.loop_prefix}_{called}({given})",
+        ]
 
     def break_lines(self, node: Node, width: int) -> list[str]:
         """``node`` on lines of at most ``width`` columns where it can be, one operand to a line."""

@@ -7,39 +7,39 @@ Read next: ``templates/c/solver.c.j2``, and `coadjoint.solve.steps`, the methods
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from fractions import Fraction
 from functools import reduce
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Any
 
-from coadjoint.derive.mechanics.iteration import is_guess
+from coadjoint.derive.mechanics.iteration import is_guess, slope_place
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
-from coadjoint.lower.jets import Cell, Jets, make_jets
+from coadjoint.lower.compositions import COMPOSITIONS
+from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_spheres, stays_on_orbits
-from coadjoint.lower.polynomials import product_of, sum_of
+from coadjoint.lower.orbits import find_spheres, is_nambu, stays_on_orbits
 from coadjoint.lower.program import (
-    ONE,
-    ZERO,
-    Add,
     Call,
-    Divide,
-    Multiply,
-    Negate,
-    Node,
+    Factors,
     Number,
     Program,
     Symbol,
     Table,
-    children,
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, list_structured
+from coadjoint.methods import ACTION, ASKED, TERMS, Sphere, list_structured
+from coadjoint.render.recurrences import (
+    Line,
+    Stage,
+    arrange_first,
+    arrange_stages,
+    find_next,
+    list_reads,
+)
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -47,48 +47,7 @@ from coadjoint.solve.methods import (
     spherical_midpoint,
 )
 from coadjoint.solve.methods.gauss import TABLEAUS
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS
 from coadjoint.solver_kinds import SOLVER, SolverKind
-
-#: Sums that one loop runs over: as many as vector registers hold with their factors.
-SUMS = 16
-#: Sums among which the next one of a loop is looked for.
-NEAR = 40
-#: The factor m of the sums of logarithms, exponentials, sines and cosines.
-_WEIGHT = Symbol("_orders[_m]")
-
-
-@dataclass(frozen=True)
-class Line:
-    """``name = value``.
-
-    Attributes:
-        name: What is assigned: a name of its own, or an entry of an array.
-        value: What is computed.
-    """
-
-    name: str
-    value: Node
-
-    @property
-    def is_new(self) -> bool:
-        """Whether the name is one of its own, which C declares."""
-        return "[" not in self.name
-
-
-@dataclass(frozen=True)
-class Stage:
-    """What is computed at an order k > 0 in one loop, and after it.
-
-    Attributes:
-        starts: Sums, which are zero.
-        terms: Sums with what is added for each 0 < m < k.
-        lines: What follows from them.
-    """
-
-    starts: tuple[Line, ...]
-    terms: tuple[Line, ...]
-    lines: tuple[Line, ...]
 
 
 @dataclass(frozen=True)
@@ -148,6 +107,7 @@ class SolverText:
         shared_reads: Names that ``shared`` reads.
         loops: What `first`, `stages` and `rates` are printed as, where these are loops.
         kinks: What the sides are those of, which are the last parameters; None for no sides.
+        unknowns: The largest number of unknowns that a loop solves for; 0 without loops.
     """
 
     fixed: tuple[Line, ...]
@@ -165,6 +125,13 @@ class SolverText:
     shared_reads: frozenset[str] = frozenset()
     loops: LoopText | None = None
     kinks: Program | None = None
+    unknowns: int = 0
+
+
+def count_unknowns(programs: Iterable[Program]) -> int:
+    """The largest number of unknowns that a loop solves for; 0 without loops."""
+    values = (value for program in programs for value in program.values())
+    return max((value.size for value in values if isinstance(value, Factors)), default=0)
 
 
 def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> SolverText:
@@ -191,12 +158,18 @@ def arrange(programs: Mapping[str, Program], *, is_written_out: bool = True) -> 
 
 
 def _begin(rates: Program) -> list[Line]:
-    """Order 0 of what recurrences carry and the state does not have: velocities of iterations."""
+    """Order 0 of what recurrences carry and the state does not have.
+
+    These are velocities of iterations, and rates of inputs, which are order 1 of the inputs.
+    """
     form, lines = rates.factored or rates, list[Line]()
     carried = form.state[len(rates.state) :]
     names = {name: f"{name}[0]" for name in (*rates.state, *rates.inputs, *rates.time, *carried)}
     if not carried:
         return []
+    for name in carried:
+        if (place := slope_place(name)) is not None:
+            lines.append(Line(names[name], Symbol(f"{rates.inputs[place]}[1]")))
     for statement in rates.statements_at("member"):
         own = statement.name if is_guess(statement.name) else f"_s{statement.name}"
         names.setdefault(statement.name, own)
@@ -217,7 +190,7 @@ def _arrange(
     first = [*weights, *begin, *arrange_first(jets, arrays)]
     stages = tuple(arrange_stages(jets, arrays, is_one_loop=bool(weights)))
     rates = tuple(
-        Line(f"{name}[_k + 1]", _next(tail, arrays))
+        Line(f"{name}[_k + 1]", find_next(tail, arrays))
         for name, (_, tail) in zip(jets.state, jets.rates, strict=bool(jets.rates))
     )
     lines = [*first, *rates]
@@ -238,12 +211,13 @@ def _arrange(
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         products=jets.products,
         operations=_count(arrange_function("rates", programs["rates"])),
-        reads=_reads(lines),
-        fixed_reads=_reads(fixed),
+        reads=list_reads(lines),
+        fixed_reads=list_reads(fixed),
         branches=branches,
         shared=tuple(shared),
-        shared_reads=_reads(shared),
+        shared_reads=list_reads(shared),
         kinks=programs.get("kinks"),
+        unknowns=count_unknowns(programs.values()),
     )
 
 
@@ -313,24 +287,36 @@ def describe_noise(programs: Mapping[str, Program]) -> dict[str, Any]:
         programs: As `select_programs` has them.
     """
     program = programs.get("noise")
-    names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
     return {
         "noise": 0 if program is None else len(program.outputs) // len(program.state),
         "sweeps": normals.SWEEPS,
-        "normals": {name: getattr(normals, name) for name in names},
+        "normals": list_normals(),
     }
 
 
-def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
+def list_normals() -> dict[str, Any]:
+    """The tables of random words and normal numbers by their names."""
+    names = ("ROUNDS", "MULTIPLIERS", "WEYL", "SERIES", "LOG2", "MIDDLE", "TAIL", "FAR")
+    return {name: getattr(normals, name) for name in names}
+
+
+def describe_structured(
+    programs: Mapping[str, Program], noisy_spheres: Sequence[Sphere] = ()
+) -> dict[str, Any]:
     """What templates read of methods that keep structure, under one name.
 
     Args:
         programs: As `select_programs` has them, with kinks.
+        noisy_spheres: Spheres on which noise moves the state.
     """
     bracket = programs.get("bracket_vector")
     on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
     spheres = find_spheres(programs) if on_orbits else ()
-    marks = {"orbits": on_orbits, "spheres": bool(spheres)}
+    marks = {
+        "orbits": on_orbits,
+        "spheres": bool(spheres),
+        "nambu": is_nambu({**programs, "rhs": programs["rates"]}),
+    }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
     state = () if bracket is None else bracket.state
     composed = [each for each in methods if each.file != "gauss"]
@@ -343,7 +329,9 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "has_bracket": bracket is not None,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
+            "noisy_spheres": noisy_spheres,
             "near": spherical_midpoint.NEAR,
+            "roundings": spherical_midpoint.ROUNDINGS,
             # names of a vector below the state, with their rows
             "vector": [*enumerate(state)][len(state) // 2 :],
             "gradients": {
@@ -356,6 +344,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
             },
             "sweeps": normals.SWEEPS,
+            "terms": TERMS,
         }
     }
 
@@ -374,186 +363,17 @@ def arrange_function(name: str, program: Program) -> FunctionText:
     statements = program.statements_at("member") if shares else program.statements
     lines = [Line(statement.name, statement.value) for statement in statements]
     lines += [Line(f"_rows[{row}]", each.value) for row, each in enumerate(program.outputs)]
-    return FunctionText(tuple(lines), _reads(lines))
+    return FunctionText(tuple(lines), list_reads(lines))
 
 
 def arrange_map(program: Program) -> FunctionText:
     """The lines of a map with what it needs of the parameters, as the twin in NumPy has them."""
     shared = [Line(each.name, each.value) for each in program.statements_at("parameters")]
     lines = (*shared, *arrange_function(program.name, program).lines)
-    return FunctionText(lines, _reads(lines))
+    return FunctionText(lines, list_reads(lines))
 
 
 def _count(function: FunctionText) -> int:
     """The operations of a function."""
     leaves = Symbol | Number
     return sum(not isinstance(n, leaves) for line in function.lines for n in walk(line.value))
-
-
-def _reads(lines: Iterable[Line]) -> frozenset[str]:
-    """The names that lines read, without their orders."""
-    nodes = (node for line in lines for node in walk(line.value))
-    return frozenset(node.name.split("[")[0] for node in nodes if isinstance(node, Symbol))
-
-
-def set_order(node: Node, order: str, arrays: frozenset[str]) -> Node:
-    """A node with the coefficients of one order in the place of names."""
-    match node:
-        case Symbol(name=name):
-            return Symbol(f"{name}[{order}]") if name in arrays else node
-        case Negate(operand=operand):
-            return Negate(set_order(operand, order, arrays))
-        case Call(function=function):
-            return Call(function, *(set_order(each, order, arrays) for each in children(node)))
-        case Add(left=left, right=right) | Multiply(left=left, right=right):
-            return type(node)(set_order(left, order, arrays), set_order(right, order, arrays))
-        case Divide(left=left, right=right):
-            return Divide(set_order(left, order, arrays), set_order(right, order, arrays))
-    return node
-
-
-def _next(tail: Node, arrays: frozenset[str]) -> Node:
-    """A coefficient of the state, from its rate; zero where the rate is constant."""
-    if tail == ZERO:
-        return ZERO
-    return Multiply(Symbol("_parts[_k + 1]"), set_order(tail, "_k", arrays))
-
-
-def arrange_first(jets: Jets, arrays: frozenset[str]) -> Iterator[Line]:
-    """Order 0 of all cells, and the rates."""
-    for cell in jets.cells:
-        yield _line(cell.name, "0", set_order(cell.value, "0", arrays), arrays)
-        divisor = _divisor(cell)
-        if divisor is not None:
-            yield Line(f"{cell.name}_r", Divide(ONE, set_order(divisor, "0", arrays)))
-    for name, (whole, _) in zip(jets.state, jets.rates, strict=bool(jets.rates)):
-        yield Line(f"{name}[1]", set_order(whole, "0", arrays))
-
-
-def _divisor(cell: Cell) -> Node | None:
-    """What all later orders of a cell are divided by; None for no such thing."""
-    match cell.value:
-        case Divide(right=right) if cell.tail is None:
-            return right
-        case Call(function="sqrt"):
-            return Multiply(Number(Fraction(2)), Symbol(cell.name))
-        case Call() if cell.divisor:
-            return Symbol(cell.divisor)
-    return None
-
-
-def _line(name: str, order: str, value: Node, arrays: frozenset[str]) -> Line:
-    """An entry of an array where all orders are kept, else a name."""
-    return Line(f"{name}[{order}]" if name in arrays else name, value)
-
-
-def arrange_stages(jets: Jets, arrays: frozenset[str], *, is_one_loop: bool) -> Iterator[Stage]:
-    """The loops of an order k > 0, and the coefficients that follow from their sums.
-
-    The terms of a loop are known when the order begins, whatever depends on what.
-    """
-    terms, lines = dict[str, Node](), list[Line]()
-    for cell in jets.cells:
-        if cell.tail is None:
-            total = f"{cell.name}_s"
-            terms[total], value = _recurrence(cell, Symbol(total), jets, arrays)
-        else:
-            value = set_order(cell.tail, "_k", arrays)
-        lines.append(_line(cell.name, "_k", value, arrays))
-    for loop in [list(terms.items())] if is_one_loop else _loops(terms):
-        sums = tuple(Line(name, Add(Symbol(name), term)) for name, term in loop)
-        yield Stage(tuple(Line(name, ZERO) for name, _ in loop), sums, ())
-    yield Stage((), (), tuple(_without_unread(lines, [*terms.values(), *_rates(jets, arrays)])))
-
-
-def _rates(jets: Jets, arrays: frozenset[str]) -> Iterator[Node]:
-    """The rates of the state at an order k > 0."""
-    return (set_order(tail, "_k", arrays) for _, tail in jets.rates)
-
-
-def _without_unread(lines: list[Line], others: list[Node]) -> list[Line]:
-    """Lines but for names that nothing reads, as the arguments of signs at orders k > 0."""
-    kept, read = list[Line](), {name for node in others for name in list_names(node)}
-    for line in reversed(lines):
-        if not line.is_new or line.name in read:
-            kept.append(line)
-            read.update(list_names(line.value))
-    return kept[::-1]
-
-
-def _loops(terms: dict[str, Node]) -> Iterator[list[tuple[str, Node]]]:
-    """Terms by loops, those together that read the same coefficients, which are loaded once."""
-    rest = {
-        name: [(form, frozenset(list_names(form))) for form in (term, *_turned(term))]
-        for name, term in terms.items()
-    }
-    while rest:
-        loop, loaded = list[tuple[str, Node]](), frozenset[str]()
-        while rest and len(loop) < SUMS:
-            near = islice(rest.items(), NEAR)
-            candidates = ((name, *form) for name, forms in near for form in forms)
-            name, term, read = min(candidates, key=lambda each: len(each[2] - loaded))
-            loop.append((name, term))
-            loaded |= read
-            del rest[name]
-        yield loop
-
-
-def _turned(term: Node) -> Iterator[Node]:
-    """The same sum from its other end, where no weight tells the ends apart."""
-    match term:
-        case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
-            first, second = a.removesuffix("[_m]"), b.removesuffix("[_k - _m]")
-            yield Multiply(Symbol(f"{second}[_m]"), Symbol(f"{first}[_k - _m]"))
-
-
-def list_names(node: Node) -> Iterator[str]:
-    """The names that a node reads, with their orders."""
-    return (each.name for each in walk(node) if isinstance(each, Symbol))
-
-
-def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -> tuple[Node, Node]:
-    """What is added to the sum of a cell for each m < k, and the coefficient that follows.
-
-    What is known last comes last: a processor can add the rest while it waits.
-    """
-    name, reciprocal, part = cell.name, Symbol(f"{cell.name}_r"), Symbol("_parts[_k]")
-
-    def term(left: str, right: str, *weight: Symbol) -> Node:
-        return product_of([*weight, Symbol(f"{left}[_m]"), Symbol(f"{right}[_k - _m]")])
-
-    def ends(left: str, right: str) -> Node:
-        return Multiply(Symbol(f"{left}[_k]"), Symbol(f"{right}[0]"))
-
-    match cell.value:
-        case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
-            return term(a, b), Add(Add(total, ends(b, a)), ends(a, b))
-        case Divide(left=above, right=Symbol(name=b)):
-            moves = isinstance(above, Symbol) and above.name in jets.moving
-            known = Add(set_order(above, "_k", arrays), Negate(total)) if moves else Negate(total)
-            return term(b, name), Multiply(Add(known, Negate(ends(b, name))), reciprocal)
-        case Call(function="sqrt", argument=argument):
-            rest = Add(set_order(argument, "_k", arrays), Negate(total))
-            return term(name, name), Multiply(rest, reciprocal)
-        case Call(argument=Symbol(name=a), other=None):
-            ((factor, minus),) = cell.factors
-            if not cell.divisor:
-                whole = Add(Multiply(part, total), ends(a, factor))
-                return term(a, factor, _WEIGHT), Negate(whole) if minus else whole
-            if not factor:
-                left = sum_of([(minus, Symbol(f"{a}[_k]")), (True, Multiply(part, total))])
-                return term(name, cell.divisor, _WEIGHT), Multiply(left, reciprocal)
-        case Call() if cell.divisor:
-            pairs = list(zip(children(cell.value), cell.factors, strict=True))
-            added = [(minus, term(_name_of(a), factor)) for a, (factor, minus) in pairs]
-            last = [(minus, ends(_name_of(a), factor)) for a, (factor, minus) in pairs]
-            inner = sum_of([*added, (True, term(name, cell.divisor))])
-            whole = Add(Multiply(part, total), sum_of(last))
-            return Multiply(_WEIGHT, inner), Multiply(whole, reciprocal)
-    raise AssertionError(cell)
-
-
-def _name_of(node: Node) -> str:
-    """The name that a node is."""
-    assert isinstance(node, Symbol), node
-    return node.name

@@ -65,13 +65,14 @@ class _Run(ctypes.Structure):
         ("recorded", _SIZE),
         ("terms", _PLACE),
         ("term_count", _SIZE),
+        ("late", _PLACE),
     )
 
 
 class _StructuredRun(_Run):
     """With the fields of a system that has methods that keep structure."""
 
-    _fields_ = (("low", _PLACE), ("sweeps", _PLACE))
+    _fields_ = (("memory", _PLACE), ("sweeps", _PLACE))
 
 
 class _NoisyRun(_Run):
@@ -160,9 +161,10 @@ def _describe(ensemble: Ensemble) -> _Run:
     members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
     further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound}
     kind: type[_Run] = _NoisyRun
-    if ensemble.low is not None and ensemble.sweeps is not None:
+    if ensemble.memory is not None:
         kind = _StructuredRun
-        further = {"low": _place(ensemble.low), "sweeps": _place(ensemble.sweeps)}
+        further = {"memory": _place(ensemble.memory)}
+        further["sweeps"] = None if ensemble.sweeps is None else _place(ensemble.sweeps)
     if ensemble.kinks is not None and ensemble.brief is not None:
         kind = _KinkedRun
         further = {"kinks": _place(ensemble.kinks), "brief": _place(ensemble.brief)}
@@ -189,6 +191,7 @@ def _describe(ensemble: Ensemble) -> _Run:
         atol=ensemble.atol,
         size=ensemble.size,
         max_steps=ensemble.max_steps,
+        late=None if ensemble.late is None else _place(ensemble.late),
         **further,
     )
 

@@ -42,7 +42,7 @@ SECONDS: Final = 10.0
 SHARE: Final = 0.05
 #: Names in a file, next to those of an ensemble.
 _HEAD: Final = "head"
-_FORM: Final = 2
+_FORM: Final = 3
 #: What stands before the names of what is known of events and steps.
 _RECORDING: Final = "recording"
 #: The name of the kinks that were met.

@@ -50,6 +50,18 @@ class Choice:
         fixed = dict.fromkeys((*STRUCTURED, *MAPPED), 3) | {"dop853": 7, "rk4": 3}
         return fixed.get(self.name, self.order)
 
+    def count_memory(self, rows: int, *, searches: bool = True) -> int:
+        """How many numbers a step of so many rows leaves for the next one besides the state.
+
+        Args:
+            rows: Those of the state.
+            searches: Whether it leaves where it was searched for; of equal members it does not.
+        """
+        known = {**STRUCTURED, **MAPPED}.get(self.name)
+        if not searches:
+            return rows if self.is_structured else 0
+        return 0 if known is None or self.is_noisy else known.count_memory(rows)
+
     @property
     def is_implicit(self) -> bool:
         """Whether a step may take many evaluations."""

@@ -47,14 +47,11 @@ def compare_steps(
         OutputError: The NumPy twin does not run.
     """
     exact = target == "c" and has_same_bits(system, choice.name)
-    n, sides = count_rows(system, choice), len(list_kinks(system, choice))
+    n = count_rows(system, choice)
     adaptive = exact and choice.name in ("taylor", "dop853")
     runs = [*([(0.0, MOST_STEPS, True)] if adaptive else []), (2.0**-7, MOST_STEPS, True)]
     for size, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
-        found, expected = (
-            _probe(system, n, sides, size, most, is_structured=choice.is_structured)
-            for _ in range(2)
-        )
+        found, expected = (_probe(system, choice, size, most) for _ in range(2))
         room = most * PROBES + ROOM
         one, other = (Record.make(n, choice.degree, room) for _ in range(2))
         while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
@@ -92,10 +89,9 @@ def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
     return tuple(module.value("KINKS")) if module.has("KINKS") else ()
 
 
-def _probe(
-    system: System, rows: int, sides: int, size: float, most: int, *, is_structured: bool
-) -> Ensemble:
+def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
     """A few members at the start of a few steps, driven by two lines, with four samples."""
+    rows = count_rows(system, choice)
     source = np.random.default_rng(0)
     samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
 
@@ -118,8 +114,9 @@ def _probe(
         size=size,
         max_steps=most,
         seed=1,
-        sides=sides,
-        is_structured=is_structured,
+        sides=len(list_kinks(system, choice)),
+        remembered=choice.count_memory(rows),
+        is_implicit=choice.is_structured,
     )
     run.begin(0.0)
     return run
@@ -136,8 +133,9 @@ def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
     pairs.append((found.out, expected.out))
     pairs += [(found.list_met(), expected.list_met())]
     if exact:
-        if found.low is not None and expected.low is not None:
-            pairs += [(found.low, expected.low), (found.sweeps, expected.sweeps)]
+        for name in ("late", "memory", "sweeps"):
+            if getattr(found, name) is not None:
+                pairs.append((getattr(found, name), getattr(expected, name)))
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
     return all(_are_close(a, b) for a, b in pairs)
 

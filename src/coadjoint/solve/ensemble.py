@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coadjoint.solve.limits import NEAR, NONE, Limits, Step
-from coadjoint.solve.steps import Lanes
+from coadjoint.solve.steps import Lanes, add_low
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -186,7 +186,9 @@ class Ensemble:
         seed: Of the noise, where there is some.
         bound: The largest size of its normal numbers.
         sides: How many kinks the rates have.
-        is_structured: Whether the method keeps structure: what rounding took is kept.
+        remembered: How many numbers a step leaves for the next one besides the state.
+        is_implicit: Whether steps are solved for by sweeps, which are counted.
+        has_clock: Whether what rounding takes of the time is kept.
         time: Where they are in time, ``(N,)``.
         step: The steps to try next, ``(N,)``; 0 to have them chosen.
         next: The sample that comes next, ``(N,)``.
@@ -196,8 +198,11 @@ class Ensemble:
         kinks: Kinks that they have met, ``(N,)``; None where rates have none.
         brief: How many of the last of these followed one another within 2^-30 of a step, or of the
             time; likewise.
-        low: What rounding took of the state, ``(n, N)``; None where the method keeps none.
-        sweeps: Sweeps of all steps, ``(N,)``; likewise.
+        late: What rounding took of the time, ``(N,)``, so that n steps of length h end at the
+            number that is nearest to n h; None where nothing is kept of it.
+        memory: What steps leave for the next one: first what rounding took of the state,
+            ``(remembered, N)``; None where the method leaves nothing.
+        sweeps: Sweeps of all steps, ``(N,)``; None where there are none.
         met: The kinks that were met: rows of the member, how many steps that made with it, which
             kink, and the time; in no order.
     """
@@ -215,8 +220,11 @@ class Ensemble:
     seed: int = 0
     bound: float = np.inf
     sides: int = 0
-    is_structured: bool = False
-    low: Array | None = field(init=False, default=None)
+    remembered: int = 0
+    is_implicit: bool = False
+    has_clock: bool = True
+    late: Array | None = field(init=False, default=None)
+    memory: Array | None = field(init=False, default=None)
     sweeps: Counts | None = field(init=False, default=None)
     time: Array = field(init=False)
     step: Array = field(init=False)
@@ -238,8 +246,12 @@ class Ensemble:
         self.next = np.full(members, first, np.uint64)
         self.steps, self.rejected = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
         self.status = np.zeros(members, np.int8)
-        if self.is_structured:
-            self.low, self.sweeps = np.zeros(self.state.shape), np.zeros(members, np.uint64)
+        if self.has_clock:
+            self.late = np.zeros(members)
+        if self.remembered:
+            self.memory = np.zeros((self.remembered, members))
+        if self.is_implicit:
+            self.sweeps = np.zeros(members, np.uint64)
         if self.sides:
             self.kinks, self.brief = np.zeros(members, np.uint64), np.zeros(members, np.uint64)
 
@@ -292,8 +304,7 @@ class Ensemble:
         limits.find_sides(lanes)
         attempt = method.try_step(lanes)
         took, state = attempt.took, limits.project(lanes, attempt.took, attempt.state)
-        time = lanes.time + took
-        time = np.where(took == lanes.end - lanes.time, lanes.end, time)
+        time, late = self._find_time(going, lanes, took)
         finite = np.isfinite(state).all(axis=0)
         stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
@@ -304,8 +315,7 @@ class Ensemble:
             lanes.step = np.where(far, took * 0.5, lanes.step)
             accepted &= ~far
             outside = np.where(far, took, outside)
-        until = np.where(outside < took, lanes.time + outside, time)
-        inside, outside = self._store_samples(going, step, until, outside)
+        inside, outside = self._store_samples(going, step, time, outside)
         left = outside < took
         left |= accepted & ~limits.are_held(lanes, took, state)
         met = np.zeros(left.shape, bool)
@@ -315,6 +325,7 @@ class Ensemble:
             time = np.where(left, lanes.time + inside, time)
             crossing = step.cross(left, outside, (state, time))
             met, state, time = crossing.met, crossing.state, crossing.time
+            late = np.where(left, 0.0, late)
             left &= ~met
             self._store_kinks(going, crossing.kinks, time)
         if record is not None and accepted.any():
@@ -322,6 +333,8 @@ class Ensemble:
         self.state[:, going] = np.where(accepted, state, lanes.state)
         self._take_left(going, attempt, accepted, limits)
         self.time[going] = np.where(accepted, time, lanes.time)
+        if self.late is not None:
+            self.late[going] = np.where(accepted, late, self.late[going])
         self.step[going] = lanes.step
         self.steps[going] += accepted
         self.rejected[going] += ~accepted
@@ -333,24 +346,35 @@ class Ensemble:
         status[accepted & self._count_kinks(going, met, accepted, short)] = Status.SLIDING
         status[left] = Status.DOMAIN
         status[~accepted & stuck & finite] = Status.STEP_UNDERFLOW
-        if attempt.left is not None:
-            status[~accepted & stuck & ~attempt.left.solved] = Status.NOT_SOLVED
         lost = stuck | np.full(stuck.shape, not method.tries_again)
         status[~accepted & ~finite & lost] = Status.NONFINITE
+        if attempt.left is not None:
+            status[~accepted & ~attempt.left.solved] = Status.NOT_SOLVED
         self.status[going] = status
 
     def _take_left(
         self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
     ) -> None:
-        """Keep what rounding took of a step that was accepted.
+        """Keep what a step that was accepted leaves.
 
         What moves a state onto constraints is no rounding, and there the sums begin anew.
         """
-        if attempt.left is None or self.low is None or self.sweeps is None:
+        if attempt.left is None or self.memory is None:
             return
-        low = attempt.left.low if limits.projection is None else np.zeros(attempt.state.shape)
-        self.low[:, going] = np.where(accepted, low, self.low[:, going])
-        self.sweeps[going] += np.where(accepted, attempt.left.sweeps, np.uint64(0))
+        memory = attempt.left.memory
+        if limits.projection is not None:
+            memory[: len(attempt.state)] = 0.0
+        own = self.memory[: len(memory)]
+        own[:, going] = np.where(accepted, memory, own[:, going])
+        if self.sweeps is not None:
+            self.sweeps[going] += np.where(accepted, attempt.left.sweeps, np.uint64(0))
+
+    def _find_time(self, going: NDArray[np.intp], lanes: Lanes, took: Array) -> tuple[Array, Array]:
+        """The time after a step, and what rounding takes of it."""
+        late = np.zeros(took.shape) if self.late is None else self.late[going]
+        time, late = add_low(lanes.time, late, took)
+        ends = took == lanes.end - lanes.time
+        return np.where(ends, lanes.end, time), np.where(ends, 0.0, late)
 
     def _record(
         self,
@@ -407,7 +431,7 @@ class Ensemble:
             slopes=slopes,
             member=going.astype(np.uint64),
             steps=self.steps[going],
-            low=None if self.low is None else self.low[:, going],
+            memory=None if self.memory is None else self.memory[:, going],
         )
 
     def _store_kinks(self, going: NDArray[np.intp], crossed: Mask, time: Array) -> None:
@@ -429,15 +453,23 @@ class Ensemble:
         return np.asarray(self.brief[going] > 2 * self.sides + 8)
 
     def _store_samples(
-        self, going: NDArray[np.intp], step: Step, until: Array, outside: Array
+        self, going: NDArray[np.intp], step: Step, time: Array, outside: Array
     ) -> tuple[Array, Array]:
-        """Store states at the samples that a step passes until some time.
+        """Store states at the samples that a step passes, as far as it is not outside.
+
+        Args:
+            going: The members.
+            step: The step.
+            time: When it ends. A sample then is its end, to the bit.
+            outside: When it is found outside, or its length.
 
         Returns:
             A time after its start at which a member is in the domain, and a later one: at which it
             is outside, or the end of the step.
         """
         took, out = step.attempt.took, self.out
+        until = np.where(outside < took, step.lanes.time + outside, time)
+        whole = outside >= took
         inside, open_ = np.zeros(took.shape), step.accepted.copy()
         while out is not None:
             place = self.next[going].astype(np.intp)
@@ -446,7 +478,8 @@ class Ensemble:
             wanted = open_ & known & (at <= until)
             if not wanted.any():
                 break
-            after = np.where(wanted, at - step.lanes.time, took)
+            within = wanted & ~(whole & (at == time))
+            after = np.where(within, at - step.lanes.time, took)
             state = step.find_state(after)
             good = step.limits.are_held(step.lanes, after, state)
             outside = np.where(wanted & ~good, after, outside)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
 from coadjoint.families import Index
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from coadjoint.methods import JudgedMethod
     from coadjoint.render.targets.modules import KernelModule
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.family_steps import FamilyTwin
@@ -41,12 +43,16 @@ class FamilySystem(System):
 
     Rows of the state are the first component of members 0 to N-1, then the second one of them, and
     so on: ``state.reshape(components, N, *batch)``. A row is called ``S1[0]``. Parameters are those
-    that all members share, then those of each member in the same order.
+    that all members share, then those of each member in the same order, and so are inputs.
 
     Attributes:
         index: The index, with N as its size.
         small: The fewest members for which the equations hold.
+        NOISE: The Wiener processes, those that move all members before those of each.
         steppers: Who makes its steps, by method and target, as far as that was asked for.
+        spheres: Components of a member that are a vector on a sphere, by the name of the square of
+            its radius, if a member has nothing else.
+        positions: Those that are positions, where the energy is ``T(p) + V(q)``.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -67,14 +73,30 @@ class FamilySystem(System):
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
         repeating: Sequence[str] = (),
         time: Quantities | None = None,
+        shared_inputs: Quantities | None = None,
+        indexed_inputs: Quantities | None = None,
+        shared_noise: Quantities | None = None,
+        indexed_noise: Quantities | None = None,
+        methods: Sequence[JudgedMethod] = (),
+        spheres: Mapping[str, tuple[int, ...]] = MappingProxyType({}),
+        positions: tuple[int, ...] = (),
     ) -> None:
         self.index, self.small = index
+        self.spheres, self.positions = spheres, positions
         self._declared = (state, shared, indexed, observables, functions, elementary)
+        alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
+        noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
+        self._driving = {"shared_inputs": alike, "indexed_inputs": own}
+        self._driving |= {"shared_noise": noise, "indexed_noise": own_noise}
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
         size = self.index.size or self.small
-        check_memory(name, self.index, size * (state.size + indexed.size))
+        counted = state.size + indexed.size + own.size + own_noise.size
+        check_memory(name, self.index, size * counted)
         self.members = size
+        self.NOISE = Quantities(
+            *noise.values(), *(self._repeat(each, size) for each in own_noise.values())
+        )
         super().__init__(
             name,
             file,
@@ -89,9 +111,19 @@ class FamilySystem(System):
             },
             elementary,
             identity,
+            inputs=Quantities(
+                *alike.values(), *(self._repeat(each, size) for each in own.values())
+            ),
             time=time,
             unit_of_time=unit_of_time,
+            methods=methods,
         )
+
+    def rows(self, function: str) -> Quantities:
+        """What the rows of the first argument of a function are."""
+        if KERNEL_FUNCTIONS[function].below == "noise":
+            return Quantities(*self.STATE.values(), *self.NOISE.values())
+        return super().rows(function)
 
     @property
     def size(self) -> int:
@@ -128,6 +160,18 @@ class FamilySystem(System):
         own, pairs = int(module.value("MEMBER")), int(module.value("PAIR"))
         return lanes * own * self.size, lanes * pairs * self.size**2
 
+    def rows_of(self, components: Sequence[int]) -> list[slice]:
+        """The rows of components of all members in a state."""
+        return [slice(n * self.size, (n + 1) * self.size) for n in components]
+
+    def find_radii(self, states: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """The squares of the radii of all members, by their name, ``(N, *batch)``."""
+        return {
+            name: states[self.rows_of(components)[0]] ** 2
+            + sum(states[rows] ** 2 for rows in self.rows_of(components)[1:])
+            for name, components in self.spheres.items()
+        }
+
     def resize(self, sizes: Mapping[str, int]) -> FamilySystem:
         """The system with another number of members.
 
@@ -155,6 +199,10 @@ class FamilySystem(System):
             defaults=self._defaults,
             repeating=self._repeating,
             time=self.TIME,
+            **self._driving,
+            methods=self.METHODS,
+            spheres=self.spheres,
+            positions=self.positions,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
@@ -185,7 +233,9 @@ class FamilySystem(System):
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
         told = f"{members}; state {state}; parameters {parameters or 'none'}"
-        return f"<System {self.name}: {told}{'; time ' * bool(self.TIME)}{', '.join(self.TIME)}>"
+        driving = {"inputs": self.INPUTS, "noise": self.NOISE, "time": self.TIME}
+        told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
+        return f"<System {self.name}: {told}>"
 
 
 def lacks_size(system: System) -> bool:

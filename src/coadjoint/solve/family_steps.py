@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import ctypes
 import threading
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,11 +19,16 @@ import numpy as np
 from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.tableau import STAGES
+from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS
+from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
+from coadjoint.solve.methods.sequence import Maps
+from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8
 from coadjoint.solve.twins import StepwiseStepper
 
@@ -29,6 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
+    from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.steps import Lanes, Method
@@ -38,9 +46,17 @@ if TYPE_CHECKING:
 #: Numbers that a first call works on, about: it ends within some hundredths of a second.
 FIRST_NUMBERS: Final = 1 << 14
 #: What the objects of methods have in addition to what all have.
-FUNCTIONS: Final = {"rk4": (), "dop853": ("try",), "taylor": ("expand", "room")}
+FUNCTIONS: Final = {
+    "rk4": (),
+    "dop853": ("try",),
+    "taylor": ("expand", "room"),
+    "heun": (),
+    "midpoint": (),
+}
 #: What two runs have alike.
 COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
+#: And of implicit methods.
+LEFT: Final = ("memory", "sweeps")
 #: Arrays of an ensemble that are handed over.
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
 #: How near states are whose functions have other roundings.
@@ -69,6 +85,13 @@ _RUN: Final = (
     ("path_row", _SIZE),
     ("path_order", _SIZE),
 )
+#: What it has in addition where inputs or the time drive the members.
+_DRIVEN_RUN: Final = (
+    ("driving_rows", _SIZE),
+    ("driving", _PLACE),
+    ("slopes", _PLACE),
+    ("now", _PLACE),
+)
 #: ``NAME_solver_ensemble``, likewise.
 _ENSEMBLE: Final = (
     ("sizes", _PLACE),
@@ -84,6 +107,17 @@ _ENSEMBLE: Final = (
     ("max_steps", _SIZE),
     ("work", _SIZE),
     ("scratch", _PLACE),
+    ("memory", _PLACE),
+    ("sweeps", _PLACE),
+)
+#: What moves members with noise.
+_NOISE: Final = (("processes", _SIZE), ("seed", ctypes.c_uint64), ("bound", _DOUBLE))
+#: Likewise, and the lines of inputs.
+_DRIVEN: Final = (("driving_rows", _SIZE),)
+_INPUTS: Final = (
+    *((name, _PLACE) for name in ("knots", "inputs", "input_slopes")),
+    ("pieces", _SIZE),
+    ("inputs_stride", _SIZE),
 )
 
 
@@ -100,19 +134,59 @@ class FamilyTwin(StepwiseStepper):
         system: Whose steps they are.
         choice: A generated method.
         target: Who computes the rates.
+        inputs: Inputs as a function of time; None where they are lines, as in every ensemble.
     """
 
-    def __init__(self, system: FamilySystem, choice: Choice, target: str) -> None:
-        super().__init__(system, choice, target, None)
-        self._members = system.fixed["sizes"]
+    def __init__(
+        self, system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+    ) -> None:
+        super().__init__(system, choice, target, inputs)
+        self._members, self._family = system.fixed["sizes"], system
+        #: Rows of inputs, and the time below them.
+        self.driving_rows = system.INPUTS.size + system.TIME.size
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
 
+    @property
+    def _noise(self) -> dict[str, Any]:
+        """As `NumpyStepper` has it: of equal members all processes act together."""
+        return {
+            "along": partial(self._evaluate, ("noise_vector",)),
+            "processes": self._family.NOISE.size,
+        }
+
+    def _method(self, run: Ensemble) -> Method:
+        """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
+        choice, family = self._choice, self._family
+        if choice.is_structured:
+            spheres = [(tuple(family.rows_of(rows)),) for rows in family.spheres.values()]
+            functions = {"rates": self._rates, "field": self._rates, "spheres": spheres}
+            return Structured(choice.name, run.size, functions, branches=self._branches)
+        if choice.name in MAPPED:
+            count = len(family.STATE.components) // family.size
+            moving = set(family.positions), set(range(count)).difference(family.positions)
+            flows = {
+                f"flow{n}": tuple(family.rows_of(sorted(own))) for n, own in enumerate(moving, 1)
+            }
+            steps = [
+                (self._shift, h, flows[flow]) for flow, h in list_schedules(flows)[choice.name]
+            ]
+            return Maps(steps, self._rates, run.size, is_compensated=False, branches=self._branches)
+        return super()._method(run)
+
+    def _shift(self, state: Array, parameters: Array, after: Array) -> Array:
+        """What a flow adds to the rows that it moves, by their rates, which the others decide."""
+        there, given = map(np.ascontiguousarray, (state, parameters))
+        call = Call(there, given, np.empty(state.shape), {"sizes": self._members})
+        return np.asarray(after * self._find_values("rhs", call))
+
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
-        path: Array = self._series(lanes.state, lanes.parameters, self._members, order)
+        driven = (lanes.driving, lanes.slopes) if self.driving_rows else ()
+        given = (lanes.state, lanes.parameters, *driven, self._members)
+        path: Array = self._series(*given, order)
         return path
 
 
@@ -128,11 +202,15 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        called = {"rates": "rhs"} | {n: n for n in ("projection",) if n in system.functions}
+        others = ("projection", "noise_vector")
+        called = {"rates": "rhs"} | {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
-        self._run_type = _make_structure(tuple(called), _RUN)
-        self._ensemble_type = _make_structure(tuple(called), _ENSEMBLE)
-        names = ("advance", "work", *FUNCTIONS[choice.name])
+        is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
+        self._run_type = _make_structure(tuple(called), (*_RUN, *_DRIVEN_RUN * is_driven))
+        has_noise = bool(system.NOISE)
+        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
+        self._ensemble_type = _make_structure(tuple(called), fields)
+        names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
         self.first_work = max(1, FIRST_NUMBERS // system.STATE.size)
@@ -167,15 +245,28 @@ class FamilyStepper(FamilyTwin):
             size=run.size,
             max_steps=run.max_steps,
         )
-        for name in ARRAYS:
+        if self.driving_rows:
+            given.driving_rows = self.driving_rows
+        if self._family.NOISE:
+            given.processes = self._family.NOISE.size
+            given.seed, given.bound = run.seed, run.bound
+        if len(run.inputs.values):
+            given.pieces = run.inputs.pieces
+            given.inputs_stride = run.inputs.values.shape[1] if run.inputs.own else 0
+            lines = {"knots": run.inputs.knots, "inputs": run.inputs.values}
+            for name, array in (lines | {"input_slopes": run.inputs.slopes}).items():
+                assert array.flags.c_contiguous, name
+                setattr(given, name, array.ctypes.data)
+        for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
         return given
 
-    def _give(self, state: Array, parameters: Array) -> Any:
-        """What every function of the solver takes."""
-        return self._run_type(
+    def _give(self, lanes: Lanes) -> Any:
+        """What every function of the solver takes, from contiguous arrays that live meanwhile."""
+        state, parameters = lanes.state, lanes.parameters
+        given = self._run_type(
             **self._called,
             rows=len(state),
             count=state.shape[1],
@@ -184,6 +275,10 @@ class FamilyStepper(FamilyTwin):
             sizes=self._members.ctypes.data,
             state=state.ctypes.data,
         )
+        if self.driving_rows:
+            given.driving_rows = self.driving_rows
+            given.driving, given.slopes = lanes.driving.ctypes.data, lanes.slopes.ctypes.data
+        return given
 
     def _provide(self, size: int) -> int:
         """Where this thread has memory for so many numbers to work with."""
@@ -192,21 +287,24 @@ class FamilyStepper(FamilyTwin):
             room = self._own.room = np.empty(size)
         return room.ctypes.data
 
-    def _find_stages(self, run: Ensemble, state: Array, step: float) -> tuple[Any, Array]:
+    def _find_stages(self, run: Ensemble, lanes: Lanes, step: float) -> tuple[Any, Array]:
         """The stages of a step of one trajectory, and its end below them."""
-        parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
-        given = self._give(state, parameters)
+        own = _make_contiguous(lanes)
+        own.parameters = np.ascontiguousarray(run.parameters.reshape(len(run.parameters)))
+        given = self._give(own)
         given.step, given.rtol, given.atol = step, run.rtol, run.atol
-        rows = np.empty((STAGES + 2, *state.shape))
+        rows, now = np.empty((STAGES + 2, *own.state.shape)), np.empty(self.driving_rows)
         given.work = rows.ctypes.data
+        if self.driving_rows:
+            given.now = now.ctypes.data
         self._functions["try"](ctypes.byref(given))
         return given, rows
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
-        state, parameters = map(np.ascontiguousarray, (lanes.state, lanes.parameters))
-        path = np.empty((len(state), order + 1, state.shape[1]))
-        given = self._give(state, parameters)
+        own = _make_contiguous(lanes)
+        path = np.empty((len(own.state), order + 1, own.state.shape[1]))
+        given = self._give(own)
         given.path = path.ctypes.data
         given.work = self._provide(self._functions["room"](ctypes.byref(given)))
         self._functions["expand"](ctypes.byref(given))
@@ -219,6 +317,12 @@ class FamilyStepper(FamilyTwin):
         return _Stages(self, run)
 
 
+def _make_contiguous(lanes: Lanes) -> Lanes:
+    """Lanes whose arrays C can read."""
+    names = ("state", "parameters", "driving", "slopes")
+    return replace(lanes, **{name: np.ascontiguousarray(getattr(lanes, name)) for name in names})
+
+
 class _Stages(DormandPrince8):
     """DOP853 for one trajectory with stages in C; see `DormandPrince8`."""
 
@@ -229,8 +333,7 @@ class _Stages(DormandPrince8):
 
     def _find_stages(self, lanes: Lanes, h: Array) -> tuple[list[Array], Array]:
         """As `DormandPrince8` does."""
-        stepper, state = self._stepper, np.ascontiguousarray(lanes.state)
-        made, rows = stepper._find_stages(self._run, state, float(h[0]))
+        made, rows = self._stepper._find_stages(self._run, lanes, float(h[0]))
         self._errors = made.five, made.three
         return list(rows[:STAGES]), rows[STAGES]
 
@@ -273,14 +376,17 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
     # where roundings differ, one may decide on the length of a step
     exact = target == "c" and (choice.name != "taylor" or not system.elementary)
     lengths = [(3, 2.0**-7), (15, 2.0**-7)]
-    if exact and choice.name != "rk4":
+    if exact and choice.name in ("dop853", "taylor"):
         lengths += [(1, 0.0), (15, 0.0)]
+    structured = choice.is_structured
+    if structured and exact:  # other roundings have other sweeps, and other rests of sums
+        lengths += [(1, 2.0**-7), (1, 64.0)]  # the last one has no solution
     for members, step in lengths:
-        found, expected = (_probe(sized, members, step) for _ in range(2))
+        found, expected = (_probe(sized, choice, members, step) for _ in range(2))
         for stepper, run in ((fresh, found), (twin, expected)):
             while stepper.advance(run, 0, members, 5):
                 pass
-        for name in COMPARED:
+        for name in (*COMPARED, *(LEFT if structured and exact else ())):
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
@@ -294,7 +400,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
                 )
 
 
-def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
+def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> Ensemble:
     """A few trajectories at the start of twelve steps, with two samples on the way."""
     source = np.random.default_rng(0)
     end = 12 * (step or 2.0**-7)
@@ -308,17 +414,31 @@ def _probe(system: FamilySystem, members: int, step: float) -> Ensemble:
     run = Ensemble(
         state=state,
         parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
-        inputs=Inputs(np.zeros(1), np.zeros((0, 1)), np.zeros((0, 1))),
-        has_time=False,
+        inputs=_probe_inputs(system, source, end),
+        has_time=bool(system.TIME),
         samples=np.array([0.0, 0.55 * end, end]),
         out=np.zeros((system.STATE.size, members, 3)),
         rtol=1e-9,
         atol=1e-12,
         size=step,
         max_steps=1000,
+        seed=1,
+        bound=2.0,
+        remembered=choice.count_memory(system.STATE.size, searches=False),
+        is_implicit=choice.is_structured,
+        has_clock=False,
     )
     run.begin(0.0)
     return run
+
+
+def _probe_inputs(system: FamilySystem, source: np.random.Generator, end: float) -> Inputs:
+    """Lines of inputs, of which the second begins within a step."""
+    values, slopes = (source.uniform(0.5, 2.0, (system.INPUTS.size, 2)) for _ in range(2))
+    knots = np.array([0.0, 0.3 * end])
+    if not system.INPUTS:
+        knots, values, slopes = knots[:1], values[:, :1], slopes[:, :1]
+    return Inputs(knots, values, slopes)
 
 
 def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_auto: bool) -> str:
@@ -330,8 +450,6 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
         members: How many trajectories there are.
         is_auto: Whether it does not apply either where ``dop853`` is faster.
     """
-    if system.TIME:
-        return "its equations name the time, of which series of equal members know nothing"
     if not (system.folder / "solver.py").is_file():
         return "its folder was generated without series: run `coadjoint regenerate`"
     own, pairs = system.count_series(order, members)
@@ -346,16 +464,27 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
     return ""
 
 
-def find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """Who makes the steps of a family: C, or its twin where that is asked for or C fails."""
+def find_stepper(
+    system: FamilySystem, choice: Choice, target: str, inputs: Function | None = None
+) -> FamilyTwin:
+    """Who makes the steps of a family: C, or its twin where that is asked for or C fails.
+
+    Args:
+        system: The family.
+        choice: A generated method.
+        target: Who computes the rates.
+        inputs: A function of Python, which only the twin can call.
+    """
+    if inputs is not None:
+        return FamilyTwin(system, choice, target, inputs)
     if (choice, target) not in system.steppers:
         system.steppers[choice, target] = _find_stepper(system, choice, target)
     return system.steppers[choice, target]
 
 
 def _find_stepper(system: FamilySystem, choice: Choice, target: str) -> FamilyTwin:
-    """The same, of a system that has none yet; with the time the twin leads all steps."""
-    if target in FLAGS and not system.TIME:
+    """The same, of a system that has none yet."""
+    if target in FLAGS:
         try:
             return load(system, choice, target)
         except (CompilerError, CrossCheckError) as error:

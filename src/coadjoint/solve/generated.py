@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.methods import BACKWARD, MAPPED, STRUCTURED, list_backward
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
@@ -36,9 +36,11 @@ from coadjoint.solve.starts import check_starts
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.twins import StepwiseStepper
-from coadjoint.solver_kinds import list_kinds
+from coadjoint.solver_kinds import SOLVER, list_kinds
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from coadjoint.solve.choices import Choice
@@ -82,8 +84,15 @@ def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
         reason = "it moves the state alone, and what is reconstructed is asked for"
         return dict.fromkeys(MAPPED, reason)
     if isinstance(system, FamilySystem):
-        return dict.fromkeys(MAPPED, "its solvers are loops over equal members, without it")
+        return _list_missing(system, MAPPED)
     return system._solvers.refusals
+
+
+def _list_missing(system: FamilySystem, names: Iterable[str]) -> dict[str, str]:
+    """Why methods do not apply to equal members, as far as they do not."""
+    known = {each.name for each in system.METHODS}
+    reason = f"it does not apply to its equal members: see `coadjoint show {system.name} --methods`"
+    return dict.fromkeys((name for name in names if name not in known), reason)
 
 
 def find_stepwise(system: System, inputs: Any, *, is_recorded: bool) -> str:
@@ -107,16 +116,33 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         kind: What is integrated.
     """
     if isinstance(system, FamilySystem):
-        return dict.fromkeys(STRUCTURED, "its solvers are loops over equal members, without it")
+        return _list_missing(system, STRUCTURED)
     if system.stepwise:
         return {}
     module = KernelModule(system, kind.files[2])
     known = module.value("STRUCTURED") if module.has("STRUCTURED") else ()
     if not module.has("STRUCTURED"):
         return dict.fromkeys(STRUCTURED, "its folder was generated without it")
+    judged = {each.name for each in system.METHODS}
+    backward = list_backward() - judged if judged else set()
     return {
-        name: f"it expects {each.expects}" for name, each in STRUCTURED.items() if name not in known
+        name: f"it expects {each.expects}" if name not in known else BACKWARD
+        for name, each in STRUCTURED.items()
+        if name not in known or name in backward
     }
+
+
+def find_noisy_obstacle(system: System, name: str) -> str:
+    """Why a method does not follow the noise of a system, as a clause; "" where it does.
+
+    Args:
+        system: The System.
+        name: One of `coadjoint.methods.NOISY`.
+    """
+    if name != "spherical_midpoint":
+        return ""
+    has_spheres = KernelModule(system, SOLVER.files[2]).has("SPHERES")
+    return "" if has_spheres else f"it expects {STRUCTURED[name].expects}, and noise by brackets"
 
 
 def _tell_keeps(choice: Choice) -> str:
@@ -137,6 +163,8 @@ def find_series_obstacle(
         is_auto: Whether a method that is slower does not apply either.
     """
     if isinstance(system, FamilySystem):
+        if stepwise and stepwise != system.stepwise:
+            return f"it needs rates of all orders, and {stepwise}"
         return tell_series_obstacle(system, choose_order(rtol), members, is_auto=is_auto)
     return f"it needs rates of all orders, and {stepwise}" if stepwise else ""
 
@@ -217,12 +245,12 @@ def _make_recording(
 
 def _find_stepper(system: System, request: Request, signal: Signal | Array | None) -> Stepper:
     """Who makes the steps."""
+    function = signal if isinstance(signal, Function) else None
     if isinstance(system, FamilySystem):
-        return find_stepper(system, request.choice, request.target)
+        return find_stepper(system, request.choice, request.target, function)
     if not request.stepwise:
         members = math.prod(request.state.shape[1:])
         return system._solvers.get(request.choice, request.target, members)
-    function = signal if isinstance(signal, Function) else None
     return StepwiseStepper(system, request.choice, request.target, function)
 
 
@@ -232,6 +260,7 @@ def _find_stepper(system: System, request: Request, signal: Signal | Array | Non
 def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array | None]:
     """The ensemble of a request, and its inputs."""
     n, batch = system.STATE.size, request.state.shape[1:]
+    is_family = isinstance(system, FamilySystem)
     rows, members = count_rows(system, request.choice), math.prod(batch)
     quick = system._solvers.pack(request.parameters)
     parameters = pack_parameters(system, request.parameters) if quick is None else np.array(quick)
@@ -254,7 +283,9 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         size=request.step or 0.0,
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
-        is_structured=request.choice.is_structured,
+        remembered=request.choice.count_memory(rows, searches=not is_family),
+        is_implicit=request.choice.is_structured,
+        has_clock=not is_family,
     )
     if request.seed is not None and request.step is not None:
         run.seed, run.bound = request.seed, find_bound(request.choice.name, request.step)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 #: What each method keeps of what the motion keeps on each path.
 KEEPS: Final = {
     "heun": "nothing exactly",
+    "spherical_midpoint": "Casimirs, to the rounding of each step, and the Poisson bracket",
     "midpoint": "linear and quadratic integrals, to the rounding of each step",
 }
 #: Seeds are below this, members of a batch below the other.
@@ -33,7 +34,7 @@ _NEAR = 1e-6
 
 def has_noise(system: System) -> bool:
     """Whether Wiener processes move the state."""
-    return "noise" in system.functions
+    return not {"noise", "noise_vector"}.isdisjoint(system.functions)
 
 
 def choose_noisy(

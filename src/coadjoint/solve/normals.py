@@ -46,14 +46,15 @@ def philox(counter: Sequence[Words | int], key: tuple[int, int]) -> list[Words]:
     return [a, b, c, d]
 
 
-def draw_normals(seed: int, member: Words, step: Words, process: int) -> Array:
+def draw_normals(seed: int, member: Words, step: Words, process: int | Words) -> Array:
     """A normal number for each member.
 
     Args:
         seed: From 0 to 2^64 - 1, the key.
         member: Its place in the whole batch, below 2^32.
         step: How many steps it has made, below 2^64.
-        process: The number of the Wiener process.
+        process: The number of the Wiener process; or those of some, ``(w, 1)``, for a number of
+            each, ``(w, N)``.
     """
     counter = (step & _WORD, step >> _HALF, member, process)
     low, high, *_ = philox(counter, (seed & 0xFFFFFFFF, seed >> 32))

@@ -17,6 +17,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import JudgedMethod
+from coadjoint.solve.family import FamilySystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,12 +95,12 @@ def check_methods(system: System, names: list[str] | None = None) -> Iterator[Me
     chosen = [known[name] for name in names] if names else ranked or [*known.values()]
     if not chosen:
         return
-    runs = _Runs(system)
+    runs = Runs(system)
     for method in chosen:
         yield _measure(runs, method)
 
 
-class _Runs:
+class Runs:
     """Runs of a system from states near its default.
 
     Args:
@@ -159,7 +160,11 @@ class _Runs:
         found = self._simulate(method, self.step, DRIFTING, self.states, samples=41)
         sizes = np.abs(found.state).max(axis=0)
         growth = float(np.nanmax(sizes.max(axis=-1) / np.abs(self.states).max(axis=0)))
-        return {name: float(np.nanmax(x)) for name, x in found.drift.items()}, max(growth, 1.0)
+        drifts = {name: float(np.nanmax(x)) for name, x in found.drift.items()}
+        if isinstance(self.system, FamilySystem):
+            for name, radii in self.system.find_radii(found.state).items():
+                drifts[name] = float(np.nanmax(np.abs(radii / radii[..., :1] - 1.0)))
+        return drifts, max(growth, 1.0)
 
     def _simulate(self, method: str, step: float, count: int, states: Array, samples: int) -> Any:
         return self.system.simulate(
@@ -179,7 +184,7 @@ def _fill(quantity: Any) -> list[float]:
     return [*(quantity.default or ())] or [1.0] * count
 
 
-def _measure(runs: _Runs, method: JudgedMethod) -> Measured:
+def _measure(runs: Runs, method: JudgedMethod) -> Measured:
     """A method on the runs of a system."""
     order, reached = _find_order(runs, method)
     defect = _find_defect(runs, method.name) if method.is_poisson else None
@@ -206,7 +211,7 @@ def _measure(runs: _Runs, method: JudgedMethod) -> Measured:
     )
 
 
-def _find_order(runs: _Runs, method: JudgedMethod) -> tuple[float | None, bool]:
+def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     """The order by three runs with steps that are halved, and whether some reached the end."""
     first = runs.step * (2.0 if method.order > 4 else 1.0)
     ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
@@ -221,7 +226,7 @@ def _find_order(runs: _Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     return math.log2(gaps[0] / gaps[1]), True
 
 
-def _find_defect(runs: _Runs, method: str) -> float | None:
+def _find_defect(runs: Runs, method: str) -> float | None:
     """``max |D J D^T - J|`` of a step with the derivative D, relative to J; by differences."""
     if "poisson_tensor" not in runs.system.functions:
         return None

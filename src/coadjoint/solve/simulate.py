@@ -104,7 +104,7 @@ def simulate(
         given = {"rtol or atol": tolerances, "dense": dense}
         given["reconstruct"] = is_asked(reconstruct)
         name = choose_noisy(system, method, step, seed, given)
-        if obstacle:
+        if obstacle := obstacle or generated.find_noisy_obstacle(system, name):
             raise _explain_obstacle(system, name, obstacle)
     else:
         check_no_noise(system, method, seed)

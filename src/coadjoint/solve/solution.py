@@ -194,7 +194,8 @@ class Solution:
                 whole = quantities[name].shape if name in quantities else ()
                 return rows.reshape(*whole, *rows.shape[1:]) if len(whole) > 1 else rows
         names = [each for quantities, _ in self._tables for each in quantities]
-        left = self.system.RECONSTRUCTED if self.reconstructed is None else ()
+        tables = (self.system.RECONSTRUCTED, self.system.RECONSTRUCTED_OBSERVABLES)
+        left = [x for table in tables for x in table] if self.reconstructed is None else []
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""
         raise KernelArgumentError(
             f"{name!r} is not in this solution; expected one of {', '.join(names)} or 'time'."
@@ -229,6 +230,7 @@ class Solution:
             (self.system.STATE, self.state),
             *([] if followed is None else [(self.system.RECONSTRUCTED, followed)]),
             (self.system.OBSERVABLES, self.observables),
+            *self._of_followed,
             *([] if inputs is None else [(self.system.INPUTS, self._over_samples(inputs))]),
         ]
 
@@ -249,6 +251,15 @@ class Solution:
         from coadjoint.solve.drift import find_attitude_drift
 
         return find_attitude_drift(self)
+
+    @cached_property
+    def _of_followed(self) -> list[tuple[Any, Array]]:
+        """The observables of what is reconstructed, where it is and there are some."""
+        name, followed = "reconstructed_observables", self.reconstructed
+        if followed is None or name not in self.system.functions:
+            return []
+        rows = self.evaluate(name, np.concatenate([self.state, followed]))
+        return [(self.system.RECONSTRUCTED_OBSERVABLES, rows)]
 
     @cached_property
     def observables(self) -> Array:

@@ -39,7 +39,8 @@ class Lanes:
         slopes: Their rates, ``(m, N)``.
         member: Places of the members in the whole batch, ``(N,)``.
         steps: Steps that they have made, ``(N,)``.
-        low: What rounding took of the state, ``(n, N)``; None where nobody keeps it.
+        memory: What the steps before left, as `Ensemble` has it, ``(m, N)``; None where nobody
+            keeps it.
         sides: The sides of kinks on which they are, -1, 0 or 1, ``(m, N)``; None without kinks.
     """
 
@@ -52,7 +53,7 @@ class Lanes:
     slopes: Array
     member: NDArray[np.uint64]
     steps: NDArray[np.uint64]
-    low: Array | None = None
+    memory: Array | None = None
     sides: Array | None = None
 
     @property
@@ -89,15 +90,15 @@ class Attempt:
 
 @dataclass
 class Left:
-    """What an implicit step leaves besides its end.
+    """What a step leaves besides its end.
 
     Attributes:
-        low: What rounding took of the state, ``(n, N)``.
+        memory: What rounding took of the state, and what is kept of searches, ``(m, N)``.
         sweeps: How many sweeps its equation took, ``(N,)``.
         solved: Where that was solved, ``(N,)``.
     """
 
-    low: Array
+    memory: Array
     sweeps: NDArray[np.uint64]
     solved: Mask
 
@@ -331,3 +332,16 @@ def larger(a: Array, b: Array) -> Array:
 def smaller(a: Array, b: Array) -> Array:
     """The smaller of two, the second where they do not compare."""
     return np.where(a < b, a, b)
+
+
+def add_low(high: Array, low: Array, rise: Array) -> tuple[Array, Array]:
+    """A compensated sum: a value plus what rounding took of it before, and takes now.
+
+    >>> total, low = add_low(np.ones(1), np.zeros(1), np.array([2.0**-60]))
+    >>> (float(total[0]), float(low[0]) == 2.0**-60)
+    (1.0, True)
+    """
+    added = rise + low
+    total = high + added
+    other = total - high
+    return total, (high - (total - other)) + (added - other)

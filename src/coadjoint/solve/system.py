@@ -57,6 +57,7 @@ class System(Functions):
         id: The id that all files of the folder carry.
         DOMAIN: What the rows of `domain` are; empty where the system is defined everywhere.
         RECONSTRUCTED: What follows from the motion without acting on it, in order.
+        RECONSTRUCTED_OBSERVABLES: Quantities of the observables that name what is reconstructed.
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
         unit_of_time: The unit of the time, also where the system does not depend on it.
@@ -81,6 +82,7 @@ class System(Functions):
         unit_of_time: str = "s",
         written: tuple[str, int] | None = None,
         methods: Sequence[JudgedMethod] = (),
+        reconstructed_observables: Quantities | None = None,
     ) -> None:
         self.name = name
         self.written, self.METHODS = written, tuple(methods)
@@ -93,6 +95,7 @@ class System(Functions):
         self.id = identity
         self.DOMAIN = tuple(domain)
         self.RECONSTRUCTED = Quantities() if reconstructed is None else reconstructed
+        self.RECONSTRUCTED_OBSERVABLES = reconstructed_observables or Quantities()
         self.INPUTS = Quantities() if inputs is None else inputs
         self.TIME = Quantities() if time is None else time
         self.unit_of_time = unit_of_time
@@ -278,7 +281,8 @@ class System(Functions):
                 the same paths for any number of threads, and for the targets ``"c"`` and
                 ``"numpy"`` as far as these agree to the bit. A member has its own by its place in
                 the batch. Such a system has the methods
-                ``"heun"`` and ``"midpoint"``, which ``"auto"`` is, with ``step``; samples lie at
+                ``"heun"``, ``"spherical_midpoint"`` on spheres, and ``"midpoint"``, which
+                ``"auto"`` is, with ``step``; samples lie at
                 the ends of steps.
 
         Returns:

@@ -14,7 +14,7 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
-from coadjoint.methods import ASKED, MAPPED
+from coadjoint.methods import ASKED, MAPPED, Sphere
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
@@ -55,10 +55,11 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise", *ASKED)
+        functions = (*choice.kind.rates, "domain", "projection", "noise", "noise_vector", *ASKED)
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
-        self._held, kinks, self._spheres = None, None, ()
+        spheres: tuple[Any, ...] = ()
+        self._held, kinks, self._spheres = None, None, spheres
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
@@ -108,21 +109,32 @@ class NumpyStepper:
         if self._choice.name in MAPPED:
             module = KernelModule(self._system, self._choice.kind.files[2])
             maps = make_maps(module, self._choice.name)
-            return Maps(maps, self._rates, run.size, branches=self._branches)
+            compensated = MAPPED[self._choice.name].parts > 0
+            return Maps(
+                maps,
+                self._rates,
+                run.size,
+                is_compensated=compensated,
+                branches=self._branches,
+            )
         if self._choice.is_structured:
             gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
-            functions["sandwich"] = self._sandwich
+            functions |= {"sandwich": self._sandwich, "field": self._field}
+            functions["values"] = partial(self._evaluate, ("energy", "distinguished"))
+            slopes = ("energy_gradient", "distinguished_gradient")
+            functions["gradients"] = partial(self._evaluate, slopes)
             return Structured(self._choice.name, run.size, functions, branches=self._branches)
         return METHODS[self._choice.name](
             rates=self._rates,
-            fields=self._fields,
+            **self._noise,
             size=run.size,
             seed=run.seed,
             bound=run.bound,
             branches=self._branches,
+            spheres=tuple(Sphere(*each) for each in self._spheres),
         )
 
     def _expand(self, lanes: Lanes, order: int) -> Array:
@@ -142,6 +154,12 @@ class NumpyStepper:
         """The Poisson tensor at a state times a vector."""
         return self._evaluate(("bracket_vector",), lanes, after, np.concatenate([state, vector]))
 
+    def _field(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The bracket with the energy."""
+        return self._bracket(
+            lanes, after, state, self._evaluate(("energy_gradient",), lanes, after, state)
+        )
+
     def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The product of matrices of a state and of a vector."""
         return self._evaluate(("sandwich",), lanes, after, np.concatenate([state, vector]))
@@ -151,6 +169,11 @@ class NumpyStepper:
     ) -> Array:
         """What the sides of kinks are those of."""
         return find(state, lanes.parameters, self._drive(lanes, after))
+
+    @property
+    def _noise(self) -> dict[str, Any]:
+        """What moves the state with noise, as methods for it take it."""
+        return {"fields": self._fields}
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """What each Wiener process does to the state."""
@@ -176,7 +199,9 @@ class NumpyStepper:
             own = np.ascontiguousarray(state[: self._sizes[name]])
             block = np.empty((*self._system.functions[name], state.shape[1]))
             rows.append(self._find_values(name, Call(own, parameters, block, named)))
-        return rows[0] if len(rows) == 1 else np.concatenate(rows)
+        if len(rows) == 1:
+            return rows[0]
+        return np.concatenate([each.reshape(-1, state.shape[1]) for each in rows])
 
     def _drive(self, lanes: Lanes, after: Array) -> Array:
         """Inputs, and the time below them."""

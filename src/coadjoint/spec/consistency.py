@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
+from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading
@@ -360,14 +361,22 @@ def _check_partners(reading: Reading) -> None:
             continue
         lacking = not any(name in owned[role] for role in wanted)
         some = owned["momentum"] and not is_first_order(reading.file)
+        slow = product and reading.file.lagrangian is not None and name not in owned["velocity"]
+        if slow and not lacking:
+            raise _lacks(reading, name, "velocity", "velocity", "a velocity of each coordinate")
         if lacking or (some and name not in owned["momentum"]):
             role = wanted[-1] if lacking else "momentum"
             problem = " and no ".join(wanted) if lacking else "momentum, and others have"
-            partner = reading.free_name("v" if role == "velocity" else "p", name)
-            problem = f"the coordinate {name!r} has no {problem}"
             expected = f"a {role} of each coordinate" if lacking else "momenta of all coordinates"
-            hint = f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.'
-            raise reading.at_key(("variables", name), problem, name, expected, hint)
+            raise _lacks(reading, name, problem, role, expected)
+
+
+def _lacks(reading: Reading, name: str, what: str, role: str, expected: str) -> CoadjointError:
+    """A coordinate without a partner."""
+    partner = reading.free_name("v" if role == "velocity" else "p", name)
+    problem = f"the coordinate {name!r} has no {what}"
+    hint = f'Write for instance {partner} = {{ role = "{role}", of = "{name}" }}.'
+    return reading.at_key(("variables", name), problem, name, expected, hint)
 
 
 def _check_spanned(reading: Reading, role: str, example: str, algebra: LieAlgebra) -> None:

@@ -32,6 +32,9 @@ from coadjoint.spec.sections.turning import TURNING, advect
 
 #: Tables of quantities, each of which may have the index.
 QUANTITIES = ("variables", "parameters", "inputs")
+#: A bracket of quantities of two members: ``{c[i], c[i+1]}``.
+_QUANTITY = r" *([A-Za-z]\w*)\[ *([A-Za-z]\w*) *([-+] *\d{1,6})? *\] *"
+_BETWEEN = re.compile(rf"\{{{_QUANTITY},{_QUANTITY}\}}")
 #: Roles of variables that take their components from the algebra.
 _OVER_ALGEBRA = ("momentum", "velocity", "advected", "attitude", "quaternion", "pose")
 
@@ -54,6 +57,7 @@ def make_members(
         names=frozenset(name for name, part in parts.items() if part.index is not None),
         bound={} if bound is None else bound,
         first=index.first,
+        from_zero=index.from_zero,
         number=index.count,
         taken=frozenset({*parts, *defined, *filter(None, [index.count])}),
         scalars=frozenset(name for name, part in parts.items() if _is_scalar(file, name, part)),
@@ -120,7 +124,11 @@ class _Writer:
 
     def name(self, name: str, member: int) -> str:
         """What a quantity is called that has an index; another one keeps its name."""
-        return member_name(name, self.index.first + member) if name in self.members.names else name
+        return (
+            member_name(name, self.index.first_name + member)
+            if name in self.members.names
+            else name
+        )
 
     @property
     def written(self) -> tuple[Source, Any]:
@@ -143,7 +151,7 @@ class _Writer:
                     name: self._write_moves((table, name, key), part)
                     for name, part in getattr(file, table).items()
                 }
-        for table in ("constraints", "domain"):
+        for table in ("constraints", "domain", "noise"):
             if getattr(file, table, None):
                 update[table] = dict(self._write_relations(table))
         source = replace(self.source, positions=self.places.all, members=self.members)
@@ -224,7 +232,7 @@ class _Writer:
         return part.model_copy(update={key[-1]: self._write_keyed(key, moves)})
 
     def _write_relations(self, table: str) -> Iterator[tuple[str, Any]]:
-        """Constraints and conditions; those of a member are there for each."""
+        """Constraints, conditions and noise; those of a member are there for each."""
         for name, text in getattr(self.file, table).items():
             trees = list(self._read_sides(text)) if isinstance(text, str) else []
             if not any(self.index.name in find_free(tree, self.members) for tree in trees):
@@ -233,9 +241,9 @@ class _Writer:
             ends = [(0, 0)] if self.index.periodic else []
             ends = ends or [reach(t, self.index.name, self.members.names) for t in trees]
             for k in range(max(a for a, _ in ends), self.count - max(b for _, b in ends)):
-                own = member_name(name, self.index.first + k)
+                own = member_name(name, self.index.first_name + k)
                 self._bind((table, name), (table, own), k)
-                plain = text if table == "domain" else self._write_text(text, k)
+                plain = self._write_text(text, k) if table == "constraints" else text
                 if plain != text:
                     self.places.forget_characters((table, own))
                 yield own, plain
@@ -293,9 +301,12 @@ class _Writer:
             pairs = [[self.name(n, k) for n in pair] for pair in part.canonical for k in members]
             unique = list(map(list, dict.fromkeys(map(tuple, pairs))))
             return part.model_copy(update={"canonical": unique})
-        brackets = {}
+        brackets = dict[str, str]()
         for key, text in part.brackets.items():
             path: KeyPath = ("poisson", "brackets", key)
+            if (between := _BETWEEN.fullmatch(key)) is not None:
+                brackets |= self._write_between(path, between, text, brackets)
+                continue
             match = re.match(POISSON_PATTERN, key)
             if match is None:
                 problem, expected = f"{key!a} is not a bracket", "a key such as '{x, y}'"
@@ -307,6 +318,38 @@ class _Writer:
                 if own != key:
                     self._bind(path, ("poisson", "brackets", own), k)
         return part.model_copy(update={"brackets": brackets})
+
+    def _write_between(
+        self, path: KeyPath, key: re.Match[str], text: str, known: Mapping[str, str]
+    ) -> dict[str, str]:
+        """The brackets of members next to each other, as ``{c[i], c[i+1]}``.
+
+        Raises:
+            SpecError: Another index, or two members are neighbours twice.
+        """
+        left, one, before, right, other, after = key.groups()
+        for index in (one, other):
+            if index != self.index.name:
+                raise self.source.unknown(path, f"there is no index {index!a}", index, [one])
+        written, shifts = (
+            dict[str, str](),
+            [int((s or "0").replace(" ", "")) for s in (before, after)],
+        )
+        for k in range(self.count):
+            places = [self.members.place(k + shift) for shift in shifts]
+            if None in places:
+                continue
+            a, b = (
+                self._component_of(n, p or 0) for n, p in zip((left, right), places, strict=True)
+            )
+            own = f"{{{a}, {b}}}"
+            if not {own, f"{{{b}, {a}}}"}.isdisjoint({*known, *written}):
+                problem = f"the bracket of {a} and {b} is there twice"
+                expected = "each pair once; in a ring of two members neighbours meet twice"
+                raise self.source.at_key(path, problem, own, expected, "Choose a larger size.")
+            written[own] = text
+            self._bind(path, ("poisson", "brackets", own), k)
+        return written
 
     def _component_of(self, component: str, member: int) -> str:
         """The component of a member by that of the generic one."""

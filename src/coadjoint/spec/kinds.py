@@ -26,13 +26,13 @@ def is_in_frame(file: Any) -> bool:
 
 
 def is_on_product(file: Any) -> bool:
-    """Whether coordinates with momenta may stand next to an algebra, by a Hamiltonian of both.
+    """Whether coordinates with momenta may stand next to an algebra, on routes that move both.
 
     >>> from coadjoint.spec.schema import SpecFile
     >>> is_on_product(SpecFile.model_construct(routes=["lie-poisson", "clebsch"]))
     False
     """
-    return {*file.routes} == {"lie-poisson"} and file.algebra is not None and not file.lagrangian
+    return file.algebra is not None and {*file.routes} <= {"lie-poisson", "euler-poincare"}
 
 
 def is_first_order(file: Any) -> bool:

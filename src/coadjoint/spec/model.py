@@ -129,10 +129,16 @@ class Windows:
         variables: Names of the variables of the state that each member has, in declared order.
         shared: Names of the parameters that all members share.
         indexed: Names of the parameters that each member has.
+        shared_inputs: Names of the inputs that all members share.
+        indexed_inputs: Names of the inputs that each member has.
+        shared_noise: Names of the Wiener processes that move all members.
+        indexed_noise: Names of those of which each member has one of its own.
         defaults: Defaults of quantities that differ from member to member: of each
             component those of all members.
         repeating: Names of those that have a default for some members, which are taken again.
         reach: How many members further the energy couples.
+        alone: How many members at the beginning and at the end of an open chain stand alone in the
+            energy or in what else acts.
         pairs: Whether it couples every two members.
         least: The number of members from which on the claims are proved.
         windows: The spec written out for two or three numbers of members, the smallest first.
@@ -150,12 +156,24 @@ class Windows:
     defaults: Mapping[str, tuple[tuple[Fraction, ...], ...]]
     repeating: tuple[str, ...]
     reach: int
+    alone: tuple[int, int]
     pairs: bool
     least: int
     windows: tuple[Spec, ...]
+    shared_inputs: tuple[str, ...] = ()
+    indexed_inputs: tuple[str, ...] = ()
+    shared_noise: tuple[str, ...] = ()
+    indexed_noise: tuple[str, ...] = ()
     of_members: frozenset[str] = frozenset()
     loaded: Spec | None = None
     lax: tuple[tuple[Spec, Lax], ...] = ()
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """How many members at the beginning and at the end of a chain have rates of their own."""
+        if self.index.periodic:
+            return 0, 0
+        return max(self.reach, self.alone[0]), max(self.reach, self.alone[1])
 
 
 @dataclass(frozen=True)

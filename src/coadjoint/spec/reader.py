@@ -36,6 +36,8 @@ from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, scan
 from coadjoint.spec.core.reading import Naming, Reading
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.counted import find_counted
+from coadjoint.spec.counted import name_fault as counted_fault
 from coadjoint.spec.dimensions import infer_units
 from coadjoint.spec.laws import demand_laws
 from coadjoint.spec.model import Spec
@@ -115,7 +117,10 @@ def read_spec_text(
 
 
 def _refuse_indices(source: Source, file: Any, sizes: Mapping[str, int]) -> None:
-    """Without an index, nothing has one and no size is chosen."""
+    """Without an index, nothing has one, no size is chosen, and no size counts members."""
+    for key, text in find_counted(file):
+        if key[-1] == "shape":  # what is no size in the name of an algebra is told with the name
+            raise counted_fault(source, key, text, "")
     for table in QUANTITIES:
         for name, part in getattr(file, table).items():
             if part.index is not None:

@@ -22,7 +22,8 @@ def spatial_momenta(spec: Spec) -> tuple[DerivedMomentum, ...]:
     """
     if spec.attitude is None or spec.algebra is None:
         return ()
-    momenta, is_quaternion = spec.having_role("momentum"), spec.attitude.form == "quaternion"
+    momenta = tuple(each for each in spec.having_role("momentum") if not each.of)
+    is_quaternion = spec.attitude.form == "quaternion"
     if is_quaternion:
         places = set(turning_places(spec.algebra) or ())
         if any(0 < len(places & set(pair)) < 2 for pair in spec.algebra.constants):

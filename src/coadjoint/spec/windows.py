@@ -8,6 +8,7 @@ The numbers are those from which the claims follow for every other number
 
 * a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
 * an open chain: w and w + 1, and enough for a member with all its neighbours;
+* one in which members at the ends stand alone: twice as many, and two more;
 * pairs: 2 and 3;
 * pairs and neighbours: 4 w, 4 w + 1 and 4 w + 2 in a ring, and in a chain 2 w, 2 w + 1 and 2 w + 2.
 
@@ -26,20 +27,20 @@ from typing import Any
 from coadjoint import limits
 from coadjoint.errors import CoadjointError
 from coadjoint.families import Index
-from coadjoint.spec.copies import QUANTITIES, differs, write_out_file
+from coadjoint.spec.copies import QUANTITIES, differs, make_members, write_out_file
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.formulas import Formula
-from coadjoint.spec.core.members import member_name
+from coadjoint.spec.core.members import Members, find_free, member_name
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
-from coadjoint.spec.core.totals import has_sum, split_sums, without_sums
+from coadjoint.spec.core.totals import find_alone, has_sum, split_sums, without_sums
 from coadjoint.spec.core.tree import Index as Subscript
-from coadjoint.spec.core.tree import Member, Name, Node, walk
+from coadjoint.spec.core.tree import Name, Node, walk
 from coadjoint.spec.core.values import read_default
-from coadjoint.spec.looped import find_misfit, list_texts
+from coadjoint.spec.counted import count_out, find_counted
+from coadjoint.spec.looped import find_ends, find_misfit, list_texts
 from coadjoint.spec.model import Spec, Windows
-from coadjoint.spec.sections.claims import Integral
 from coadjoint.spec.sections.indices import make_index
 from coadjoint.spec.sections.lax import Lax
 from coadjoint.spec.sections.turning import TURNING, read_rotation
@@ -65,13 +66,21 @@ def read_windows(
         SpecError: A size is unknown, a table or a variable does not go with an index.
         LimitError: There are too many members.
     """
-    index = _choose(source, file, sizes)
+    counted = list(find_counted(file))
+    index = _choose(source, file, sizes, is_counted=bool(counted))
+    misfit = "a size in the name of an algebra or in a shape counts them" if counted else ""
+    if counted and index.size is not None:
+        file = count_out(source, file, index, file.index[index.name].size)
     _check(source, file, index)
-    misfit = find_misfit(file, index)
+    misfit = misfit or find_misfit(file, index)
     if misfit:
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
-    first = _first_window(index, reach, width, pairs=pairs)
+    acting, claimed = find_ends(file, index)
+    ends = max([0, *(n + 1 if n >= 0 else -n for n in acting | claimed)])
+    first = _first_window(index, reach, width, ends, pairs=pairs)
+    if file.noise:  # what a process of one member does to a sum names so many members
+        first = max(first, reach + 2 * width)
     least = 1 if index.periodic and not pairs else first
     size = index.size
     if size is not None and size < least:
@@ -79,28 +88,35 @@ def read_windows(
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         few = f"a chain of fewer than {least} has no member with all its neighbours"
+        if ends:
+            few = f"the ends of a chain of fewer than {least} do not keep apart"
         if pairs:
             few = f"with pairs and neighbours claims are proved for all from {least} members on"
         return _write_all(source, file, read, index, few)
-    index = replace(index, first=0)  # no formula names a member by its number
+    index = replace(index, from_zero=True)
     bare = file.model_copy(update={"lax": None})
-    count = 3 if pairs and (reach or width) else 2
+    count = 3 if pairs and (reach or width or ends) else 2
     windows = tuple(read(*write_out_file(source, bare, index, first + n)) for n in range(count))
     small = windows[0]
-    last = first if file.lax is None else max(first, 2 * reach + width + 3)
+    last = first if file.lax is None else max(first, 2 * max(reach, ends) + width + 3)
     lax = tuple(
         _split_lax(source, read(*write_out_file(source, file, index, count)))
         for count in range(first, last + 1)
         if file.lax is not None
     )
     state = {each.name for each in small.state}
-    parameters = {name: part.index is not None for name, part in file.parameters.items()}
-    shapes = {each.name: each.shape for each in (*small.variables, *small.parameters)}
+    processes = {each.name for each in small.noise}
+    quantities = (*small.variables, *small.parameters, *small.inputs)
+    shapes = {each.name: each.shape for each in quantities}
     family = Windows(
         index=index,
         variables=tuple(name for name in file.variables if member_name(name, 0) in state),
-        shared=tuple(name for name, own in parameters.items() if not own),
-        indexed=tuple(name for name, own in parameters.items() if own),
+        shared=_select_names(file.parameters, indexed=False),
+        indexed=_select_names(file.parameters, indexed=True),
+        shared_inputs=_select_names(file.inputs, indexed=False),
+        indexed_inputs=_select_names(file.inputs, indexed=True),
+        shared_noise=tuple(name for name in file.noise if name in processes),
+        indexed_noise=tuple(name for name in file.noise if name not in processes),
         defaults={
             name: _read_defaults(source, (table, name), part, shapes[member_name(name, 0)])
             for table, name, part in _list_quantities(file)
@@ -110,12 +126,18 @@ def read_windows(
             n for _, n, p in _list_quantities(file) if p.index is not None and _repeats(p)
         ),
         reach=reach,
+        alone=(max([0, *(n + 1 for n in acting)]), max([0, *(-n for n in acting)])),
         pairs=pairs,
         least=least,
         windows=windows,
         lax=lax,
     )
     return _with_family(source, bare, read, family)
+
+
+def _select_names(parts: Mapping[str, Any], *, indexed: bool) -> tuple[str, ...]:
+    """The names of quantities that each member has, or that all share."""
+    return tuple(name for name, part in parts.items() if (part.index is not None) == indexed)
 
 
 def _write_all(
@@ -164,8 +186,10 @@ def _with_family(
         SpecError: A Casimir is neither of each member nor a sum over members.
     """
     large, index = family.windows[-1], family.index
-    _check_casimirs(source, large)
-    kinds = [_kind_of(large, claim) for claim in large.conserved]
+    kind_of = partial(_kind_of, large, make_members(file, index, 1))
+    for formula in large.casimirs:
+        _check_casimir(source, formula, kind_of(formula))
+    kinds = ["other" if each.where else kind_of(each.formula) for each in large.conserved]
     members = [c for c, kind in zip(large.conserved, kinds, strict=True) if kind == "member"]
     loaded = None
     if "other" in kinds:
@@ -192,31 +216,31 @@ def _select(spec: Spec, places: Sequence[int]) -> Spec:
     return replace(spec, conserved=claims, accepted=frozenset(accepted))
 
 
-def _kind_of(spec: Spec, claim: Integral) -> str:
-    """What a claim is about: a ``total``, each ``member``, or something ``other``."""
-    return "other" if claim.where else _kind_of_formula(spec, claim.formula)
+def _kind_of(spec: Spec, known: Members, formula: Formula) -> str:
+    """What a claim is about: a ``total``, each ``member``, or something ``other``.
 
-
-def _kind_of_formula(spec: Spec, formula: Formula) -> str:
-    """The same of a formula: only what is linear in sums follows for every number of members."""
+    Only what is linear in sums follows for every number of members.
+    """
     tree, emitted = formula.sums, _list_emitted(spec)
     assert tree is not None, formula.key
     if isinstance(tree, Name | Subscript) and tree.name in emitted:
-        return _kind_of_tree(emitted[tree.name])
+        return _kind_of_tree(emitted[tree.name], known)
     named = {node.name for node in walk(tree) if isinstance(node, Name | Subscript)}
-    return "other" if named & emitted.keys() else _kind_of_tree(tree)
+    return "other" if named & emitted.keys() else _kind_of_tree(tree, known)
 
 
 def _list_emitted(spec: Spec) -> dict[str, Node | None]:
-    """The trees of what claims may name; of the energy, which is kept at any rate, none."""
+    """The trees of what claims may name; none of the energy, which is kept, and of sums."""
     trees: dict[str, Node | None] = {"energy": None}
     for each in spec.observables:
         trees |= dict.fromkeys((each.name, *each.components), each.formula.sums)
+    for symmetry in spec.symmetries:  # a momentum map is a sum over members
+        trees |= dict.fromkeys((symmetry.name, *symmetry.components))
     return trees
 
 
-def _kind_of_tree(tree: Node | None) -> str:
-    """What a tree is about."""
+def _kind_of_tree(tree: Node | None, known: Members) -> str:
+    """What a tree is about; single members at the ends are as good as none."""
     if tree is None:
         return "total"
     if not has_sum(tree):
@@ -225,21 +249,22 @@ def _kind_of_tree(tree: Node | None) -> str:
         sums = split_sums(tree)
     except ExpressionError:
         return "other"
-    free = any(isinstance(node, Member) for node in walk(without_sums(tree)))
-    return "other" if free or any(len(each.indices) > 1 for each, _ in sums) else "total"
+    free = find_free(without_sums(tree), known)
+    varies = any(find_alone(alone, known) for _, alone in sums)
+    pairs = any(len(each.indices) > 1 for each, _ in sums)
+    return "other" if free or varies or pairs else "total"
 
 
-def _check_casimirs(source: Source, spec: Spec) -> None:
+def _check_casimir(source: Source, formula: Formula, kind: str) -> None:
     """A claimed Casimir is one of each member, or a sum over members.
 
     Raises:
         SpecError: It is not: it may be one for few members alone.
     """
-    for formula in spec.casimirs:
-        if _kind_of_formula(spec, formula) == "other":
-            problem = "the Casimir is neither of each member nor a sum over members"
-            expected = "a function of one member, or sums over members with constant factors"
-            raise source.fault(formula.path, problem, formula.in_one_line, expected)
+    if kind == "other":
+        problem = "the Casimir is neither of each member nor a sum over members"
+        expected = "a function of one member, or sums over members with constant factors"
+        raise source.fault(formula.path, problem, formula.in_one_line, expected)
 
 
 def _read_loaded(
@@ -261,8 +286,19 @@ def _read_loaded(
     return read(*write_out_file(source, file, family.index, size))
 
 
-def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
-    """The smallest of the numbers of members from which claims follow for all."""
+def _first_window(index: Index, reach: int, width: int, ends: int, *, pairs: bool) -> int:
+    """The smallest of the numbers of members from which claims follow for all.
+
+    Args:
+        index: Whether there are ends.
+        reach: How far the energy couples.
+        width: The span of what is claimed.
+        ends: How many members at an end stand alone somewhere.
+        pairs: Whether pairs are coupled.
+    """
+    if ends:  # a new member is put in the middle, far from what reads an end
+        whole = reach + (width if pairs else max(width, reach))
+        return 2 * max(whole, ends + max(width, reach)) + 2 * whole * pairs
     if pairs and not (reach or width):
         return 2
     if pairs:
@@ -272,7 +308,7 @@ def _first_window(index: Index, reach: int, width: int, *, pairs: bool) -> int:
     return max(2 * whole, 2) if index.periodic else max(whole, 2 * reach + width, 1)
 
 
-def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
+def _choose(source: Source, file: Any, sizes: Mapping[str, int], *, is_counted: bool) -> Index:
     """The index with the size that is chosen."""
     name, part = next(iter(file.index.items()))
     for other, size in sizes.items():
@@ -283,7 +319,8 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
             problem = f"the size {size!r} is chosen for {name!r}"
             raise source.at_key(("index", name), problem, str(size), "an integer of 1 or more")
     size = sizes.get(name, part.size)
-    if size != part.size and not any(each.index for _, _, each in _list_quantities(file)):
+    varies = is_counted or any(each.index for _, _, each in _list_quantities(file))
+    if size != part.size and not varies:
         problem = f"a size is chosen for {name!r}, which counts components"
         expected = f"the size {part.size} of the spec"
         raise source.fault(("index", name), problem, size, expected)
@@ -360,8 +397,10 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
 
     shared = list(list_texts(file.definitions))
     energy = [*shared, *list_texts(file.hamiltonian), *list_texts(file.poisson)]
+    energy += list_texts(file.lagrangian)
+    energy += list_texts(file.noise)
     acting = [text for each in (file.forces, file.dissipation) for text in list_texts(each)]
-    reach = span([*energy, *list_texts(file.lagrangian), *acting])
+    reach = span([*energy, *acting])
     width = span(
         [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
     )

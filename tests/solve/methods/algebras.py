@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from coadjoint.methods import TERMS
 from coadjoint.solve.methods.lie_poisson import Bracket, LiePoisson
 from coadjoint.solve.steps import Lanes
 
@@ -107,6 +108,10 @@ class Motion:
         """The motion."""
         return (self.tensor(x) * self.gradient(x)[np.newaxis]).sum(axis=1)
 
+    def field(self, lanes: Lanes, after: Matrix, x: Matrix) -> Matrix:
+        """The motion, as methods ask for it."""
+        return self.rates(x)
+
 
 def make_motion(name: str, seed: int = 1, quadratic: bool = False) -> Motion:
     """A motion with the energy ``x.Qx/2 + sin(a.x)`` for a random positive Q and a random a."""
@@ -142,19 +147,25 @@ def make_lanes(x: Matrix) -> Lanes:
     )
 
 
+def make_memory(method: LiePoisson, x: Matrix) -> Matrix:
+    """What a first step is told of those before it: nothing."""
+    rows = len(x) * (1 + TERMS * len(method.stages))
+    return np.zeros((rows, x.shape[1]), x.dtype)
+
+
 def step(method: LiePoisson, x: Matrix, h: float) -> Matrix:
     """The state after one step; what rounding took is added, for numbers of more digits."""
     size = np.full(x.shape[1], h, dtype=x.dtype)
-    end, low, solved, _ = method.advance(make_lanes(x), size, x, np.zeros(x.shape, x.dtype))
+    end, memory, solved, _ = method.advance(make_lanes(x), size, x, make_memory(method, x))
     assert solved.all()
-    return end + low
+    return end + memory[: len(x)]
 
 
 def run(method: LiePoisson, x: Matrix, h: float, count: int) -> Matrix:
     """The state after many steps, compensated."""
-    low, size = np.zeros(x.shape), np.full(x.shape[1], h)
+    memory, size = make_memory(method, x), np.full(x.shape[1], h)
     for _ in range(count):
-        x, low, solved, _ = method.advance(make_lanes(x), size, x, low)
+        x, memory, solved, _ = method.advance(make_lanes(x), size, x, memory)
         assert solved.all()
     return x
 

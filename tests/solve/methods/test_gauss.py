@@ -12,7 +12,14 @@ import pytest
 
 from coadjoint.solve.methods import gauss
 from coadjoint.solve.methods.gauss import TABLEAUS, Gauss
-from tests.solve.methods.algebras import Motion, find_defect, make_lanes, make_motion, step
+from tests.solve.methods.algebras import (
+    Motion,
+    find_defect,
+    make_lanes,
+    make_memory,
+    make_motion,
+    step,
+)
 
 ORDERS = (4, 6, 8)
 
@@ -106,7 +113,10 @@ def test_a_step_is_that_of_sixty_digits(order: int) -> None:
 
     method = Gauss(rates=move, size=h, order=order)
     y = np.array(x)[:, np.newaxis]
-    found, low, solved, sweeps = method.advance(make_lanes(y), np.array([h]), y, np.zeros((3, 1)))
+    found, memory, solved, sweeps = method.advance(
+        make_lanes(y), np.array([h]), y, make_memory(method, y)
+    )
+    low = memory[:3]
     assert solved.all()
     assert 5 < sweeps[0] < 30
     whole = [mpmath.mpf(a) + mpmath.mpf(b) for a, b in zip(found[:, 0], low[:, 0], strict=True)]
@@ -154,9 +164,9 @@ def test_steps_backwards_lead_back(order: int) -> None:
     """Each method is its own adjoint."""
     motion = make_motion("se(3)")
     x, method = make_start(motion), make_method(motion, order)
-    low, size = np.zeros(x.shape), np.array([0.1])
-    there, low, _, _ = method.advance(make_lanes(x), size, x, low)
-    back, _, _, _ = method.advance(make_lanes(there), -size, there, low)
+    size = np.array([0.1])
+    there, memory, _, _ = method.advance(make_lanes(x), size, x, make_memory(method, x))
+    back, _, _, _ = method.advance(make_lanes(there), -size, there, memory)
     assert abs(back - x).max() < 1e-15
 
 
@@ -179,24 +189,20 @@ def run_body(table_order: int, count: int) -> tuple[float, float]:
         ])  # fmt: skip
 
     x = np.random.default_rng(5).normal(size=(3, 64))
-    method, low, h = (
-        Gauss(rates=rates, size=0.2, order=table_order),
-        np.zeros(x.shape),
-        np.full(64, 0.2),
-    )
+    method, h = Gauss(rates=rates, size=0.2, order=table_order), np.full(64, 0.2)
+    memory = make_memory(method, x)
     integrals = [lambda y: (y * y / inertia).sum(axis=0), lambda y: (y * y).sum(axis=0)]
 
     def find(y: Any, rest: Any) -> list[Any]:
         whole = y.astype(np.longdouble) + rest
         return [integral(whole) for integral in integrals]
 
-    before = find(x, low)
+    before = find(x, memory[:3])
     for _ in range(count):
-        x, low, solved, _ = method.advance(make_lanes(x), h, x, low)
+        x, memory, solved, _ = method.advance(make_lanes(x), h, x, memory)
         assert solved.all()
-    energy, casimir = (
-        float(abs((b - a) / a).max()) for a, b in zip(before, find(x, low), strict=True)
-    )
+    after = find(x, memory[:3])
+    energy, casimir = (float(abs((b - a) / a).max()) for a, b in zip(before, after, strict=True))
     return energy, casimir
 
 
@@ -223,5 +229,6 @@ def test_a_step_that_is_too_long_is_not_solved() -> None:
     motion = make_motion("so(3)")
     x = np.concatenate([make_start(motion), 400 * make_start(motion)], axis=1)
     with np.errstate(all="ignore"):
-        found = make_method(motion, 6).advance(make_lanes(x), np.full(2, 0.2), x, np.zeros(x.shape))
+        method, h = make_method(motion, 6), np.full(2, 0.2)
+        found = method.advance(make_lanes(x), h, x, make_memory(method, x))
     assert found[2].tolist() == [True, False]

@@ -11,16 +11,18 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.methods import Sphere
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
-from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint, _Scale
+from coadjoint.solve.methods.lie_poisson import LiePoisson
+from coadjoint.solve.methods.spherical_midpoint import Scale, SphericalMidpoint
 from tests.solve.methods.algebras import (
     ALGEBRAS,
     Motion,
     find_defect,
     make_lanes,
+    make_memory,
     make_motion,
     make_sandwich,
     run,
@@ -41,14 +43,14 @@ Make = Callable[..., LiePoisson]
 
 def make_method(kind: str, name: str, motion: Motion, order: int = 2) -> LiePoisson:
     """A method for a motion on the dual of an algebra."""
+    if kind == "spherical":
+        return SphericalMidpoint(field=motion.field, size=0.1, spheres=SPHERES[name], order=order)
     given: dict[str, Any] = {
         "gradient": motion.slope,
         "bracket": motion.bracket,
         "size": 0.1,
         "order": order,
     }
-    if kind == "spherical":
-        return SphericalMidpoint(**given, spheres=SPHERES[name])
     if kind == "isospectral":
         return IsospectralMidpoint(**given, sandwich=make_sandwich(name))
     return CoadjointMean(**given)
@@ -275,7 +277,7 @@ def test_a_step_that_is_not_solved_is_none() -> None:
         lanes = make_lanes(x)
         with np.errstate(all="ignore"):
             method, size = make_method(kind, "so(3)", motion), np.full(2, 0.1)
-            _, _, solved, _ = method.advance(lanes, size, x, 0 * x)
+            _, _, solved, _ = method.advance(lanes, size, x, make_memory(method, x))
         assert solved.tolist() == [True, False], kind
 
 
@@ -284,11 +286,11 @@ def test_false_roots_of_a_quotient_are_refused() -> None:
     sphere = Sphere((0, 1, 2))
     start = np.array([[0.6], [0.0], [0.8]])
     for scale, good in ((1.0, True), (0.0, False), (-1.0, False)):
-        quotient = _Scale(start, sphere)
+        quotient = Scale(start, 0.0 * start, sphere)
         quotient.scale = np.array([scale])
         quotient.apply(start.copy())
         assert quotient.is_root().tolist() == [good], scale
-    assert _Scale(0 * start, sphere).is_root().tolist() == [True]
+    assert Scale(0 * start, start, sphere).is_root().tolist() == [True]
 
 
 def test_lanes_do_not_move_each_other() -> None:
@@ -308,8 +310,7 @@ def test_a_spoiled_sphere_is_caught() -> None:
     motion = make_motion("se(3)")
     x = make_start(motion)
     method = SphericalMidpoint(
-        gradient=motion.slope,
-        bracket=motion.bracket,
+        field=motion.field,
         size=0.1,
         spheres=(Sphere((0, 1, 2)), Sphere((3, 4, 5))),
     )

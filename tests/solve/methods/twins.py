@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from coadjoint.build.compiler import Source, compile_kernel, find_compiler
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
-from coadjoint.methods import Sphere
+from coadjoint.methods import TERMS, Sphere
 from coadjoint.render.environment import environment
 from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, LiePoisson
+from coadjoint.solve.methods.lie_poisson import LiePoisson
 from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint
 from coadjoint.solve.steps import Lanes
 
@@ -142,34 +143,41 @@ INLINE V all(double a) { V found; EACH(w) found[w] = a; return found; }
 INLINE V choose(I mask, V a, V b) { return (V)(((I)a & mask) | ((I)b & ~mask)); }
 INLINE V size_of(V a) { return (V)((I)a & INT64_MAX); }
 INLINE V larger(V a, V b) { return choose(a > b, a, b); }
+INLINE V add_low(V high, V *low, V rise)
+{
+    const V added = rise + *low, total = high + added, other = total - high;
+    *low = (high - (total - other)) + (added - other);
+    return total;
+}
 INLINE int any(I mask) { int64_t found = 0; EACH(w) found |= mask[w]; return found != 0; }
 """
 _EPILOGUE = """
-void go(double *state, double *low, uint8_t *solved, double *made, size_t count, double h,
+void go(double *state, double *memory, uint8_t *solved, double *made, size_t count, double h,
         long steps)
 {
     const size_t members = count * LANES;
     for (size_t first = 0; first < count; first += BLOCKS) {
         const int here = count - first < BLOCKS ? (int)(count - first) : BLOCKS;
         Block blocks[BLOCKS] = {0};
-        V ends[BLOCKS][STATE], lows[BLOCKS][STATE], sweeps[BLOCKS], size[BLOCKS];
+        V ends[BLOCKS][STATE], memories[BLOCKS][MEMORY], sweeps[BLOCKS], size[BLOCKS];
         I fine[BLOCKS];
         for (int b = 0; b < here; ++b) {
             size[b] = all(h);
-            for (size_t i = 0; i < STATE; ++i) EACH(w) {
+            for (size_t i = 0; i < MEMORY; ++i) EACH(w) {
                 const size_t n = i * members + (first + (size_t)b) * LANES + (size_t)w;
-                ends[b][i][w] = state[n];
-                lows[b][i][w] = low[n];
+                if (i < STATE)
+                    ends[b][i][w] = state[n];
+                memories[b][i][w] = memory[n];
             }
         }
         for (long s = 0; s < steps; ++s)
-            advance(blocks, here, size, ends, lows, fine, sweeps);
+            advance(blocks, here, size, ends, memories, fine, sweeps);
         for (int b = 0; b < here; ++b) EACH(w) {
             const size_t m = (first + (size_t)b) * LANES + (size_t)w;
-            for (size_t i = 0; i < STATE; ++i) {
+            for (size_t i = 0; i < STATE; ++i)
                 state[i * members + m] = ends[b][i][w];
-                low[i * members + m] = lows[b][i][w];
-            }
+            for (size_t i = 0; i < MEMORY; ++i)
+                memory[i * members + m] = memories[b][i][w];
             solved[m] = fine[b][w] != 0;
             made[m] = sweeps[b][w];
         }
@@ -195,8 +203,10 @@ def render(written: Written) -> str:
                 "stages": {order: list(map(repr, each)) for order, each in COMPOSITIONS.items()},
                 "spheres": written.spheres,
                 "sweeps": SWEEPS,
+                "terms": TERMS,
                 "has_bracket": True,
                 "near": spherical_midpoint.NEAR,
+                "roundings": spherical_midpoint.ROUNDINGS,
                 "mean": {
                     name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")
                 },
@@ -228,20 +238,20 @@ class Compiled:
         spoil: What is replaced in the text, and by what.
     """
 
-    def __init__(
-        self, written: Written, macro: str, folder: Path, spoil: tuple[str, str] | None = None
-    ) -> None:
+    def __init__(self, written: Written, macro: str, folder: Path, *spoil: tuple[str, str]) -> None:
         text = render(written)
-        if spoil:
-            assert text.count(spoil[0]) > 0, spoil[0]
-            text = text.replace(*spoil)
+        for found, put in spoil:
+            assert text.count(found) > 0, found
+            text = text.replace(found, put)
         functions = [
             _write_function("energy_gradient", written.gradient),
             _write_function("bracket_vector", written.bracket),
         ]
         if written.sandwich:
             functions.append(_write_function("sandwich", written.sandwich))
-        head = f"enum {{ STATE = {written.size} }};\ntypedef struct {{ V none; }} Block;\n"
+        self.parts = 1 + TERMS * len(COMPOSITIONS[NAMES[macro][1]])
+        head = f"enum {{ STATE = {written.size}, MEMORY = {self.parts} * STATE }};\n"
+        head += "typedef struct { V none; } Block;\n"
         finite = (
             "INLINE I are_finite(const V *rows)\n{\n    I found = rows[0] - rows[0] == 0.0;\n"
             "    for (int i = 1; i < STATE; ++i)\n        found &= rows[i] - rows[i] == 0.0;\n"
@@ -261,16 +271,16 @@ class Compiled:
         self._go = library.go
 
     def run(self, x: Array, h: float, count: int) -> tuple[Array, Array, Array, Array]:
-        """States after so many steps, what rounding took, where the last was solved, sweeps."""
+        """States after so many steps, what the last left, where it was solved, sweeps."""
         members = x.shape[1]
         assert members % 4 == 0
-        state, low = np.ascontiguousarray(x), np.zeros(x.shape)
+        state, memory = np.ascontiguousarray(x), np.zeros((self.parts * len(x), members))
         solved, made = np.zeros(members, np.uint8), np.zeros(members)
-        pointers = [ctypes.c_void_p(each.ctypes.data) for each in (state, low, solved, made)]
+        pointers = [ctypes.c_void_p(each.ctypes.data) for each in (state, memory, solved, made)]
         state = state.copy() if state is x else state
         pointers[0] = ctypes.c_void_p(state.ctypes.data)
         self._go(*pointers, ctypes.c_size_t(members // 4), ctypes.c_double(h), ctypes.c_long(count))
-        return state, low, solved.astype(bool), made
+        return state, memory, solved.astype(bool), made
 
 
 def make_twin(written: Written, macro: str) -> LiePoisson:
@@ -286,14 +296,17 @@ def make_twin(written: Written, macro: str) -> LiePoisson:
     def sandwich(lanes: Lanes, after: Array, x: Array, v: Array) -> Array:
         return written.evaluate(written.sandwich, x, v)
 
+    def field(lanes: Lanes, after: Array, x: Array) -> Array:
+        return bracket(lanes, after, x, gradient(lanes, after, x))
+
+    if file == "spherical_midpoint":
+        return SphericalMidpoint(field=field, size=0.1, spheres=written.spheres, order=order)
     given: dict[str, Any] = {
         "gradient": gradient,
         "bracket": bracket,
         "size": 0.1,
         "order": order,
     }
-    if file == "spherical_midpoint":
-        return SphericalMidpoint(**given, spheres=written.spheres)
     if file == "isospectral_midpoint":
         return IsospectralMidpoint(**given, sandwich=sandwich)
     return CoadjointMean(**given)

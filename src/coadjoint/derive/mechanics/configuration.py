@@ -85,10 +85,10 @@ class Mechanics:
 
     @cached_property
     def inverse_mass(self) -> Matrix:
-        """``M^-1``.
+        """``M^-1``, asked for where M is not long.
 
         Raises:
-            DerivationError: M is singular, or couples too many velocities to be written out.
+            DerivationError: M is singular.
         """
         return inverse_in_blocks(self.setting.field, self.mass, self.refusal)
 
@@ -139,10 +139,8 @@ class Mechanics:
             remedy = f"Add the missing kinetic term of {' and '.join(names)}."
         elif self.bending:
             remedy = "Take the route euler-lagrange alone, with velocities as the state."
-        elif problem == UNKNOWN:
-            remedy = "Write the kinetic energy in simpler functions, or its domain in [domain]."
         else:
-            remedy = "Declare momenta: the kernel then solves for the velocities."
+            remedy = "Write the kinetic energy in simpler functions, or its domain in [domain]."
         message = f"the mass matrix d2l/d({', '.join(names)})2 {problem}. {remedy}"
         return fault(self.setting, self._formula, message, names[0])
 

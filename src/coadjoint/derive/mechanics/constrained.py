@@ -23,7 +23,7 @@ from functools import cached_property
 from coadjoint.derive.emitted import list_emitted
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.almost_poisson import almost_poisson, reduced_momenta
-from coadjoint.derive.mechanics.configuration import coupled_blocks, mechanics
+from coadjoint.derive.mechanics.configuration import LARGEST_BLOCK, coupled_blocks, mechanics
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.frames import Frame
@@ -40,9 +40,9 @@ from coadjoint.derive.records import Exact, Step, write_entries, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
-from coadjoint.exact.ranks import generic_rank
+from coadjoint.exact.ranks import certain_minors, generic_rank
 from coadjoint.exact.roots import simplify_roots
-from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.limits import OPERATIONS
 
 
 @dataclass(frozen=True)
@@ -253,26 +253,23 @@ def _check_regular(
 ) -> None:
     """The leading minors of a block, of which the pivots are quotients, vanish nowhere generic."""
     setting = motion.frame.setting
-    if len(solve.block) > COUPLED_VELOCITIES:
-        bound = bool(setting.spec.constraints)
-        what = "accelerations and multipliers" if bound else "accelerations"
-        way = (
-            "Write constraints as Y == ..., which gives velocities"
-            if bound
-            else "Choose coordinates that decouple them"
-        )
+    if solve.operations > OPERATIONS:
         raise LimitError(
-            f"{setting.spec.path}: {'constraints and ' * bound}kinetic energy couple"
-            f"{'s' * (not bound)} {len(solve.block)} {what}; at most {COUPLED_VELOCITIES} "
-            f"(COUPLED_VELOCITIES) are solved for in the kernel. {way}.",
+            f"{setting.spec.path}: constraints, kinetic energy and forces that name reactions "
+            f"couple {len(solve.block)} accelerations and multipliers; to solve for them takes "
+            f"about {solve.operations} operations; expected at most {OPERATIONS} (OPERATIONS). "
+            "Write constraints as Y == ..., which gives velocities.",
             path=str(setting.spec.path),
-            found=len(solve.block),
+            found=solve.operations,
+            limit=OPERATIONS,
         )
     known: dict[str, Element] = {}
     entries = [entry for row in solve.matrix for entry in row]
     for name, value in definitions_under(setting.field, definitions, entries):
         known[name] = setting.field.substitute(value, known)
     matrix = [[setting.field.substitute(e, known) for e in row] for row in solve.matrix]
+    if len(matrix) > LARGEST_BLOCK and certain_minors(setting.field, matrix) == len(matrix):
+        return
     for k in range(1, len(matrix) + 1):
         leading = [{j: e for j, e in enumerate(row[:k]) if e != 0} for row in matrix[:k]]
         if generic_rank(setting.field, leading) < k:

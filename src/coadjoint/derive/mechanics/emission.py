@@ -75,7 +75,8 @@ def emit_in_momenta(setting: Setting, route: str, rates: Rates, steps: Sequence[
 
 def show_momenta(setting: Setting, title: str = "Momenta") -> Step:
     """The step that gives the momenta."""
-    lines = write_slopes("l", setting.velocities, legendre(setting).momenta)
+    names = [xi for xi, _, _ in setting.conjugates]
+    lines = write_slopes("l", names, legendre(setting).momenta)
     return write_step(title, "mu = dl/dxi", r"\mu = \partial l / \partial \xi", lines)
 
 

@@ -153,11 +153,12 @@ def own_rates(setting: Setting) -> tuple[Element, ...]:
 
 def added_rates(setting: Setting) -> list[Element]:
     """What the forces add to the rate of each component of the state."""
-    field, velocities = setting.field, setting.velocities
+    field, pairs = setting.field, setting.conjugates
+    velocities = [xi for xi, _, _ in pairs] if setting.momenta else setting.velocities
     added = _declared_forces(setting, "momentum", "coordinate")
     along = external_forces(setting, velocities)
-    if setting.momenta and velocities:
-        for name, force, weight in zip(setting.momenta, along, setting.weights, strict=True):
+    if pairs:
+        for (_, name, weight), force in zip(pairs, along, strict=True):
             added[name] = added.get(name, field.zero) + force * weight
     elif any(along):
         moved = apply(mechanics(setting).inverse_mass, along)

@@ -25,6 +25,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from itertools import pairwise
 from operator import add, mul
 from typing import Any
 
@@ -39,11 +40,14 @@ SHORTER = 0.8
 SMALL, NOTHING = Fraction(1, 2**76), Fraction(1, 2**92)
 #: What the squares of what is left before the last step and of the momenta may have as a ratio.
 LEFT = Fraction(1, 2**40)
-#: What arithmetics call to forget how a value came about: its slopes, or its envelope.
-SETTLE = "settle"
+#: What arithmetics call to forget how a value came about: its slopes and its envelope, or, of what
+#: the last step gives, its slopes alone. How rounding came into that one shows where it is near 0.
+SETTLE, SETTLE_LAST = "settle", "settle last"
 
 Call = Callable[..., Any]
 Number = Callable[[Fraction], Any]
+#: What `Newton.curved` is at values of the guess.
+Exchange = Callable[[list[Any]], list[Any]]
 #: Names a value, or forgets how it came about: given the step, the place and the value.
 Settle = Callable[[int, int, Any], Any]
 
@@ -63,9 +67,25 @@ def is_guess(name: str) -> bool:
     return name.startswith("_x") and name[2:3].isdigit()
 
 
+def is_step(name: str) -> bool:
+    """Whether a name is that of a step towards a guess, but the last."""
+    step = name.partition("_x")[2].partition("_")[2]
+    return is_guess(name) and step.isdigit() and int(step) < STEPS
+
+
 def rate_name(place: int) -> str:
     """Name of the rate of a velocity that an iteration finds, as recurrences have it."""
     return f"_a{place + 1}"
+
+
+def slope_name(place: int) -> str:
+    """Name of the rate of a component of the inputs, counted from 0, as recurrences have it."""
+    return f"_du{place + 1}"
+
+
+def slope_place(name: str) -> int | None:
+    """The component of the inputs whose rate has a name; None where it is no such name."""
+    return int(name[3:]) - 1 if name.startswith("_du") else None
 
 
 @dataclass(frozen=True)
@@ -90,6 +110,18 @@ class Newton:
         return [guess_name(place) for place in self.block]
 
     @property
+    def curved(self) -> list[Element]:
+        """H on and below its diagonal, row by row, and g: what is evaluated in each step."""
+        rows = (row[: i + 1] for i, row in enumerate(self.hessian))
+        return [*(entry for row in rows for entry in row), *self.slopes]
+
+    def split(self, values: Sequence[Any]) -> tuple[list[Any], list[list[Any]]]:
+        """g, and the rows of H, of values of `curved`."""
+        starts = [i * (i + 1) // 2 for i in range(len(self.block) + 1)]
+        rows = [[*values[a:b]] for a, b in pairwise(starts)]
+        return [*values[starts[-1] :]], rows
+
+    @property
     def elements(self) -> list[Element]:
         """All that an iteration evaluates."""
         return [*self.sought, *self.slopes, *(entry for row in self.hessian for entry in row)]
@@ -101,6 +133,7 @@ class Newton:
         number: Number,
         call: Call,
         settle: Settle,
+        exchange: Exchange | None = None,
     ) -> dict[str, Any]:
         """The guess by name; not a number where the iteration has not come to its end.
 
@@ -115,6 +148,8 @@ class Newton:
             number: Takes a rational number into the arithmetic.
             call: Applies an elementary function.
             settle: Takes what a step gives.
+            exchange: What `elements` are at other values of the guess than 0; by default they are
+                evaluated.
         """
         values = [number(Fraction(0)) for _ in self.block]
         mu = [field.evaluate(each, known, number, call) for each in self.sought]
@@ -122,7 +157,11 @@ class Newton:
         diagonal, g = [row[i] for i, row in enumerate(rows)], rest
         for count in range(1, STEPS + 1):
             if count > 1:
-                g, rows = self._evaluate(field, known, values, number, call)
+                g, rows = (
+                    self._evaluate(field, known, values, number, call)
+                    if exchange is None
+                    else self.split(exchange(values))
+                )
             part = _part(count)
             aims = (
                 mu
@@ -150,12 +189,7 @@ class Newton:
     ) -> tuple[list[Any], list[list[Any]]]:
         """g, and H on and below its diagonal, at some values of the guess."""
         at, factors = {**known, **dict(zip(self.names, values, strict=True))}, dict[int, Any]()
-
-        def value(element: Element) -> Any:
-            return field.evaluate(element, at, number, call, factors)
-
-        rows = [[value(entry) for entry in row[: i + 1]] for i, row in enumerate(self.hessian)]
-        return [value(each) for each in self.slopes], rows
+        return self.split([field.evaluate(each, at, number, call, factors) for each in self.curved])
 
 
 def _part(step: int) -> Fraction:

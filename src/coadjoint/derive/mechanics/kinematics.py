@@ -11,18 +11,28 @@ Read next: `coadjoint.derive.mechanics.constrained`, which solves for the accele
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from coadjoint.derive.mechanics.configuration import sampled_mechanics
+from coadjoint.derive.mechanics.configuration import (
+    LARGEST_BLOCK,
+    coupled_blocks,
+    sampled_mechanics,
+)
 from coadjoint.derive.mechanics.contact import contact_names
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.distribution import Distribution, Row, distribution
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.frames import Frame
 from coadjoint.derive.mechanics.parts import part_names, parts
-from coadjoint.derive.mechanics.solver import Definition, solver_names
+from coadjoint.derive.mechanics.solver import (
+    WRITTEN,
+    Definition,
+    loop_names,
+    names_for,
+    solver_names,
+)
 from coadjoint.derive.setting import Setting, make_setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
@@ -55,7 +65,8 @@ def moved_names(spec: Spec) -> dict[str, str]:
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """The names that the definitions of a motion over a frame need."""
-    if not spec.in_frame and not _couples_many(spec):
+    blocks = None if spec.in_frame else _find_blocks(spec)
+    if blocks is not None and max(map(len, blocks), default=0) <= LARGEST_BLOCK:
         return ()
     known = kinematics(make_setting(spec))
     of = known.distribution
@@ -70,7 +81,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         *(f"_c{n + 1}" for n in range(len(known.solved))),
         *(f"_k{n + 1}" for n in range(len(of.frame.velocities))),
         *map(rate_name, of.frame.velocities),
-        *solver_names(range(len(of.independent) + len(of.kept))),
+        *_names_of_solves(blocks, len(of.independent) + len(of.kept)),
         *map(multiplier_name, range(len(of.kept))),
         *map(shift_name, range(len(of.independent) if of.kept else 0)),
         *(moved_names(spec).values() if of.kept or of.frame.touch else ()),
@@ -78,19 +89,30 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     )
 
 
-def _couples_many(spec: Spec) -> bool:
-    """Whether velocities of coordinates are the state, too many for a written inverse."""
+def _names_of_solves(blocks: Sequence[Sequence[int]] | None, count: int) -> list[str]:
+    """The names that the solves of so many unknowns need: of their blocks, where they are known.
+
+    Every name of the field slows down all that is computed in it.
+    """
+    if blocks is None:
+        loops = loop_names(range(count)) if count > WRITTEN else []
+        return list(dict.fromkeys((*solver_names(range(count)), *loops)))
+    return list(dict.fromkeys(name for block in blocks for name in names_for(block)))
+
+
+def _find_blocks(spec: Spec) -> list[tuple[int, ...]]:
+    """Which velocities are coupled, where those of coordinates are the state; else none."""
     if (
         spec.kind != "configuration"
         or spec.lagrangian is None
         or spec.having_role("momentum")
         or "euler-lagrange" not in spec.routes
     ):
-        return False
+        return []
     try:
-        return sampled_mechanics(spec).is_long
+        return coupled_blocks(sampled_mechanics(spec).mass)
     except DerivationError:  # the route will say so
-        return False
+        return []
 
 
 @dataclass(frozen=True)

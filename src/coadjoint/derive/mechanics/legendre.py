@@ -24,13 +24,21 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
-from coadjoint.derive.mechanics.iteration import Newton, guess_name, rate_name, tell_iterations
+from coadjoint.derive.mechanics.iteration import (
+    STEPS,
+    Newton,
+    guess_name,
+    rate_name,
+    slope_name,
+    tell_iterations,
+)
 from coadjoint.derive.mechanics.radial import radial_solution
 from coadjoint.derive.mechanics.singular import tell_constraints
 from coadjoint.derive.mechanics.solver import (
     Definition,
     Solve,
     forward_name,
+    names_for,
     solve_in_kernel,
     solver_names,
 )
@@ -42,7 +50,7 @@ from coadjoint.exact.dense import determinant, inverse
 from coadjoint.exact.ranks import certain_minors, witness_regular
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.exact.signs import sign
-from coadjoint.limits import COUPLED_VELOCITIES
+from coadjoint.limits import OPERATIONS
 from coadjoint.spec import Spec
 
 
@@ -105,11 +113,12 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
 def _write_out(setting: Setting, transform: LegendreTransform) -> Element:
     """The energy in momenta alone, where velocities are not linear in them."""
     field, curved = setting.field, dict(transform.curved)
-    velocities = {name: curved.pop(name) for name in setting.velocities if name in curved}
+    names = [xi for xi, _, _ in setting.conjugates]
+    velocities = {name: curved.pop(name) for name in names if name in curved}
     still = momenta_at_rest(setting, transform.momenta)
     momenta = {
         mu: (field[y] + rest) * w
-        for i, (mu, w, rest) in enumerate(zip(setting.momenta, setting.weights, still, strict=True))
+        for i, ((_, mu, w), rest) in enumerate(zip(setting.conjugates, still, strict=True))
         if (y := forward_name(i)) in curved
     }
     h = field.substitute(field.substitute(transform.energy, momenta), velocities)
@@ -124,7 +133,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
         LimitError: l couples more velocities than docs/limits.md allows.
     """
     setting, mass = of.setting, of.mass
-    field, names = setting.field, setting.velocities
+    field, names = setting.field, of.frame.velocities
     try:
         known = known_side(setting, of.momenta)
     except ZeroDivisionError as error:  # a root of 0 at rest
@@ -147,8 +156,7 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
             solves.append(
                 Solve(matrix=own, known=rest, block=block, names=[names[i] for i in block])
             )
-    pairs = zip(setting.momenta, names, setting.weights, strict=True)
-    products = [field[mu] * field[xi] * (1 / w) for mu, xi, w in pairs]
+    products = [field[mu] * field[xi] * (1 / w) for xi, mu, w in setting.conjugates]
     energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
@@ -167,13 +175,13 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
 def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
     """``mu - dl/dxi`` at rest: the right side of ``mass * xi = known``."""
     still = momenta_at_rest(setting, momenta)
-    pairs = zip(setting.momenta, still, setting.weights, strict=True)
-    return [setting.field[mu] * (1 / w) - slope for mu, slope, w in pairs]
+    pairs = zip(setting.conjugates, still, strict=True)
+    return [setting.field[mu] * (1 / w) - slope for (_, mu, w), slope in pairs]
 
 
 def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
     """``dl/dxi`` at rest."""
-    rest = dict.fromkeys(setting.velocities, setting.field.zero)
+    rest = dict.fromkeys((xi for xi, _, _ in setting.conjugates), setting.field.zero)
     return [setting.field.substitute(slope, rest) for slope in momenta]
 
 
@@ -190,18 +198,20 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     names = list[str]()
     for block in coupled_blocks(known.mass):
-        if any(known.setting.velocities[i] in known.bending for i in block):
+        if any(known.frame.velocities[i] in known.bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
-        elif LARGEST_BLOCK < len(block) <= COUPLED_VELOCITIES:
-            names += solver_names(block)
-    return tuple(names)
+            driven = sum(len(each.components) for each in spec.inputs)
+            names += [*map(slope_name, range(driven))]
+        if len(block) > LARGEST_BLOCK:
+            names += names_for(block)
+    return tuple(dict.fromkeys(names))
 
 
 def _invert_block(
     setting: Setting, matrix: Matrix, known: list[Element], block: tuple[int, ...]
 ) -> dict[str, Element]:
     """Velocities of one block from ``mass * xi = known``, by name."""
-    names = [setting.velocities[i] for i in block]
+    names = [setting.conjugates[i][0] for i in block]
     if witness_regular(setting.field, matrix) is None:
         raise _singular(setting, matrix, names)
     products = (zip(row, known, strict=True) for row in inverse(matrix))
@@ -213,24 +223,22 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     """Velocities of a block by Newton's iteration, its last step as an ordinary solve.
 
     Raises:
-        DerivationError: The block is driven, or its Hessian at rest not positive for certain.
+        DerivationError: The Hessian of the block at rest is not positive for certain.
     """
-    setting, names = of.setting, of.setting.velocities
-    _check_count(setting, block)
+    setting, names = of.setting, of.frame.velocities
+    _check_cost(setting, [names[i] for i in block])
     own = [names[i] for i in block]
     field, guess = setting.field, {names[i]: setting.field[guess_name(i)] for i in block}
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
-    reached = frozenset[str]().union(*map(field.reach, moved.values()))
-    if driven := sorted(reached.intersection(setting.inputs)):
-        raise _not_solved(of, own, f"momenta depend on {driven[0]}, which is given in time")
     rest = dict.fromkeys(names, field.zero)
     still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
     for size in range(1, len(block) + 1):
         minor = determinant(tuple(row[:size] for row in still[:size]))
         if not _is_positive(setting, minor):
             raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
-    mu = [setting.field[setting.momenta[i]] * (1 / setting.weights[i]) for i in block]
+    pairs = [setting.conjugates[i] for i in block]
+    mu = [setting.field[p] * (1 / w) for _, p, w in pairs]
     products = [
         field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
         for row in hessian
@@ -257,7 +265,7 @@ def _solve_radially(
 
     They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
     """
-    setting, names = of.setting, [of.setting.velocities[i] for i in block]
+    setting, names = of.setting, [of.frame.velocities[i] for i in block]
     field, still = setting.field, momenta_at_rest(setting, of.momenta)
     moving = [of.momenta[i] - still[i] for i in block]
     parts = [(forward_name(i), known[i]) for i in block if len(field.terms(known[i])) > 1]
@@ -275,17 +283,15 @@ def _not_solved(of: Mechanics, names: Sequence[str], problem: str) -> Derivation
     message = (
         f"the Lagrangian is not quadratic in the velocities {', '.join(names)}, and the kernel "
         f"cannot solve mu = dl/dxi by Newton's iteration from rest: {problem}; expected one that "
-        "is certainly convex at rest, with momenta of the state, the parameters and the time "
-        f"alone. Give {_way_out(of.setting)} instead, or remove {momenta} and take the route "
-        f"{route}, where velocities are the state."
+        f"is certainly convex at rest. Give {_way_out(of.setting)} instead, or remove {momenta} "
+        f"and take the route {route}, where velocities are the state."
     )
     return _refusal(of.setting, message, names[0])
 
 
 def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> None:
     """The leading minors of a block, of which the pivots are quotients, are not zero everywhere."""
-    names = [setting.velocities[i] for i in block]
-    _check_count(setting, block)
+    names = [setting.conjugates[i][0] for i in block]
     minors = certain_minors(setting.field, matrix)
     if minors == len(matrix):
         return
@@ -300,18 +306,19 @@ def _check_pivots(setting: Setting, matrix: Matrix, block: tuple[int, ...]) -> N
     )
 
 
-def _check_count(setting: Setting, block: tuple[int, ...]) -> None:
-    """A block is not too large for the kernel."""
-    names = [setting.velocities[i] for i in block]
-    if len(block) > COUPLED_VELOCITIES:
+def _check_cost(setting: Setting, names: Sequence[str]) -> None:
+    """An iteration, each of whose steps is written out, is not too long for the kernel."""
+    operations = STEPS * len(names) ** 3 // 3
+    if operations > OPERATIONS:
         refused = _refusal(
             setting,
-            f"the Lagrangian couples {len(block)} velocities ({', '.join(names)}); at most "
-            f"{COUPLED_VELOCITIES} (COUPLED_VELOCITIES) are solved for in the kernel. Choose axes "
-            f"that decouple them, or give {_way_out(setting)}.",
+            f"the Lagrangian couples {len(names)} velocities ({', '.join(names)}) and is not "
+            f"quadratic in them; Newton's iteration takes about {operations} operations; expected "
+            f"at most {OPERATIONS} (OPERATIONS). Choose axes that decouple them, or give "
+            f"{_way_out(setting)}.",
             names[0],
         )
-        raise LimitError(str(refused), **refused.parts)
+        raise LimitError(str(refused), **refused.parts | {"limit": OPERATIONS})
 
 
 def _way_out(setting: Setting) -> str:

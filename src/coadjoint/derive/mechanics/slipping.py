@@ -105,9 +105,9 @@ def _momenta(setting: Setting, point: Point) -> Point:
     """The momenta at velocities: ``dl/dv``, or 0 at rest where ``dh/dp`` is 0 there."""
     field, spec, names = setting.field, setting.spec, setting.momenta
     if names and spec.lagrangian is not None:
-        slopes = field.gradient(setting.lagrangian, setting.velocities)
-        weighted = zip(names, slopes, setting.weights, strict=True)
-        return {name: field.substitute(p * weight, point) for name, p, weight in weighted}
+        slopes = field.gradient(setting.lagrangian, [xi for xi, _, _ in setting.conjugates])
+        weighted = zip(setting.conjugates, slopes, strict=True)
+        return {name: field.substitute(p * w, point) for (_, name, w), p in weighted}
     none = dict.fromkeys(names, field.zero)
     slopes = field.gradient(setting.hamiltonian, names) if names else ()
     rest = (field.substitute(slope, none) for slope in slopes)

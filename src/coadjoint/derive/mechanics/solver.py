@@ -9,6 +9,8 @@ A matrix that is not symmetric, as where friction is proportional to a reaction,
 with ones on the diagonal of U, whose rows are computed with the columns of W; then ``W z = b``
 and ``U x = z``. For a symmetric one U is the transpose of L. Pivots are the same quotients of
 leading minors. What is identically zero in W, y, z or x is left out, and x is then 0.
+More than `WRITTEN` unknowns of a symmetric matrix are not written out: the kernel has a loop
+(`coadjoint.exact.factored`), and what it gives are symbols that rest on A and b.
 Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
 Read next: `coadjoint.derive.mechanics.decided`, which finds the zeros;
 `coadjoint.derive.mechanics.legendre`, which solves for velocities.
@@ -16,14 +18,19 @@ Read next: `coadjoint.derive.mechanics.decided`, which finds the zeros;
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Final
 
 from coadjoint.derive.mechanics.decided import Decided
 from coadjoint.derive.mechanics.iteration import Newton
 from coadjoint.exact import Element, Field
+from coadjoint.exact.factored import factor, place_of
 
+#: Unknowns of a symmetric matrix up to which a solve is written out; of more it is a loop
+#: (docs/decisions/coupled-velocities.md).
+WRITTEN: Final = 12
 #: A name and its value, in terms of state, parameters and names defined before.
 Definition = tuple[str, Element]
 Rows = Sequence[Sequence[Element]]
@@ -59,8 +66,29 @@ def forward_name(i: int) -> str:
     return f"_y{i + 1}"
 
 
+def solution_name(i: int) -> str:
+    """Name of the unknown in the place ``i`` as a loop gives it."""
+    return f"_sol{i + 1}"
+
+
+def loop_pivot_name(i: int) -> str:
+    """Name of the entry of D in the place ``i`` as a loop gives it."""
+    return f"_piv{i + 1}"
+
+
+def loop_names(block: Sequence[int]) -> list[str]:
+    """Every name that the solve of a block of places needs where it is a loop."""
+    makes = (pivot_name, loop_pivot_name, solution_name)
+    return [make(i) for make in makes for i in block]
+
+
+def names_for(block: Sequence[int]) -> list[str]:
+    """Every name that the solve of a block with a symmetric matrix needs."""
+    return loop_names(block) if len(block) > WRITTEN else solver_names(block)
+
+
 def solver_names(block: Sequence[int]) -> list[str]:
-    """Every name that the solve of a block of places may define.
+    """Every name that the solve of a block of places may define where it is written out.
 
     >>> solver_names((0, 2))
     ['_d1', '_d3', '_r1', '_r3', '_w3_1', '_l3_1', '_u1_3', '_y1', '_y3', '_z1', '_z3']
@@ -101,6 +129,51 @@ class Solve:
     newton: Newton | None = None
 
     @property
+    def is_loop(self) -> bool:
+        """Whether the kernel solves by a loop."""
+        return self.symmetric and self.newton is None and len(self.block) > WRITTEN
+
+    @property
+    def entries(self) -> list[Element]:
+        """A on and below the diagonal, row by row."""
+        return [entry for i, row in enumerate(self.matrix) for entry in row[: i + 1]]
+
+    @property
+    def sides(self) -> list[Element]:
+        """What a loop reads: A on and below the diagonal, and b."""
+        return [*self.entries, *self.known]
+
+    @property
+    def intermediates(self) -> list[str]:
+        """The names that stand for what the kernel computes on its way to the unknowns."""
+        return loop_names(self.block) if self.is_loop else solver_names(self.block)
+
+    @property
+    def operations(self) -> int:
+        """About how many operations are written out; none of a loop."""
+        cubes = 1 if self.symmetric else 2
+        return 0 if self.is_loop else cubes * len(self.block) ** 3 // 3
+
+    @property
+    def loop_symbols(self) -> list[str]:
+        """The symbols for what a loop gives: the pivots, then the unknowns."""
+        return [make(i) for make in (loop_pivot_name, solution_name) for i in self.block]
+
+    def run_loop(self, symbol: str, value: Callable[[Element], Any]) -> dict[str, Any]:
+        """What a symbol stands for, and all pivots or all unknowns with it.
+
+        Args:
+            symbol: Of a pivot, which rests on A alone, or of an unknown.
+            value: Takes elements to an arithmetic.
+        """
+        factored, count = factor(list(map(value, self.entries))), len(self.block)
+        if symbol in self.loop_symbols[:count]:
+            pivots = (factored[place_of(n, n)] for n in range(count))
+            return dict(zip(self.loop_symbols, pivots, strict=False))
+        unknowns = factored.solve(list(map(value, self.known)))
+        return dict(zip(self.loop_symbols[count:], unknowns, strict=True))
+
+    @property
     def mirrored(self) -> Rows:
         """The symmetric matrix that agrees with A on and below the diagonal."""
         size = range(len(self.matrix))
@@ -133,7 +206,20 @@ def solve_in_kernel(field: Field, solve: Solve, decided: Decided | None = None) 
     y = _z2
     x = -_l2_1*y + _z1
     """
-    return _Elimination(field, solve, decided or Decided(field, ())).definitions()
+    decided = decided or Decided(field, ())
+    if solve.is_loop:
+        return _define_by_loop(field, solve, decided)
+    return _Elimination(field, solve, decided).definitions()
+
+
+def _define_by_loop(field: Field, solve: Solve, decided: Decided) -> list[Definition]:
+    """The pivots and the unknowns, which a loop gives."""
+    lines, sides = list[Definition](), solve.sides
+    for place in solve.block:
+        lines.append((pivot_name(place), field.rest(loop_pivot_name(place), solve.entries)))
+    for name, place in zip(solve.names, solve.block, strict=True):
+        lines.append((name, field.rest(solution_name(place), sides)))
+    return [(name, decided.define(name, value)) for name, value in lines]
 
 
 class _Elimination:
@@ -240,6 +326,11 @@ class _Elimination:
         return self.decided.numbers.get(name, self.field[name])
 
 
+def list_loops(solves: Iterable[Solve]) -> dict[str, Solve]:
+    """The solves that are loops, by the symbols for what they give."""
+    return {name: each for each in solves if each.is_loop for name in each.loop_symbols}
+
+
 def definitions_under(
     field: Field, definitions: Sequence[Definition], elements: Iterable[Element]
 ) -> list[Definition]:
@@ -296,8 +387,11 @@ def solution_defects(
     All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
     In each entry the name that is defined last is replaced by its definition, and reciprocals of
     pivots are: that is enough for a proof, and no closed form is written out. Only where something
-    was left out as identically zero, all definitions are substituted.
+    was left out as identically zero, all definitions are substituted. A loop has no defects: it
+    solves any equations whose leading minors do not vanish.
     """
+    if solve.is_loop:
+        return []
     return _Defects(field, solve, definitions).entries()
 
 

@@ -8,8 +8,18 @@ Lagrangian turns its equations into
 
 where B is zero unless the spec declares magnetic terms :math:`\{p_i, p_j\} = B_{ij}(q)` (exercise
 3.1.39). Where the state has velocities and no momenta, the route moves momenta of its own,
-:math:`p = \partial l / \partial v`. An entry of symmetric matrices off the diagonal is paired
-twice by :math:`\mathrm{tr}(P\,dS/dt)`, so its two equations have a factor 1/2.
+:math:`p = \partial l / \partial v`. If no closed form gives v of these, the equations are pulled
+back along :math:`(q, v) \mapsto (q, p)` instead (Abraham and Marsden, Foundations of Mechanics, 2nd
+ed., section 3.5): with the energy :math:`E = h(q, p(q, v))`, ``dE`` is the two-form ``dq^dp``
+contracted with the motion,
+
+.. math:: M \dot q = \frac{\partial E}{\partial v}, \qquad M \dot v =
+    \left(\frac{\partial p}{\partial q}\right)^T \dot q - \frac{\partial p}{\partial q} \dot q
+    - \frac{\partial E}{\partial q} - \frac{\partial p}{\partial t},
+
+with :math:`M = \partial p / \partial v` and :math:`\dot q = v`. An entry of symmetric matrices off
+the diagonal is paired twice by :math:`\mathrm{tr}(P\,dS/dt)`, so its two equations have a factor
+1/2.
 Comes in: a Setting with a Hamiltonian or a Lagrangian. Goes out: Equations.
 Read next: `coadjoint.derive.routes.newton`, which needs no energy.
 """
@@ -22,7 +32,16 @@ from fractions import Fraction
 
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.mechanics.configuration import conjugates, in_state_order, mechanics
+from coadjoint.derive.mechanics.configuration import (
+    SINGULAR,
+    UNKNOWN,
+    Mechanics,
+    conjugates,
+    in_state_order,
+    mechanics,
+)
+from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
+from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.external import external_forces, metric
 from coadjoint.derive.mechanics.legendre import hamiltonian
@@ -31,6 +50,7 @@ from coadjoint.derive.mechanics.variational import normal_extremals, show_extrem
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting, fault
 from coadjoint.derive.symbols import choose_names
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, transpose
 from coadjoint.spec import Spec
@@ -133,7 +153,15 @@ def _in_own_momenta(setting: Setting) -> Equations:
         raise fault(setting, spec.hamiltonian, message, spec.hamiltonian.text)
     known, own = mechanics(setting), symbols(spec)
     p = setting.elements(own)
-    v = conjugates(field, known.lagrangian, setting.velocities, p, known.refusal)
+
+    def refuse(problem: str, places: Sequence[int]) -> DerivationError:
+        known_problem = problem in (SINGULAR, UNKNOWN)
+        return known.refusal(problem, places) if known_problem else _NoClosedFormError(problem)
+
+    try:
+        v = conjugates(field, known.lagrangian, setting.velocities, p, refuse)
+    except _NoClosedFormError:
+        return _pull_back(known)
     solved = dict(zip(setting.velocities, v, strict=True))
     products = (a * b for a, b in zip(p, v, strict=True))
     h = field.sum(products) - field.substitute(known.lagrangian, solved)
@@ -154,6 +182,65 @@ def _in_own_momenta(setting: Setting) -> Equations:
         solved,
     )
     return replace(motion, steps=(transform, *_steps(variables, h, slopes, motion.exact.rates)))
+
+
+class _NoClosedFormError(DerivationError):
+    """Velocities are not written in momenta."""
+
+
+def _pull_back(known: Mechanics) -> Equations:
+    """Hamilton's equations in (q, v): ``dE`` is the contraction of ``dq^dp`` with the motion.
+
+    The first half of them, ``M dq/dt = dE/dv``, has the solution v, which is proved here.
+    """
+    setting = known.setting
+    field, v = setting.field, setting.elements(setting.velocities)
+    lifting = field.gradient(known.energy, setting.velocities)
+    defects = [a - b for a, b in zip(apply(known.mass, v), lifting, strict=True)]
+    assert all(map(field.is_zero, defects)), "dE/dv is not M v"
+    pull = field.gradient(known.energy, setting.positions)
+    own = [explicit_rate(setting, p, "a momentum dl/dv") for p in known.momenta]
+    turned, carried = apply(transpose(known.mixed), v), apply(known.mixed, v)
+    right = [a - b - slope - e for a, b, slope, e in zip(turned, carried, pull, own, strict=True)]
+    if known.is_long:
+        acting = external_forces(setting, setting.velocities)
+        forced = tuple(a + b for a, b in zip(right, acting, strict=True))
+        return emit_motion(
+            start_motion(setting),
+            "canonical",
+            known.mass,
+            forced,
+            lambda exact: _pulled_steps(known, pull, exact.rates),
+        )
+    moved = apply(known.inverse_mass, right)
+    named = dict(zip(setting.positions + setting.velocities, v + moved, strict=True))
+    rates = in_state_order(setting, named)
+    return emit(setting, "canonical", rates, _pulled_steps(known, pull, rates), known.energy)
+
+
+def _pulled_steps(
+    known: Mechanics, pull: Sequence[Element], rates: Sequence[Element]
+) -> tuple[Step, ...]:
+    """The derivation in positions and velocities as a person would write it down."""
+    setting = known.setting
+    momenta = write_slopes("l", setting.velocities, known.momenta)
+    contracted = r"\iota_X (dq \wedge dp) = dE, \quad p = \partial l / \partial v"
+    return (
+        write_step("Momenta", "p = dl/dv", r"p = \partial l / \partial v", momenta),
+        write_step("Energy", "E = p . v - l", lines={"E": known.energy}),
+        write_step(
+            "Slopes of the energy at fixed velocities",
+            "dE/dq",
+            r"\partial E / \partial q",
+            write_slopes("E", setting.positions, pull),
+        ),
+        write_step(
+            "Hamilton's equations in velocities",
+            "M dq/dt = dE/dv,  M dv/dt = (dp/dq)^T dq/dt - (dp/dq) dq/dt - dE/dq",
+            contracted,
+            write_rates(setting.state, rates),
+        ),
+    )
 
 
 def _relaxed(

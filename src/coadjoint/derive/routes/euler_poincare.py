@@ -8,7 +8,9 @@ a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
     \frac{d}{dt}\frac{\partial l}{\partial\xi} = \mathrm{ad}^*_\xi \frac{\partial l}{\partial\xi}
         + \frac{\partial l}{\partial a} \diamond a, \qquad \dot a = -\rho(\xi) a,
 
-and a right-invariant one the same with the opposite sign of the right-hand sides.
+and a right-invariant one the same with the opposite sign of the right-hand sides. Coordinates q
+next to the algebra move by :math:`\dot p = \partial l/\partial q`, p being the slope of l by their
+velocities.
 Comes in: a Setting with a Lagrangian. Goes out: Equations in the momenta :math:`\mu = \partial
 l/\partial\xi`, with the velocities as definitions. Read next:
 `coadjoint.derive.routes.lie_poisson`, the same motion from a Hamiltonian.
@@ -46,7 +48,24 @@ def _rates(setting: Setting) -> tuple[Element, ...]:
         torque = action.diamond(dl_da, a)
         momentum = [m + t for m, t in zip(momentum, torque, strict=True)]
         advected[variable.name] = [-sign * x for x in action.act(xi, a)]
-    return setting.in_state_order([sign * m for m in momentum], advected)
+    return setting.in_state_order(
+        [sign * m for m in momentum], advected, _rates_of_coordinates(setting)
+    )
+
+
+def _rates_of_coordinates(setting: Setting) -> dict[str, Element]:
+    """Euler and Lagrange's ``dq/dt = v, dp/dt = dl/dq`` of coordinates next to the algebra."""
+    slopes = setting.field.gradient(setting.lagrangian, setting.positions)
+    pairs = setting.conjugates[len(setting.momenta) :]
+    rates = dict[str, Element]()
+    for q, slope, (v, p, weight) in zip(setting.positions, slopes, pairs, strict=True):
+        rates |= {q: setting.field[v], p: slope * weight}
+    return rates
+
+
+def _tell_coordinates(setting: Setting) -> str:
+    """The law of coordinates next to the algebra; "" without any."""
+    return ",  dq/dt = v,  dp/dt = dl/dq" if setting.positions else ""
 
 
 def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
@@ -62,7 +81,7 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
         show_velocities(setting),
         write_step(
             "Euler-Poincare equations and advection",
-            f"dmu/dt = {turned},  da/dt = {back}rho(xi) a",
+            f"dmu/dt = {turned},  da/dt = {back}rho(xi) a{_tell_coordinates(setting)}",
             rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
             write_rates(setting.state, rates),
         ),

@@ -144,7 +144,7 @@ def velocities_of(
             for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
             if xi not in known
         ),
-        *_define_of_product(setting, h),
+        *(line for line in _define_of_product(setting, h) if line[0] not in known),
     )
 
 

@@ -7,10 +7,23 @@ Read next: `coadjoint.crosscheck.parse_back`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.program import Add, Divide, Multiply, Negate, Node
+from coadjoint.lower.program import (
+    Add,
+    Divide,
+    Factors,
+    Multiply,
+    Negate,
+    Node,
+    Solution,
+    Symbol,
+)
+
+#: A name with its value.
+Line = tuple[str, Node]
 
 
 @dataclass
@@ -21,11 +34,13 @@ class Body:
         inputs: Array and row by name: ``{"Pi1": ("state", 0)}``.
         statements: Name and value, in order.
         outputs: Row and value, in order.
+        arrays: How many entries each array has that loops run over.
     """
 
     inputs: dict[str, tuple[str, int]] = field(default_factory=dict)
     statements: list[tuple[str, Node]] = field(default_factory=list)
     outputs: list[tuple[int, Node]] = field(default_factory=list)
+    arrays: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -50,6 +65,7 @@ class SolverBody:
         orders: What is done at each order from 1 on.
         starts: Names that are made at an order and added to.
         scales: Names of what scaled values are times, where recurrences are loops.
+        arrays: How many entries each array has that loops run over.
     """
 
     inputs: dict[str, tuple[str, int]] = field(default_factory=dict)
@@ -58,6 +74,27 @@ class SolverBody:
     orders: list[tuple[str, Node] | Loop] = field(default_factory=list)
     starts: set[str] = field(default_factory=set)
     scales: list[str] = field(default_factory=list)
+    arrays: dict[str, int] = field(default_factory=dict)
+
+
+def read_loop(called: str, given: Sequence[str], arrays: Mapping[str, int]) -> Line | None:
+    """The call of a loop, whose arrays have been made with as many entries as it reads.
+
+    Args:
+        called: The name of the function.
+        given: Its arguments.
+        arrays: What has been made.
+    """
+    match called.removeprefix("coadjoint"), given:
+        case "_factor", (name, size) if size.isdigit():
+            rows = int(size)
+            if arrays.get(name) == rows * (rows + 1) // 2:
+                return name, Factors(rows, ())
+        case "_solve", (factors, name, size) if size.isdigit():
+            rows = int(size)
+            if (arrays.get(factors), arrays.get(name)) == (rows * (rows + 1) // 2, rows):
+                return name, Solution(Symbol(factors), ())
+    return None
 
 
 def join(left: Node, sign: str, right: Node) -> Node:

@@ -17,7 +17,7 @@ from math import isfinite
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Call, Negate, Node, Number, Symbol
-from coadjoint.render.targets.body import Body, failure, join
+from coadjoint.render.targets.body import Body, Line, failure, join, read_loop
 from coadjoint.render.targets.loops import TABLES, Loops
 
 Functions = dict[str, ast.FunctionDef]
@@ -73,8 +73,29 @@ class Reader:
                         raise self.refusal("is out of place", item)
         return functions
 
+    def check_helpers(self, functions: Functions, helpers: str) -> None:
+        """Functions that the lines of a system call are those of our template.
+
+        Args:
+            functions: All functions of the file.
+            helpers: Those of our template, without docstrings.
+        """
+        for helper in _parse(helpers).body:
+            assert isinstance(helper, ast.FunctionDef), helper
+            found = functions.get(helper.name)
+            if found is None or list(map(ast.dump, found.body[1:])) != list(
+                map(ast.dump, helper.body)
+            ):
+                raise self.refusal(f"{helper.name} is another one than that of our template")
+            if ast.dump(found.args) != ast.dump(helper.args):
+                raise self.refusal(f"{helper.name} takes other arguments")
+
     def read(self, line: ast.stmt, body: Body) -> None:
         """One line of a function: inputs, a statement or an output."""
+        loop = self.read_loop(line, body.arrays)
+        if loop is not None:
+            body.statements += loop
+            return
         if not isinstance(line, ast.Assign) or len(line.targets) != 1:
             raise self.refusal("is not an assignment", line)
         target, value = line.targets[0], line.value
@@ -86,14 +107,41 @@ class Reader:
                 ast.Subscript(ast.Name(array), ast.Slice(ast.Constant(first))),
             ):
                 self._read_names(names, array, first, body)
-            case (ast.Name(), ast.Subscript(ast.Name(array), ast.Constant(row))):
+            case (ast.Name(), ast.Subscript(ast.Name(array), ast.Constant(row))) if (
+                array not in body.arrays
+            ):
                 self._read_names([target], array, row, body)
             case (ast.Name(id=assigned), _):
                 body.statements.append((assigned, self.node(value)))
             case (ast.Subscript(ast.Name("out"), ast.Constant(int(row))), _):
                 body.outputs.append((row, self.node(value)))
+            case (ast.Subscript(ast.Name(array), ast.Constant(int(row))), _) if (
+                array in body.arrays
+            ):
+                body.statements.append((f"{array}[{row}]", self.node(value)))
             case _:
                 raise self.refusal("is assigned", target)
+
+    def read_loop(self, line: ast.stmt, arrays: dict[str, int]) -> list[Line] | None:
+        """What a line computes that makes an array for a loop or calls one; None of others.
+
+        Args:
+            line: The line.
+            arrays: How many entries arrays have; one that is made is noted.
+        """
+        match line:
+            case ast.Assign(
+                [ast.Name(name)],
+                ast.BinOp(ast.List([ast.Constant(0.0)]), ast.Mult(), ast.Constant(int(size))),
+            ) if name.startswith("_"):
+                arrays[name] = size
+                return []
+            case ast.Expr(ast.Call(ast.Name(called), arguments, [])):
+                loop = read_loop(called, list(map(ast.unparse, arguments)), arrays)
+                if loop is None:
+                    raise self.refusal("is no loop over arrays that were made", line)
+                return [loop]
+        return None
 
     def _read_names(self, names: Sequence[ast.expr], array: str, first: object, body: Body) -> None:
         """Names of consecutive rows; ``_`` is a row that is not read."""
@@ -108,6 +156,8 @@ class Reader:
         match tree:
             case ast.Name(id=symbol):
                 return Symbol(symbol)
+            case ast.Subscript(ast.Name(array), ast.Constant(int(place))) if array[0] == "_":
+                return Symbol(f"{array}[{place}]")
             case ast.Constant(value=float(value)) if isfinite(value):
                 return Number(Fraction(value))
             case ast.UnaryOp(op=ast.USub(), operand=operand):
@@ -141,15 +191,7 @@ class LoopReader:
             if isinstance(item, ast.Assign) and isinstance(item.targets[0], ast.Name)
         }
         self.loops = Loops(tables={part: self._read_table(tables, part) for part in TABLES})
-        for helper in _parse(helpers).body:
-            assert isinstance(helper, ast.FunctionDef), helper
-            found = functions.get(helper.name)
-            if found is None or list(map(ast.dump, found.body[1:])) != list(
-                map(ast.dump, helper.body)
-            ):
-                raise reader.refusal(f"{helper.name} is another one than that of our template")
-            if ast.dump(found.args) != ast.dump(helper.args):
-                raise reader.refusal(f"{helper.name} takes other arguments")
+        reader.check_helpers(functions, helpers)
 
     def _read_table(self, tables: dict[str, ast.expr], part: str) -> list[float]:
         """One part of the table."""

@@ -50,17 +50,17 @@ class Corrected:
 
     Attributes:
         middle: Where the last sweep began, ``(n, N)``.
-        factor: c, ``(N,)``.
+        factor: c, ``(N,)``; of several functions ``(k, N)``.
         done: Where c stays.
     """
 
-    def __init__(self, state: Array) -> None:
-        self.middle = np.full(state.shape, np.inf)
-        self.factor, self.done = np.zeros(state.shape[1]), np.zeros(state.shape[1], bool)
+    def __init__(self, state: Array, factor: Array | None = None) -> None:
+        self.middle, self.done = np.full(state.shape, np.inf), np.zeros(state.shape[1], bool)
+        self.factor = np.zeros(state.shape[1]) if factor is None else factor
 
     def approach(self, middle: Array) -> None:
         """Go on to a middle."""
-        change, size = np.zeros(self.factor.shape), np.zeros(self.factor.shape)
+        change, size = np.zeros(self.done.shape), np.zeros(self.done.shape)
         for one, other in zip(middle, self.middle, strict=True):
             change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
         self.middle, self.done = middle, self.done | (change <= NEAR * size)
@@ -78,7 +78,7 @@ class DiscreteGradient(AverageGradient):
         super().__init__(**given)
         self.energy = energy
 
-    def prepare(self, arc: Arc) -> Corrected:
+    def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`."""
         return Corrected(arc.state)
 

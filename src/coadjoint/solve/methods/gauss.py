@@ -21,8 +21,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from coadjoint.lower.normals import SWEEPS
-from coadjoint.solve.methods.lie_poisson import LiePoisson, Search, Sweep, add_low
+from coadjoint.solve.methods.lie_poisson import (
+    Arc,
+    LiePoisson,
+    Sweep,
+    continue_offset,
+    keep_offset,
+    split_memory,
+)
+from coadjoint.solve.steps import add_low
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,20 +123,42 @@ class Gauss(LiePoisson):
         self, *, rates: Callable[[Lanes, Array, Array], Array], size: float, order: int
     ) -> None:
         self.rates, self.size, self.table = rates, size, TABLEAUS[order]
+        self.stages = self.table.nodes
 
     def advance(
-        self, lanes: Lanes, h: Array, state: Array, low: Array
+        self, lanes: Lanes, h: Array, state: Array, memory: Array
     ) -> tuple[Array, Array, Mask, NDArray[np.uint64]]:
-        """As `LiePoisson.advance`."""
-        search, lengths = Search(np.concatenate([state] * len(self.table.nodes))), self._split(h)
-        search.rise = np.zeros(state.shape)
-        for _ in range(SWEEPS):
-            if search.done.all():
-                break
-            search.take(self._sweep_stages(lanes, h, lengths, (state, low), search.middle))
-        solved = search.solved & np.isfinite(search.rise).all(axis=0)
-        state, low = add_low(state, low, search.rise)
-        return state, low, solved, search.made
+        """As `LiePoisson.advance`; all stages are found by one search."""
+        low, *offsets = split_memory(memory, len(state))
+        arc = Arc(lanes=lanes, middle=0.5 * h, length=h, state=state, low=low)
+        start = np.concatenate([state] * len(offsets))
+        offset = np.concatenate([*map(continue_offset, offsets)])
+        found = self.search(arc, start, offset, np.zeros(h.shape, bool))
+        stages = np.split(found.middle, len(offsets))
+        kept = [
+            keep_offset(*each) for each in zip(offsets, (x - state for x in stages), strict=True)
+        ]
+        state, low = add_low(state, low, found.rise)
+        return state, np.concatenate([low, *kept]), found.solved, found.made
+
+    def prepare(self, arc: Arc, middle: Array) -> list[Array]:
+        """As `LiePoisson.prepare`: the parts of the step that belong to its stages."""
+        return self._split(arc.length)
+
+    def sweep(self, arc: Arc, middle: Array, kept: list[Array]) -> Sweep:
+        """Better stages, one below the other, and what the step adds with those before."""
+        stages = np.split(middle, len(kept))
+        rises = [
+            length * self.rates(arc.lanes, node * arc.length, stage)
+            for node, length, stage in zip(self.table.nodes, kept, stages, strict=True)
+        ]
+        better = []
+        for row in self.table.shares:
+            total = arc.low
+            for share, rise in zip(row, rises, strict=True):
+                total = total + share * rise
+            better.append(arc.state + total)
+        return Sweep(np.concatenate(better), _add_symmetric(rises))
 
     def _split(self, h: Array) -> list[Array]:
         """The parts of a step that belong to its stages."""
@@ -138,29 +167,6 @@ class Gauss(LiePoisson):
         for each in outer:
             rest = rest - (2.0 * each if stages % 2 else each)
         return [*outer, *([rest] if stages % 2 else [rest, rest]), *reversed(outer)]
-
-    def _sweep_stages(
-        self,
-        lanes: Lanes,
-        h: Array,
-        lengths: list[Array],
-        start: tuple[Array, Array],
-        middle: Array,
-    ) -> Sweep:
-        """Better stages, one below the other, and what the step adds with those before."""
-        state, low = start
-        stages = np.split(middle, len(lengths))
-        rises = [
-            length * self.rates(lanes, node * h, stage)
-            for node, length, stage in zip(self.table.nodes, lengths, stages, strict=True)
-        ]
-        better = []
-        for row in self.table.shares:
-            total = low
-            for share, rise in zip(row, rises, strict=True):
-                total = total + share * rise
-            better.append(state + total)
-        return Sweep(np.concatenate(better), _add_symmetric(rises))
 
 
 def _add_symmetric(rises: list[Array]) -> Array:

@@ -3,6 +3,11 @@
 Each moves a state along its coadjoint orbit by an element of the group that is found from the
 energy's gradient at some middle of the step. Each is its own adjoint, so that compositions with
 symmetric coefficients have order 4 and 6.
+
+The search for the middle begins where those of the last steps ended, continued as a parabola in the
+number of the step. What a step leaves for the next one stands in its memory: rows of what rounding
+took of the state, and for each search the last offset of the middle from the state with its first
+and second difference.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.methods.coadjoint_mean`.
 """
@@ -15,8 +20,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
-from coadjoint.solve.steps import Lanes, larger
+from coadjoint.methods import TERMS
+from coadjoint.solve.steps import Lanes, add_low
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,26 +39,6 @@ Bracket = Callable[[Lanes, "Array", "Array", "Array"], "Array"]
 
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44
-
-#: M. Suzuki, Physics Letters A 146 (1990) 319: order 4 from five steps of a symmetric method.
-_SUZUKI: Final = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
-#: W. Kahan and R.-C. Li, Mathematics of Computation 66 (1997) 1089: order 6 from nine, s9odr6a;
-#: as printed by Hairer, Lubich and Wanner, Geometric Numerical Integration, V.3.2.
-_KAHAN_LI: Final = (
-    0.39216144400731413928,
-    0.33259913678935943860,
-    -0.70624617255763935981,
-    0.08221359629355080023,
-)
-
-
-def _close(parts: tuple[float, ...]) -> tuple[float, ...]:
-    """A symmetric composition: parts, what is missing to 1, and the parts backwards."""
-    return (*parts, 1.0 - 2.0 * sum(parts), *reversed(parts))
-
-
-#: Lengths of the steps of a composition, in parts of its own step, by its order.
-COMPOSITIONS: Final = {2: (1.0,), 4: _close((_SUZUKI, _SUZUKI)), 6: _close(_KAHAN_LI)}
 
 
 @dataclass
@@ -91,38 +78,52 @@ class Sweep:
 class Search:
     """The search for the middle of a step: sweeps, until they no longer improve it.
 
-    A lane stops at the first sweep that changes its middle next to nothing, and no less than the
-    sweep before it. To stop earlier, at a given size of the change, leaves an error of one sign:
-    of a free body with steps of 0.1 it made the Casimir drift by 1e-10 in 2e6 steps, in place of
-    6e-14.
+    A lane stops at the first sweep that changes nothing. Where roundings never end it stops one
+    sweep after one that changes next to nothing, and no less than the sweep before it: what the
+    step adds belongs to the middle before the last sweep, which has to be such an end itself. To
+    stop earlier leaves an error of one sign: with steps of 0.1 of a free body 1e-10 of its Casimir
+    in 2e6 steps where it is at a given size of the change, and 2e-21 a step where it is by one.
 
     Attributes:
         middle: What was found, ``(n, N)``.
         rise: What the step adds to a state.
         done: Where the search has ended.
-        solved: Where the last sweep changed next to nothing.
+        turned: Where a sweep changed next to nothing, and no less than the one before.
         made: How many sweeps there were, ``(N,)``.
     """
 
-    def __init__(self, state: Array) -> None:
-        count = state.shape[1]
-        self.middle, self.rise = state, np.zeros(state.shape)
-        self.done, self.solved = np.zeros(count, bool), np.zeros(count, bool)
+    def __init__(self, middle: Array, rows: int) -> None:
+        count = middle.shape[1]
+        self.middle, self.rise = middle, np.zeros((rows, count))
+        self.done, self.turned = np.zeros(count, bool), np.zeros(count, bool)
         self.last, self.made = np.full(count, np.inf), np.zeros(count, np.uint64)
+
+    @property
+    def solved(self) -> Mask:
+        """Where it has ended, and what the step adds is finite."""
+        return np.asarray(self.done & np.isfinite(self.rise).all(axis=0))
 
     def take(self, sweep: Sweep) -> None:
         """Go on to what a sweep finds, in lanes that have not ended."""
-        change, size = np.zeros(self.last.shape), np.zeros(self.last.shape)
-        for one, other in zip(sweep.middle, self.middle, strict=True):
-            change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
+        change, size = (
+            np.fmax.reduce(np.abs(rows), axis=0, initial=0.0)  # what is no number is left out
+            for rows in (sweep.middle - self.middle, sweep.middle)
+        )
         small = (change <= SOLVED * size) & ~np.asarray(sweep.goes_on)
-        ends = small & ((change == 0.0) | (change >= self.last))
+        ends = small & ((change == 0.0) | self.turned)
         self.middle = np.where(self.done, self.middle, sweep.middle)
         self.rise = np.where(self.done, self.rise, sweep.rise)
         self.made = np.where(self.done, self.made, self.made + np.uint64(1))
-        self.solved = np.where(self.done, self.solved, small)
+        self.turned = self.turned | (small & (change >= self.last))
         self.last = np.where(self.done, self.last, change)
         self.done = self.done | ends
+
+    def take_over(self, other: Search, lanes: Mask) -> None:
+        """Have what another search found in some lanes; its sweeps count in all of them."""
+        self.middle = np.where(lanes, other.middle, self.middle)
+        self.rise = np.where(lanes, other.rise, self.rise)
+        self.made = self.made + other.made
+        self.done = self.done | lanes
 
 
 class LiePoisson:
@@ -142,31 +143,58 @@ class LiePoisson:
         self.stages = COMPOSITIONS[order]
 
     def advance(
-        self, lanes: Lanes, h: Array, state: Array, low: Array
+        self, lanes: Lanes, h: Array, state: Array, memory: Array
     ) -> tuple[Array, Array, Mask, NDArray[np.uint64]]:
-        """The state after a step, what rounding took of it, where it was solved, and sweeps."""
+        """The state after a step, what it leaves, where it was solved, and how many sweeps it took.
+
+        Args:
+            lanes: Members where it begins.
+            h: Its length, ``(N,)``.
+            state: Where it begins, ``(n, N)``.
+            memory: What the step before left, as `StructuredMethod.count_memory` says; zeros at
+                the first one. Without what is kept of searches all begin at the state.
+        """
         after, solved = np.zeros(h.shape), np.ones(h.shape, bool)
-        made = np.zeros(h.shape, np.uint64)
-        for stage in self.stages:
+        made, (low, *offsets) = np.zeros(h.shape, np.uint64), split_memory(memory, len(state))
+        kept = []
+        for number, stage in enumerate(self.stages):
             length = stage * h
             arc = Arc(lanes=lanes, middle=after + 0.5 * length, length=length, state=state, low=low)
-            found = self._search(arc)
+            offset = continue_offset(offsets[number]) if offsets else np.zeros(state.shape)
+            found = self.search(arc, state, offset, ~solved)
+            if offsets:
+                kept.append(keep_offset(offsets[number], found.middle - state))
             state, low = add_low(state, low, found.rise)
             after, solved, made = after + length, solved & found.solved, made + found.made
-        return state, low, solved, made
+        return state, np.concatenate([low, *kept]), solved, made
 
-    def _search(self, arc: Arc) -> Search:
-        """The middle of a step, and what the step adds to its state."""
-        search, kept = Search(arc.state), self.prepare(arc)
+    def search(self, arc: Arc, start: Array, offset: Array, done: Mask) -> Search:
+        """The middle of a step, and what the step adds to its state, in lanes that are not done.
+
+        Where the search leads nowhere from some way off its start it begins again without that.
+        """
+        first, solved = self._try_search(arc, start + offset, done)
+        over = solved | ~(offset != 0.0).any(axis=0)
+        if over.all():
+            first.done = solved
+            return first
+        again, more = self._try_search(arc, start, over)
+        again.take_over(first, over)
+        again.done = np.where(over, solved, more)
+        return again
+
+    def _try_search(self, arc: Arc, middle: Array, done: Mask) -> tuple[Search, Mask]:
+        """A search from some middle on in lanes that are not done, and where it is solved."""
+        search, kept = Search(middle, len(arc.state)), self.prepare(arc, middle)
+        search.done = done
         for _ in range(SWEEPS):
             if search.done.all():
                 break
             search.take(self.sweep(arc, search.middle, kept))
-        search.solved &= np.isfinite(search.rise).all(axis=0) & self.confirm(kept)
-        return search
+        return search, search.solved & self.confirm(kept)
 
-    def prepare(self, arc: Arc) -> Any:
-        """What sweeps of a step share, and may change."""
+    def prepare(self, arc: Arc, middle: Array) -> Any:
+        """What sweeps of a step share from some middle on, and may change."""
         return None
 
     def confirm(self, kept: Any) -> Mask | bool:
@@ -178,14 +206,27 @@ class LiePoisson:
         raise NotImplementedError
 
 
-def add_low(high: Array, low: Array, rise: Array) -> tuple[Array, Array]:
-    """A compensated sum: a value plus what rounding took of it before, and takes now.
+def split_memory(memory: Array, rows: int) -> list[Array]:
+    """The low part of a state, and for each search what is kept of it, ``(TERMS, n, N)``."""
+    count = memory.shape[1]
+    return [memory[:rows], *memory[rows:].reshape(-1, TERMS, rows, count)]
 
-    >>> total, low = add_low(np.ones(1), np.zeros(1), np.array([2.0**-60]))
-    >>> (float(total[0]), float(low[0]) == 2.0**-60)
-    (1.0, True)
+
+def continue_offset(kept: Array) -> Array:
+    """The next value of a sequence whose third differences are zero, by its last differences.
+
+    >>> kept = np.zeros((TERMS, 1, 1))
+    >>> for value in (1.0, 4.0, 9.0):
+    ...     kept = keep_offset(kept, np.full((1, 1), value)).reshape(kept.shape)
+    >>> float(continue_offset(kept)[0, 0])
+    16.0
     """
-    added = rise + low
-    total = high + added
-    other = total - high
-    return total, (high - (total - other)) + (added - other)
+    offset, first, second = kept
+    return np.asarray(offset + (first + second))
+
+
+def keep_offset(kept: Array, offset: Array) -> Array:
+    """What is kept of a search that ended at an offset: of none before there are no differences."""
+    first = np.where(kept[0] == 0.0, 0.0, offset - kept[0])
+    second = np.where(kept[1] == 0.0, 0.0, first - kept[1])
+    return np.concatenate([offset, first, second])

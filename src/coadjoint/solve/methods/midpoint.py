@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from coadjoint.solve.methods.lie_poisson import COMPOSITIONS, Arc, LiePoisson, Sweep
+from coadjoint.lower.compositions import COMPOSITIONS
+from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -18,26 +18,30 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.methods import Sphere
-from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
+from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
+
+    from coadjoint.solve.steps import Lanes
 
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
 
 #: How far Newton's factor is from 1 at the most where its equation is solved.
 NEAR: Final = 2.0**-20
+#: By how much it may be from 1 by roundings alone.
+ROUNDINGS: Final = 2.0**-50
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> SphericalMidpoint:
     """The method of an order, from functions of the kernel and the rows of spheres."""
     return SphericalMidpoint(
-        gradient=functions["gradient"],
-        bracket=functions["bracket"],
+        field=functions["field"],
         size=size,
         spheres=tuple(Sphere(*each) for each in functions["spheres"]),
         order=order,
@@ -48,57 +52,65 @@ class SphericalMidpoint(LiePoisson):
     """A step through the middle of an arc of each sphere.
 
     Args:
-        gradient: As of `LiePoisson`.
-        bracket: Likewise.
-        size: Likewise.
-        spheres: The factors; rows in none are moved by the midpoint.
+        field: The bracket with the energy, some time after that of the lanes.
+        size: As of `LiePoisson`.
+        spheres: The factors; rows in none are moved by the midpoint. Of a family of equal members a
+            row is a slice, of one component of all members.
         order: As of `LiePoisson`.
     """
 
     def __init__(
         self,
         *,
-        gradient: Gradient,
-        bracket: Bracket,
+        field: Callable[[Lanes, Array, Array], Array],
         size: float,
         spheres: tuple[Sphere, ...],
         order: int = 2,
     ) -> None:
-        super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
+        self.field, self.size, self.stages = field, size, COMPOSITIONS[order]
         self.spheres = spheres
 
-    def prepare(self, arc: Arc) -> list[_Scale]:
-        """As `LiePoisson.prepare`: of each sphere the quotient of lengths, 1 at first."""
-        return [_Scale(arc.state, each) for each in self.spheres]
+    def prepare(self, arc: Arc, middle: Array) -> list[Scale]:
+        """As `LiePoisson.prepare`: of each sphere the quotient of lengths."""
+        return [Scale(arc.state, middle - arc.state, each) for each in self.spheres]
 
-    def confirm(self, kept: list[_Scale]) -> Mask | bool:
+    def confirm(self, kept: list[Scale]) -> Mask | bool:
         """As `LiePoisson.confirm`: quotients are roots, and positive."""
-        return np.asarray(np.logical_and.reduce([each.is_root() for each in kept]))
+        roots = np.concatenate([np.atleast_2d(each.is_root()) for each in kept])
+        return np.asarray(roots.all(axis=0))
 
-    def sweep(self, arc: Arc, middle: Array, kept: list[_Scale]) -> Sweep:
+    def sweep(self, arc: Arc, middle: Array, kept: list[Scale]) -> Sweep:
         """As `LiePoisson.sweep`."""
-        xi = self.gradient(arc.lanes, arc.middle, middle)
-        rates = self.bracket(arc.lanes, arc.middle, middle, xi)
-        following = arc.state + 0.5 * arc.length * rates
+        rates = self.field(arc.lanes, arc.middle, middle)
+        following = arc.state + (arc.low + 0.5 * arc.length * rates)
         for each in kept:
             each.apply(following)
         return Sweep(following, arc.length * rates)
 
 
-class _Scale:
+class Scale:
     """The quotient of the lengths of a vector and of the half of a sum, on its way to be solved.
 
     It is the root s of ``s^2 |c|^2 = |w|^2`` in dual numbers; each sweep makes one step of
-    Newton's method for it, ``s (3 - s^2 |c|^2/|w|^2)/2``, which divides nothing.
+    Newton's method for it, ``s (3 - s^2 |c|^2/|w|^2)/2``, which divides nothing. Where that changes
+    it by a rounding it stays: it need not be closer, and each such change would lengthen what the
+    step adds, with a direction from before it. Of a free body that was 1e-21 of the Casimir in
+    each step, of one sign.
+
+    Args:
+        state: w, where the step begins.
+        offset: How far the middle of the step is from it, about; by it the quotient begins.
+        sphere: Whose it is.
     """
 
-    def __init__(self, state: Array, sphere: Sphere) -> None:
+    def __init__(self, state: Array, offset: Array, sphere: Sphere) -> None:
         self.sphere = sphere
         square, mixed = _measure(state, sphere)
         # half the inverse of the square; of a vector that is 0, anything will do
         self.half = 0.5 / np.where(square > 0.0, square, 1.0)
         self.slant = -4.0 * self.half * self.half * mixed
-        self.scale, self.slope = np.ones(square.shape), np.zeros(square.shape)
+        far, _ = _measure(offset, sphere)
+        self.scale, self.slope = 1.0 + self.half * far, np.zeros(square.shape)
         self.rest, self.empty = np.ones(square.shape), square == 0.0
 
     def is_root(self) -> Mask:
@@ -111,11 +123,15 @@ class _Scale:
         both = self.scale * self.scale
         part = self.half * square
         self.rest = rest = 1.5 - part * both
+        stays = np.abs(rest - 1.0) <= ROUNDINGS
         if self.sphere.tangent:
-            lean = (self.slant * square + 2.0 * self.half * mixed) * both
+            tilt = 2.0 * self.half * mixed
+            lean = (self.slant * square + tilt) * both
             lean = lean + 2.0 * part * self.scale * self.slope
-            self.slope = self.slope * rest - self.scale * lean
-        self.scale = self.scale * rest
+            slope = self.slope * rest - self.scale * lean
+            still = stays & (np.abs(lean) <= ROUNDINGS * np.abs(tilt))
+            self.slope = np.where(still, self.slope, slope)
+        self.scale = np.where(stays, self.scale, self.scale * rest)
         for row, tangent in self.sphere.pairs:
             state[tangent] = self.scale * state[tangent] + self.slope * state[row]
         for row in self.sphere.rows:

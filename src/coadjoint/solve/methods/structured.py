@@ -1,7 +1,7 @@
 """Structured: methods that keep the structure of a motion, as members of a batch take their steps.
 
 Comes in: one of them by its name, and functions of the kernel. Goes out: a step of each lane, what
-rounding took of it, and how many sweeps it took.
+it leaves for the next one, and how many sweeps it took.
 Read next: `coadjoint.solve.methods.lie_poisson`.
 """
 
@@ -50,8 +50,8 @@ class Structured:
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
         h, start = find_fixed_step(self.size, lanes.end - lanes.time), lanes.state
-        low = np.zeros(start.shape) if lanes.low is None else lanes.low
-        found, low, solved, sweeps = self.method.advance(lanes, h, start, low)
+        assert lanes.memory is not None
+        found, memory, solved, sweeps = self.method.advance(lanes, h, start, lanes.memory)
         end = np.where(solved, found, start)
         none = np.zeros(h.shape)
         path = Cubic(
@@ -67,5 +67,5 @@ class Structured:
             accepted=solved,
             path=path.follow,
             coefficients=path.coefficients,
-            left=Left(low, sweeps, solved),
+            left=Left(memory, sweeps, solved),
         )

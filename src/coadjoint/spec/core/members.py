@@ -69,7 +69,7 @@ def member_name(name: str, member: int) -> str:
 class Members:
     """How many members there are, and what each of them has.
 
-    Members have places from 0 on; in formulas and in names the first one has the number ``first``.
+    Members have places from 0 on; in formulas the first one has the number ``first``.
 
     Attributes:
         index: The index that counts them.
@@ -81,6 +81,7 @@ class Members:
         number: What formulas call the number of members; "" for nothing.
         taken: What the spec declares, so that no index has its name.
         scalars: What has neither an index nor components.
+        from_zero: Whether names count from 0 all the same: these are a few of N members.
     """
 
     index: str
@@ -92,12 +93,32 @@ class Members:
     number: str = ""
     taken: frozenset[str] = frozenset()
     scalars: frozenset[str] = frozenset()
+    from_zero: bool = False
 
     def place(self, member: int) -> int | None:
         """The member at a place from 0; None beyond the end of an open chain."""
         if self.periodic:
             return member % self.count
         return member if 0 <= member < self.count else None
+
+    @property
+    def last(self) -> str:
+        """What formulas call the last member: a few stand for any number of them."""
+        if not self.from_zero:
+            return str(self.first + self.count - 1)
+        return (self.number or "N") + " - 1" * (self.first == 0)
+
+    def find_alone(self, node: Node) -> int | None:
+        """The number of a member that a node names, and no sum counts; None if it names none.
+
+        It counts from 0, or from N as -1, -2 and so on, as formulas do.
+        """
+        match node:
+            case Index(name=name, indices=(number, *_)) if name in self.names:
+                return number - self.first
+            case Member(name=name, index=index, shift=shift) if name in self.names:
+                return shift - self.first if index and index == self.number else None
+        return None
 
     def run(self, node: Node, index: str = "") -> range:
         """The members for which a term reads no neighbour beyond the end of an open chain."""
@@ -296,9 +317,9 @@ def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Membe
     at, where = members.place(numbers[0] - members.first), {"start": node.start, "end": node.end}
     if at is None:
         problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
-        last = members.first + members.count - 1
-        raise fault_at(node, problem, str(numbers[0]), f"members {members.first} to {last}")
-    own = member_name(name, members.first + at)
+        expected = f"members {members.first} to {members.last}"
+        raise fault_at(node, problem, str(numbers[0]), expected)
+    own = member_name(name, at + (0 if members.from_zero else members.first))
     if numbers[1:]:
         return Index(name=own, indices=numbers[1:], within=node.within, **where)
     return Name(own, within=node.within, **where)

@@ -17,9 +17,9 @@ from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import (
     NAME_PATTERN,
-    Length,
     Numbers,
     Prose,
+    Side,
     Unit,
     misfit_form,
     read_default,
@@ -67,8 +67,10 @@ class TextPart(Part):
 class ArgumentPart(Part):
     """What a user gives to the kernels by components."""
 
-    shape: Annotated[list[Length], Field(max_length=2)] = Field(
-        [], description="[] for a scalar, [n] for a vector, [n, m] for a matrix"
+    shape: Annotated[list[Side], Field(max_length=2)] = Field(
+        [],
+        description="[] for a scalar, [3] for a vector, [3, 2] for a matrix; a side may be the "
+        "number of members, as ['n'] or ['2n', 'n+1'] with [index] i = { count = 'n' }",
     )
     form: Literal["antisymmetric", "symmetric"] | None = Field(
         None,

@@ -1,15 +1,18 @@
-"""Totals: trees that are linear in sums over members, and their sums.
+"""Totals: trees that are linear in sums over members, their sums, and what is added to these.
 
-Comes in: a tree whose sums are not written out. Goes out: its sums, each with what it stands in.
+Comes in: a tree whose sums are not written out. Goes out: its sums, each with what it stands in,
+and the rest: functions of single members at the ends of an open chain.
 Read next: `coadjoint.spec.core.members`, which writes sums out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-from coadjoint.spec.core.faults import fault_at
+from coadjoint.spec.core.faults import ExpressionError, fault_at
+from coadjoint.spec.core.members import Members
 from coadjoint.spec.core.tree import (
     Binary,
     Member,
@@ -18,6 +21,7 @@ from coadjoint.spec.core.tree import (
     Node,
     Number,
     Sum,
+    children,
     fold,
     rebuild,
     walk,
@@ -44,6 +48,14 @@ def split_sums(tree: Node) -> list[tuple[Sum, Node]]:
     return [(each, _keep(tree, each)) for each in sums]
 
 
+def is_linear(tree: Node, members: Members) -> bool:
+    """Whether a tree is linear in its sums, with factors that name no member."""
+    try:
+        return not any(find_alone(alone, members) for _, alone in split_sums(tree))
+    except ExpressionError:
+        return False
+
+
 def without_sums(tree: Node) -> Node:
     """A tree with zeros in the place of its sums."""
 
@@ -51,6 +63,46 @@ def without_sums(tree: Node) -> Node:
         return Number(Fraction(0)) if isinstance(node, Sum) else rebuild(node, below)
 
     return fold(tree, drop)
+
+
+def find_alone(tree: Node, members: Members) -> set[int]:
+    """The numbers of the members that a tree names outside of sums, as formulas count them.
+
+    They count from 0, or from N as -1, -2 and so on.
+    """
+    found = (members.find_alone(node) for node in walk_outside(tree))
+    return {number for number in found if number is not None}
+
+
+def walk_outside(tree: Node) -> Iterator[Node]:
+    """Every node of a tree that does not stand in a sum; sums are among them."""
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        yield node
+        if not isinstance(node, Sum):
+            pending.extend(reversed(children(node)))
+
+
+def keep_rest(tree: Node) -> Node | None:
+    """A linear tree without the terms that are sums; None if nothing is left."""
+    if not has_sum(tree):
+        return tree
+    match tree:
+        case Negate(operand=operand):
+            kept = keep_rest(operand)
+            return None if kept is None else replace(tree, operand=kept)
+        case Binary(operator="+" | "-", left=left, right=right):
+            kept, other = keep_rest(left), keep_rest(right)
+            if kept is None and other is not None and tree.operator == "-":
+                return Negate(other, start=tree.start, end=tree.end)
+            if kept is None or other is None:
+                return kept or other
+            return replace(tree, left=kept, right=other)
+        case Binary(left=left, right=right):
+            kept, other = keep_rest(left), keep_rest(right)
+            return None if kept is None or other is None else replace(tree, left=kept, right=other)
+    return None
 
 
 def has_sum(tree: Node) -> bool:
@@ -67,8 +119,8 @@ def _check_linear(node: Node) -> None:
             fits = not (has_sum(left) and has_sum(right))
         case Binary(operator="/", right=right):
             fits = not has_sum(right)
-        case Binary(left=left, right=right):
-            fits = has_sum(left) == has_sum(right)
+        case Binary():
+            return
         case _:
             fits = not has_sum(node)
     if not fits:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Field, PlainValidator, WithJsonSchema
 
@@ -26,6 +26,8 @@ NAME_PATTERN = "^[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*$"
 _UNIT = re.compile(r"(?!.*(?:\*/|/\*|//))[A-Za-z0-9 ^/*.(),-]+", re.ASCII)
 _LICENSE = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*", re.ASCII)
 #: Keys such as ``[e1, e2]`` of a bracket in an algebra, ``{X1, X2}`` of one of functions.
+#: A size that the number of members gives: ``n``, ``2n``, ``n+1``.
+COUNTED_PATTERN = r"(?:(\d{1,3}) ?\*? ?)?([A-Za-z]\w*)( ?[-+] ?\d{1,3})?"
 BRACKET_PATTERN = r"^\[ *([A-Za-z]\w*) *, *([A-Za-z]\w*) *\]$"
 #: Keys such as ``u`` and ``V(s, d)`` of definitions.
 DEFINITION_PATTERN = r"^[A-Za-z]\w*( *\( *[A-Za-z]\w*( *, *[A-Za-z]\w*)* *\))?$"
@@ -135,6 +137,10 @@ Unit = Annotated[
 ]
 Names = Annotated[list[str], Field(min_length=1), AfterValidator(is_unique)]
 Length = Annotated[int, Field(ge=1, le=STATE_COMPONENTS)]
+if TYPE_CHECKING:
+    Side = int  # `coadjoint.spec.counted` puts numbers for names before anything is read
+else:
+    Side = Length | Annotated[str, Field(pattern=f"^{COUNTED_PATTERN}$")]
 Title = Annotated[str, Field(max_length=TITLE_CHARACTERS), AfterValidator(_is_printable)]
 License = Annotated[str, Field(max_length=UNIT_CHARACTERS), AfterValidator(_is_license)]
 

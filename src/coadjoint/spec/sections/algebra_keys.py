@@ -30,7 +30,11 @@ WAYS = (
 class _Algebra(Part):
     """The ways to declare a Lie algebra."""
 
-    name: str | None = Field(None, description="an algebra by name, such as 'so(3)' or 'sl(2,R)'")
+    name: str | None = Field(
+        None,
+        description="an algebra by name, such as 'so(3)' or 'sl(2,R)'; 'so(n)' and 'sp(2n)' with "
+        "the number of members of an [index], n",
+    )
     basis: Names | None = Field(None, description="names of the basis, in order")
     brackets: dict[str, str] | None = Field(
         None,

@@ -20,6 +20,7 @@ from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
 from coadjoint.spec.core.tree import Name
 from coadjoint.spec.sections.momenta import MOMENTA
+from coadjoint.spec.sections.observables import OBSERVABLES
 from coadjoint.spec.sections.reconstruction import RECONSTRUCTION, followed_shapes
 from coadjoint.spec.sections.symmetries import emitted_shapes, shapes_in_claims
 from coadjoint.spec.sections.variables import VARIABLES, motion_roles, state_roles
@@ -149,6 +150,7 @@ def _read_casimirs(reading: Reading) -> tuple[Formula, ...]:
 def _read_conserved(reading: Reading) -> tuple[Integral, ...]:
     named = {**shapes_in_claims(reading), **emitted_shapes(MOMENTA.of(reading))}
     named |= followed_shapes(RECONSTRUCTION.of(reading))
+    named |= emitted_shapes([each for each in OBSERVABLES.of(reading) if each.follows])
     if reading.file.hamiltonian is None and reading.file.lagrangian is None:
         del named["energy"]
     scope = reading.scope("an integral", motion_roles(reading), named)

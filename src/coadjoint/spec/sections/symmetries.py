@@ -300,4 +300,5 @@ def emitted_shapes(entries: Iterable[Observable | Symmetry | Section]) -> dict[s
 
 def shapes_in_claims(reading: Reading) -> Mapping[str, Shape]:
     """What claims about symmetries may name in addition to the state."""
-    return emitted_shapes([*OBSERVABLES.of(reading), *SYMMETRIES.of(reading)])
+    named = [each for each in OBSERVABLES.of(reading) if not each.follows]
+    return emitted_shapes([*named, *SYMMETRIES.of(reading)])

@@ -27,9 +27,9 @@ from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
 from coadjoint.spec.core.values import (
     Block,
-    Length,
     Numbers,
     Prose,
+    Side,
     Unit,
     misfit_form,
     read_default,
@@ -101,7 +101,7 @@ class VariablePart(Part):
         description="how the algebra acts on an advected quantity: 'vector', 'adjoint', "
         "'coadjoint' and others, or a declared one",
     )
-    shape: Annotated[list[Length], Field(max_length=1)] | None = Field(
+    shape: Annotated[list[Side], Field(max_length=1)] | None = Field(
         None, description="of a coordinate: [] for a scalar (the default), [n] for n components"
     )
     of: str | None = Field(
@@ -181,12 +181,13 @@ def _read_variable(
     representation = None
     constrained = solved is not None
     paired = constrained or is_on_product(reading.file)
+    belongs = part.of is not None and any(x.role == "coordinate" for x in parts.values())
     if part.role == "momentum" and constrained:
         raise _constrained_momentum(source, key)
     if part.role == "contact":
         _check_rolling(reading, key)
         count, flat = SPACE, True
-    elif part.role == "coordinate" or algebra is None or (paired and part.of is not None):
+    elif part.role == "coordinate" or algebra is None or (paired and belongs):
         if not paired or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
         if part.role != "coordinate":
@@ -194,6 +195,8 @@ def _read_variable(
         count = prod(part.shape or [1])
         flat = bool(part.shape)
     elif part.of is not None:
+        if part.of in parts:  # a coordinate, which these routes do not move
+            _check_role(source, ("variables", part.of), parts[part.of], algebra)
         raise _alien_key(source, (*key, "of"), part)
     elif part.role == "advected":
         representation = _representation(
@@ -318,6 +321,7 @@ def _check_role(
     if part.role == "coordinate" and algebra is not None:
         place, roles = "with [algebra]", "the roles 'velocity', 'momentum' and 'advected'"
         hint = 'With velocities as the state it may: write routes = ["nonholonomic"] at the top.'
+        hint += " With momenta it may on the routes euler-poincare and lie-poisson."
     elif part.role in ("advected", *TURNING) and algebra is None:
         place, roles = "without [algebra]", "the roles 'coordinate', 'velocity' and 'momentum'"
     else:

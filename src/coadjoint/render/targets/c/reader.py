@@ -7,14 +7,14 @@ Read next: `coadjoint.crosscheck.parse_back`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import isfinite
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.program import Call, Negate, Node, Number, Program, Symbol
-from coadjoint.render.targets.body import Body, failure, join
+from coadjoint.render.targets.body import Body, failure, join, read_loop
 
 _TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<number>\d+\.?\d*(?:e[+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[-+*/(),\[\]])",
@@ -34,16 +34,62 @@ _STEPS = re.compile(
 _LOOP = re.compile(
     r"COADJOINT_PARTS\s+COADJOINT_INDEPENDENT\s+for \(size_t _n = _first; _n < _last; \+\+_n\) \{"
 )
+#: The largest number of unknowns that loops solve for, and the loops.
+_COUPLED = re.compile(r"enum \{ COUPLED = (\d+) \};")
+_EQUATIONS = " ".join(
+    """
+    static inline void coadjoint_factor(double *restrict entries, size_t size) {
+        double column[COUPLED], lower[COUPLED];
+        for (size_t j = 0; j < size; ++j) {
+            const double pivot = entries[j * (j + 3) / 2];
+            for (size_t i = j + 1; i < size; ++i) {
+                column[i] = entries[i * (i + 1) / 2 + j];
+                lower[i] = column[i] / pivot;
+                entries[i * (i + 1) / 2 + j] = lower[i];
+            }
+            for (size_t i = j + 1; i < size; ++i) {
+                double *restrict row = entries + i * (i + 1) / 2;
+                for (size_t k = j + 1; k <= i; ++k)
+                    row[k] -= column[i] * lower[k];
+            }
+        }
+    }
+    static inline void coadjoint_solve(
+        const double *restrict entries, double *restrict x, size_t size) {
+        for (size_t i = 1; i < size; ++i)
+            for (size_t j = 0; j < i; ++j)
+                x[i] -= entries[i * (i + 1) / 2 + j] * x[j];
+        for (size_t i = 0; i < size; ++i)
+            x[i] /= entries[i * (i + 3) / 2];
+        for (size_t k = size - 1; k > 0; --k) {
+            const double last = x[k];
+            for (size_t i = 0; i < k; ++i)
+                x[i] -= entries[k * (k + 1) / 2 + i] * last;
+        }
+    }
+    """.replace("(\n        const double", "(const double").split()
+)
 
 
 def read(text: str, program: Program, system: str) -> list[Body]:
     """The branches of the function of a Program."""
     name = f"{system}_{program.name}"
+    if program.solves_by_loop:
+        _check_equations(text, name)
     if program.table is None:
         return read_c(text, name)
     from coadjoint.render.targets.c.loop_reader import read_loops  # which reads expressions here
 
     return [read_loops(text, _find_function(text, name), program)]
+
+
+def _check_equations(text: str, name: str) -> None:
+    """The loops that solve equations are those of our template, and fit into their arrays."""
+    joined = " ".join(re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL).split())
+    found = _COUPLED.findall(joined)
+    sizes = [int(size) for size in re.findall(r"coadjoint_factor\(_\w+, (\d+)\);", joined)]
+    if len(found) != 1 or joined.count(_EQUATIONS) != 1 or max(sizes, default=0) != int(found[0]):
+        raise failure("kernel.c: it solves equations in another way than our template", name)
 
 
 def _find_function(text: str, name: str) -> str:
@@ -106,20 +152,32 @@ def _read_line(line: str, member: str, body: Body, name: str) -> None:
     driving = re.fullmatch(
         r"const double (\w+) = (inputs|time)\[(\d+) \* _\2_row \+ _n \* _\2_member\]", line
     )
-    assigned = re.fullmatch(r"const double (\w+) = ([^\[]*)", line)
-    output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = ([^\[]*)", line)
+    assigned = re.fullmatch(r"(?:const double (?=\w+ ))?(\w+(?:\[\d+\])?) = (.*)", line)
+    array = re.fullmatch(r"double (\w+)\[(\d+)\]", line)
+    called = re.fullmatch(r"(coadjoint_\w+)\(([\w, ]*)\)", line)
+    output = re.fullmatch(r"out\[(\d+) \* out_stride \+ _n\] = (.*)", line)
     if state:
         body.inputs[state[1]] = ("state", int(state[2]))
     elif given:
         body.inputs[given[1]] = ("parameters", int(given[2]))
     elif driving:
         body.inputs[driving[1]] = (driving[2], int(driving[3]))
-    elif assigned:
-        body.statements.append((assigned[1], read_expression(assigned[2], name)))
     elif output:
         body.outputs.append((int(output[1]), read_expression(output[2], name)))
+    elif assigned and _is_declared(assigned[1], line, body.arrays):
+        body.statements.append((assigned[1], read_expression(assigned[2], name)))
+    elif array:
+        body.arrays[array[1]] = int(array[2])
+    elif called and (loop := read_loop(called[1], called[2].split(", "), body.arrays)):
+        body.statements.append(loop)
     elif line:
         raise failure(f"kernel.c: {line!r} is not a line of our template", name)
+
+
+def _is_declared(name: str, line: str, arrays: Mapping[str, int]) -> bool:
+    """Whether a name is declared where it is assigned, or is an entry of an array that was made."""
+    array, bracket, _ = name.partition("[")
+    return (array in arrays) if bracket else line.startswith("const ")
 
 
 def read_expression(text: str, name: str) -> Node:
@@ -195,6 +253,8 @@ class Reader:
         # An integer would divide as integers do, and 1e999 is not a number.
         if kind == "number" and not text.isdigit() and isfinite(float(text)):
             return Number(Fraction(float(text)))
+        if kind == "name" and self.tokens[self.at][1] == "[":
+            return self._read_item(text)
         if kind == "name" and self.tokens[self.at][1] != "(":
             return Symbol(text)
         called = text.removesuffix(self.suffix)
@@ -206,6 +266,14 @@ class Reader:
                 raise self.refusal()
             return inner
         raise self.refusal()
+
+    def _read_item(self, name: str) -> Node:
+        """An entry of an array over which a loop has run."""
+        self.take()
+        place = self.take()
+        if not place.isdigit() or self.take() != "]" or not name.startswith("_"):
+            raise self.refusal()
+        return Symbol(f"{name}[{place}]")
 
     def read_arguments(self, count: int) -> list[Node]:
         """The arguments of a function, in parentheses."""

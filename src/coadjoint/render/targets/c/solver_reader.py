@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from coadjoint.lower.program import Node
 from coadjoint.methods import ASKED
-from coadjoint.render.targets.body import Loop, SolverBody, failure
+from coadjoint.render.targets.body import Line, Loop, SolverBody, failure, read_loop
 from coadjoint.render.targets.c.reader import Reader
 
 #: The functions that the system has a part in, by name, with the text before their bodies.
@@ -65,6 +65,9 @@ _READ = {
         r"V (\w+)\[ORDER \+ 1\] = \{_block->inputs\[(\d+)\], _block->slopes\[\2\]\}"
     ),
 }
+#: An array that a loop runs over, and the call of one.
+_ARRAY = re.compile(r"V (\w+)\[(\d+)\]")
+_CALLED = re.compile(r"(coadjoint_\w+)\(([\w, ]*)\)")
 _KEPT = re.compile(r"V (\w+)\[ORDER \+ 1\]")
 _COUNTS = {
     "_parts": "0.0, " + ", ".join(f"1.0 / {k}" for k in range(1, 42)),
@@ -224,7 +227,11 @@ class _Reading:
         self.body.inputs[name] = (array, row)
 
     def _read_line(self, line: str) -> None:
-        """A line that computes something."""
+        """A line that computes something, or makes an array for a loop."""
+        loop = self._read_loop(line)
+        if loop is not None:
+            self.body.lines += loop
+            return
         declared, name, value = self._assignment(line)
         if declared != ("" if "[" in name else "const V "):
             raise self._refusal(line)
@@ -235,6 +242,8 @@ class _Reading:
         for kind, statement in statements:
             if kind == "loop" and statement == _TERMS:
                 self.body.orders.append(Loop(tuple(self._read_terms(statements))))
+            elif kind == "plain" and (loop := self._read_loop(statement)) is not None:
+                self.body.orders += loop
             elif kind == "plain":
                 declared, name, value = self._assignment(statement)
                 if declared == "V ":
@@ -257,6 +266,15 @@ class _Reading:
             if kind != "plain" or declared or name not in self.body.starts:
                 raise self._refusal(statement)
             yield name, value
+
+    def _read_loop(self, line: str) -> list[Line] | None:
+        """What a line computes that makes an array for a loop or calls one; None of others."""
+        array, called = _ARRAY.fullmatch(line), _CALLED.fullmatch(line)
+        if array:
+            self.body.arrays[array[1]] = int(array[2])
+            return []
+        loop = called and read_loop(called[1], called[2].split(", "), self.body.arrays)
+        return [loop] if loop else None
 
     def _assignment(self, line: str) -> tuple[str, str, Node]:
         """How a name is declared, the name, and its value."""

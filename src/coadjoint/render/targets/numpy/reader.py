@@ -40,6 +40,30 @@ def _add_products(out, passes, first):
             products *= right[rights[entries]]
             out[rows] += products
 """
+#: What functions that solve equations by loops call.
+EQUATIONS = """
+def _factor(entries, size):
+    rows = np.array(np.broadcast_arrays(*entries))
+    starts = np.arange(size) * np.arange(1, size + 1) // 2
+    for j in range(size - 1):
+        below = starts[j + 1 :] + j
+        column = rows[below]
+        rows[below] = column / rows[starts[j] + j]
+        i, k = np.tril_indices(size - j - 1)
+        rows[below[i] + k + 1] -= column[i] * rows[below[k]]
+    entries[:] = rows
+
+def _solve(factors, known, size):
+    both = np.array(np.broadcast_arrays(*factors, *known))
+    rows, x = both[:-size], both[-size:]
+    starts = np.arange(size) * np.arange(1, size + 1) // 2
+    for j in range(size - 1):
+        x[j + 1 :] -= rows[starts[j + 1 :] + j] * x[j]
+    x /= rows[starts + np.arange(size)]
+    for k in range(size - 1, 0, -1):
+        x[:k] -= rows[starts[k] : starts[k] + k] * x[k]
+    known[:] = x
+"""
 
 
 def read(text: str, program: Program, system: str) -> list[Body]:
@@ -50,6 +74,8 @@ def read(text: str, program: Program, system: str) -> list[Body]:
         if wanted not in functions:
             raise reader.refusal(f"there is no function {wanted!r}")
     _check_calls(reader, functions, tuple(program.arrays))
+    if program.solves_by_loop:
+        reader.check_helpers(functions, EQUATIONS)
     if program.table is not None:
         return [_read_loops(reader, functions, text, program)]
     body = Body()

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator
 
 from coadjoint.lower.program import Node, Symbol
-from coadjoint.render.targets.body import Loop, SolverBody, failure
+from coadjoint.render.targets.body import Line, Loop, SolverBody, failure
 from coadjoint.render.targets.python_text import NUMPY_FUNCTIONS, Reader
 
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
@@ -153,7 +153,7 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
             return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS", "EXACT")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
-            return name in ("REFUSALS", "SCHEDULES")
+            return name in ("REFUSALS", "SCHEDULES", "MOVED")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
             return name in ("KINKS", "STRUCTURED", "SPHERES") or name.startswith(
                 ("TABLE_", "STAR_")
@@ -191,7 +191,7 @@ class _Reading(Reader):
             raise self.refusal("does not return the path", returned)
         for line in inside:
             if not self._read_setup(ast.unparse(line), line):
-                self.body.lines.append(self._assignment(line))
+                self.body.lines += self._read_lines(line)
         told = [line for line in _FIXED if line in self._told]
         if told != self._told or not set(told) >= set(_FIXED) - {_FIXED[1]}:
             raise self.refusal(f"begins with {self._told}")
@@ -215,7 +215,7 @@ class _Reading(Reader):
             elif found and not self.body.lines:
                 self.body.inputs[found[1]] = (found[2], int(found[3]))
             else:
-                self.body.lines.append(self._assignment(line))
+                self.body.lines += self._read_lines(line)
         if not made:
             raise self.refusal("makes no rows")
 
@@ -233,7 +233,7 @@ class _Reading(Reader):
                     self.body.inputs[found[1]] = (array, int(found[2]))
                     break
             else:
-                self.body.lines.append(self._assignment(line))
+                self.body.lines += self._read_lines(line)
 
     def read_scales(self, lines: list[ast.stmt]) -> None:
         """Lines of the parameters, and the scales that loops begin with."""
@@ -275,6 +275,11 @@ class _Reading(Reader):
             raise self.refusal("is out of place", line)
         self.body.inputs[name] = (array, row)
 
+    def _read_lines(self, line: ast.stmt) -> list[Line]:
+        """What a line computes: nothing where it makes an array for a loop."""
+        loop = self.read_loop(line, self.body.arrays)
+        return [self._assignment(line)] if loop is None else loop
+
     def _assignment(self, line: ast.stmt) -> tuple[str, Node]:
         """A name and its value."""
         match line:
@@ -293,4 +298,4 @@ class _Reading(Reader):
                 case ast.For(ast.Name("_m"), over, body, []) if ast.unparse(over) == _TERMS:
                     yield Loop(tuple(map(self._assignment, body)))
                 case _:
-                    yield self._assignment(line)
+                    yield from self._read_lines(line)

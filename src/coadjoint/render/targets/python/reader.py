@@ -30,6 +30,29 @@ def _add_products(out, passes, first):
                 total += TABLE_COEFFICIENTS[entry] * factors[0] * factors[1]
         out[row] = total
 """
+#: What functions that solve equations by loops call.
+EQUATIONS = """
+def _factor(entries, size):
+    for j in range(size):
+        pivot = entries[j * (j + 3) // 2]
+        below = [i * (i + 1) // 2 + j for i in range(j + 1, size)]
+        column = [entries[place] for place in below]
+        for place in below:
+            entries[place] /= pivot
+        for i, place in enumerate(below):
+            for k in range(i + 1):
+                entries[place + k + 1] -= column[i] * entries[below[k]]
+
+def _solve(factors, known, size):
+    for i in range(1, size):
+        for j in range(i):
+            known[i] -= factors[i * (i + 1) // 2 + j] * known[j]
+    for i in range(size):
+        known[i] /= factors[i * (i + 3) // 2]
+    for k in range(size - 1, 0, -1):
+        for i in range(k):
+            known[i] -= factors[k * (k + 1) // 2 + i] * known[k]
+"""
 #: What makes a matrix of a list.
 ROWS = "return [out[first:first + size] for first in range(0, len(out), size)]"
 
@@ -40,6 +63,8 @@ def read(text: str, program: Program, system: str) -> list[Body]:
     functions = reader.functions(text, _is_allowed)
     if program.name not in functions:
         raise reader.refusal(f"there is no function {program.name!r}")
+    if program.solves_by_loop:
+        reader.check_helpers(functions, EQUATIONS)
     function = functions[program.name]
     taken = [each.arg for each in (*function.args.args, *function.args.kwonlyargs)]
     if taken != list(program.arrays):

@@ -1,0 +1,106 @@
+"""Cross-check, loops in any arithmetic: what the parts of a family compute of all its members.
+
+Comes in: `Loops`, a state and parameters of N members. Goes out: every row of the result, to 50
+digits with its envelope, or in any other arithmetic. Envelopes are those of the form that kernels
+compute: differences such as ``(q[i+1] - q[i])^2 - (q[i] - q[i-1])^2`` have larger ones than what is
+left of them multiplied out.
+Read next: `coadjoint.crosscheck.families`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import localcontext
+from fractions import Fraction
+from functools import reduce
+from itertools import combinations
+from operator import add
+from typing import Any
+
+from coadjoint.crosscheck.oracle import CONTEXT, Bounded, OutsideDomain, call, exact
+from coadjoint.lower.families import SUM, Loops, Part
+from coadjoint.lower.program import run
+
+
+@dataclass(frozen=True)
+class _Members:
+    """The arrays of so many members, in an arithmetic.
+
+    Attributes:
+        arrays: Rows of ``state``, ``parameters``, ``inputs`` and ``time``.
+        size: N.
+        number: How the arithmetic makes numbers.
+        call: How it calls functions.
+    """
+
+    arrays: Mapping[str, Sequence[Any]]
+    size: int
+    number: Callable[[Fraction], Any]
+    call: Callable[..., Any]
+
+    def evaluate(self, part: Part, i: int, j: int = 0, sums: Sequence[Any] = ()) -> list[Any]:
+        """The outputs of a part for a member, or for a pair of them."""
+        values: dict[str, Any] = {}
+        for read in part.reads:
+            row = read.rows + read.blocks * self.size
+            if read.single is not None:
+                row += read.single % self.size
+            elif read.shift is not None:
+                row += j if read.of_partner else (i + read.shift) % self.size
+            values[read.name] = self.arrays[read.array][row]
+        for name in part.program.state[len(part.reads) :]:
+            values[name] = sums[int(name.removeprefix(SUM))]
+        return run(part.program, values, self.number, self.call)
+
+    def add_up(self, terms: Iterable[list[Any]]) -> list[Any]:
+        """Sums of terms, column by column."""
+        return [reduce(add, column) for column in zip(*terms, strict=True)]
+
+    def find_totals(self, loops: Loops) -> list[Any]:
+        """Sums first, then what follows from them."""
+        assert loops.finish is not None, loops.name
+        sums = list[Any]()
+        for each in loops.totals:
+            run_of = range(each.before, self.size - each.after)
+            places: Iterable[tuple[int, int]] = ((i, 0) for i in run_of)
+            if each.over == "pairs":
+                places = combinations(range(self.size), 2)
+            nothing = [self.number(Fraction(0))] * len(each.part.program.outputs)
+            sums += self.add_up([nothing, *(self.evaluate(each.part, *at) for at in places)])
+        return self.evaluate(loops.finish, 0, sums=sums)
+
+    def find_members(self, loops: Loops) -> Iterator[list[Any]]:
+        """The rows of each member."""
+        ends = {number % self.size: part for number, part in loops.ends}
+        for i in range(self.size):
+            sums = list[Any]()
+            if loops.partners is not None:
+                others = (j for j in range(self.size) if j != i)
+                terms = [self.evaluate(loops.partners, i, j) for j in others]
+                sums = self.add_up(terms)[: loops.pair_sums]
+            part = ends.get(i, loops.member)
+            assert part is not None, loops.name
+            yield self.evaluate(part, i, sums=sums)
+
+
+def evaluate_loops(
+    loops: Loops, arrays: Mapping[str, Sequence[float]], size: int
+) -> list[Bounded] | None:
+    """Every row of a function, to 50 digits; None where it has no value.
+
+    Args:
+        loops: The function.
+        arrays: Rows of ``state``, ``parameters``, ``inputs`` and ``time``; doubles, taken as exact.
+        size: N.
+    """
+    with localcontext(CONTEXT):
+        try:
+            known = {name: [exact(value) for value in rows] for name, rows in arrays.items()}
+            members = _Members(known, size, exact, call)
+            if loops.member is None:
+                return members.find_totals(loops)
+            rows = zip(*members.find_members(loops), strict=True)
+            return [value for row in rows for value in row]
+        except (ArithmeticError, OutsideDomain):
+            return None

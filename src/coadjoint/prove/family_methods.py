@@ -1,0 +1,267 @@
+"""Methods of integration, judged for systems of equal members.
+
+Comes in: the Equations of windows, the Family, its loops and the certificate. Goes out: the facts
+and every method judged by them, as of other systems. Facts are those of a window: its tensor has a
+block for each member, and totals are sums of the same terms for every number of members, so that
+kinds of tensors, degrees and the split of the energy do not depend on it. Integrals count where the
+certificate has them for every number of members. Steps of families are loops over members
+(templates/c/family_methods.c.j2): midpoints, spherical midpoints, and splittings of an energy
+``T(p) + V(q)``.
+Read next: `coadjoint.prove.methods`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Final
+
+from coadjoint.derive import Equations
+from coadjoint.exact import Element
+from coadjoint.families import Family
+from coadjoint.lower.compositions import SPLITTINGS, list_schedules
+from coadjoint.lower.families import Loops
+from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.program import Program
+from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
+from coadjoint.prove.certificate import Certificate
+from coadjoint.prove.facts import Facts, Kept
+from coadjoint.prove.methods import Judgement, judge, judge_spheres
+from coadjoint.spec.core.components import component_names
+from coadjoint.spec.core.members import member_name
+from coadjoint.spec.model import Windows
+
+#: Files of methods whose steps there are as loops over members.
+LOOPED: Final = ("midpoint", "spherical_midpoint", "sequence")
+#: The two flows of a splitting: positions move with the momenta at rest, and the other way round.
+FLOWS: Final = ("flow1", "flow2")
+_NONE: Final = "its solvers are loops over equal members, without it"
+_SPHERES: Final = (
+    "it expects members that are vectors of three components, each with the bracket of so(3) or a "
+    "multiple of it"
+)
+_SPLIT: Final = (
+    "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
+)
+_NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
+
+
+class FamilyFacts(Facts):
+    """Facts of a system of equal members.
+
+    Args:
+        windows: Equations of small numbers of members, the first route of each.
+        declared: What is known of the other members.
+        family: Those of the generic member.
+        loops: Its functions.
+        certificate: What is proved for every number of members.
+    """
+
+    def __init__(
+        self,
+        windows: Sequence[Equations],
+        declared: Windows,
+        family: Family,
+        loops: Mapping[str, Loops],
+        certificate: Certificate,
+    ) -> None:
+        super().__init__(windows[-1], {}, certificate)
+        self.family, self._windows, self._loops = family, windows, loops
+        self._declared = declared
+
+    @cached_property
+    def has_kinks(self) -> bool:
+        """As of `Facts`."""
+        parts = self._loops["rhs"].parts
+        return any("kinks" in hold_sides({"rates": part.program}) for part in parts)
+
+    @cached_property
+    def _members(self) -> list[list[str]]:
+        """Components of each member of the window, in the order of a member's state."""
+        known = {each.name: each for each in self.spec.variables}
+        count = len(self.state) // len(self.family.states)
+        return [
+            [c for name in self._declared.variables for c in known[member_name(name, k)].components]
+            for k in range(count)
+        ]
+
+    # -- spheres --------------------------------------------------------------------------
+
+    @cached_property
+    def spheres(self) -> tuple[Sphere, ...]:
+        """Vectors of a member, by its components, if it has nothing else and they are on spheres.
+
+        Their brackets are ``{x_a, x_b} = c epsilon_abd x_d``, c free of the state and not zero for
+        any member, and they commute with all others.
+        """
+        count = len(self.family.states)
+        if self.structure is None or count % 3 or not self.is_hamiltonian:
+            return ()
+        places = [
+            [self.state.index(c) for c in member[first : first + 3]]
+            for member in self._members
+            for first in range(0, count, 3)
+        ]
+        if not all(map(self._is_sphere, places)):
+            return ()
+        return tuple(Sphere((first, first + 1, first + 2)) for first in range(0, count, 3))
+
+    def _is_sphere(self, rows: Sequence[int]) -> bool:
+        """Whether three rows have the bracket of so(3), or a multiple, and commute with others."""
+        assert self.structure is not None, self.spec.name
+        tensor, field = self.structure.tensor, self.field
+        others = [k for k in range(len(self.state)) if k not in rows]
+        if any(tensor[row][k] or tensor[k][row] for row in rows for k in others):
+            return False
+        a, b, c = (field[self.state[row]] for row in rows)
+        i, j, k = rows
+        pairs = ((tensor[i][j], c), (tensor[j][k], a), (tensor[k][i], b))
+        scale = field.gradient(pairs[0][0], [self.state[k]])[0]
+        reached = field.reach(scale) & {*self.state}
+        return not reached and bool(scale) and all(field.is_zero(x - scale * y) for x, y in pairs)
+
+    # -- splitting ------------------------------------------------------------------------
+
+    @cached_property
+    def positions(self) -> tuple[int, ...]:
+        """Which components of a member are positions, where its energy is ``T(p) + V(q)``."""
+        if not (self.is_hamiltonian and self.is_canonical and self.is_separable):
+            return ()
+        where = {*self.motion.positions}
+        return tuple(n for n, name in enumerate(self._members[0]) if name in where)
+
+    def is_kept_by_flows(self, name: str) -> bool:
+        """Whether an integral has the rate 0 along ``T(p)`` alone and along ``V(q)`` alone.
+
+        Along each flow what moves it stays, so that the integral does. Either flow is a motion of
+        the form of the whole one: what holds in the windows holds for every number of members.
+        """
+        return all(
+            _is_kept_by_flows(Facts(each, {}, self._certificate), name) for each in self._windows
+        )
+
+    # -- integrals ------------------------------------------------------------------------
+
+    @cached_property
+    def integrals(self) -> tuple[Kept, ...]:
+        """What is conserved for every number of members, and the squared radii of spheres."""
+        proved = [each.partition(",")[0] for each in self._proved]
+        said = {"energy": "the energy is conserved"}
+        own = (*super().integrals,)
+        named = [x for x in own if said.get(x.name, f"{x.name} is conserved") in proved]
+        return (*named, *map(self._describe_sphere, self.spheres))
+
+    def _describe_sphere(self, sphere: Sphere) -> Kept:
+        """The squares of the radii of all members."""
+        field = self.field
+        values: list[Element] = []
+        for member in self._members:
+            rows = [field[member[n]] for n in sphere.rows]
+            values.append(field.sum(x * x for x in rows))
+        return Kept(
+            name=self.radii[sphere.rows[0]],
+            values=tuple(values),
+            degree=2,
+            is_casimir=self._is_casimir(values),
+            is_kept_within_steps=all(map(self._is_still, values)),
+        )
+
+    @cached_property
+    def radii(self) -> dict[int, str]:
+        """Names of the squared radii of spheres, by the first component: ``dot(S[i], S[i])``."""
+        first, names = 0, dict[int, str]()
+        known = {each.name: each for each in self.spec.variables}
+        i = self._declared.index.name
+        for name in self._declared.variables:
+            own = known[member_name(name, 0)]
+            parts = component_names(name, own.shape, own.form)
+            for n in range(0, len(parts), 3):
+                rows = parts[n : n + 3]
+                whole = f"dot({name}[{i}], {name}[{i}])"
+                names[first + n] = (
+                    whole if len(parts) == 3 else " + ".join(f"{c}[{i}]^2" for c in rows)
+                )
+            first += len(parts)
+        return names
+
+    def as_record(self) -> dict[str, object]:
+        """As of `Facts`; spheres by the components of a member."""
+        found = super().as_record()
+        if self.positions:
+            found["positions"] = list(self.positions)
+        return found
+
+
+def _is_kept_by_flows(facts: Facts, name: str) -> bool:
+    """The same of one window."""
+    field, state = facts.field, facts.state
+    rates = [facts.equations.close(rate) for rate in facts.equations.exact.rates]
+    rest = {*facts.motion.positions}
+    for each in facts.integrals:
+        if each.name != name:
+            continue
+        for value in each.values:
+            slopes = [a * b for a, b in zip(field.gradient(value, state), rates, strict=True)]
+            for is_position in (True, False):
+                own = (s for s, x in zip(slopes, state, strict=True) if (x in rest) == is_position)
+                if not field.is_zero(field.sum(own)):
+                    return False
+        return True
+    return False
+
+
+def judge_family(
+    windows: Sequence[Equations],
+    declared: Windows,
+    family: Family,
+    loops: Mapping[str, Loops],
+    certificate: Certificate,
+) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
+    """The facts of a system of equal members, and every method judged by them.
+
+    Args:
+        windows: Equations of small numbers of members.
+        declared: What is known of the other members.
+        family: Those of the generic member.
+        loops: Its functions.
+        certificate: What is proved for every number of members.
+    """
+    facts = FamilyFacts(windows, declared, family, loops, certificate)
+    refusals = {name: _NONE for name, x in STRUCTURED.items() if x.file not in LOOPED}
+    refusals |= {name: _NONE for name in MAPPED if name not in SPLITTINGS}
+    if not facts.spheres:
+        spheres = (name for name, x in STRUCTURED.items() if x.file == "spherical_midpoint")
+        refusals |= dict.fromkeys(spheres, _SPHERES)
+    if not facts.positions:
+        refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
+    if facts.is_noisy:
+        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
+    elif facts.has_kinks:
+        reason = "its rates have kinks, at which explicit methods end their steps"
+        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), reason)
+    if facts.is_driven:
+        refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
+    rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
+    return facts, judge(facts, refusals, {}, rules)
+
+
+def _judge_spheres(
+    facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]
+) -> Judgement:
+    """As of other systems; a member has so many spheres."""
+    found = judge_spheres(facts, method, maps)
+    return replace(found, decides=f"{found.decides} for each member")
+
+
+def _judge_splitting(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
+    """Products of the flows of ``T(p)`` and ``V(q)``, each a shift of positions or of momenta."""
+    assert isinstance(facts, FamilyFacts), method.name
+    exactly = tuple(each for each in facts.integrals if facts.is_kept_by_flows(each.name))
+    shifts = len(list_schedules(FLOWS)[method.name])
+    return Judgement(
+        exactly,
+        is_poisson=True,
+        decides="the energy is T of momenta plus V of positions, for every number of members",
+        cost=f"{shifts} shifts, each with the rates",
+    )

@@ -1,0 +1,217 @@
+"""Noise on coadjoint orbits: what the spherical midpoint keeps on each path, and its order."""
+
+import math
+
+import numpy as np
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.errors import KernelArgumentError
+from coadjoint.methods import Sphere
+from coadjoint.solve.folders import load_texts
+from coadjoint.solve.steps import Lanes
+from coadjoint.solve.stochastic import Midpoint, SphericalMidpoint
+from coadjoint.spec.reader import read_spec_text
+from coadjoint.systems import stochastic_rigid_body as body
+
+#: Noise about two axes of the body and of the vertical, which do not commute.
+HEAVY = """
+title = "A heavy top with noise"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum", default = [0.4, -0.3, 1.2] }
+Gamma = { role = "advected", representation = "vector", default = [0.6, 0, 0.8] }
+[hamiltonian]
+h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Gamma1/5 + Gamma3"
+[noise]
+dW1 = "Pi1/5"
+dW2 = "3*Pi2/10"
+dW3 = "Gamma3/4"
+[claims]
+casimirs = ["dot(Gamma, Gamma)", "dot(Pi, Gamma)"]
+conserved = ["dot(Gamma, Gamma)", "dot(Pi, Gamma)"]
+"""
+START = np.array([0.4, -0.3, 1.2, 0.6, 0.0, 0.8])
+
+
+@pytest.fixture(scope="module")
+def top():
+    """A heavy top with noise."""
+    with load_texts(pipeline.render(read_spec_text(HEAVY, "top.toml")).texts) as system:
+        yield system
+
+
+@pytest.mark.parametrize("target", ["numpy", "c"])
+def test_casimirs_are_kept_on_each_path(top, target):
+    """Of a top and of a body, by both midpoints; by Heun's method they are not."""
+    members = np.repeat(START[:, np.newaxis], 9, axis=1)
+    given = {"step": 0.0625, "samples": 33, "seed": 3, "target": target}
+    for system, start in ((top, members), (body, members[:3])):
+        drifts = {}
+        for method in ("spherical_midpoint", "midpoint", "heun"):
+            run = system.simulate(start, (0, 6), method=method, **given)
+            assert (run.status == "OK").all()
+            own = [run.drift[name] for name in run.drift if name.startswith("casimir")]
+            assert len(own) == len(start) // 3
+            drifts[method] = np.max(own)
+            assert np.ptp(run.state[0, :, -1]) > 0.1  # paths differ
+        assert drifts["spherical_midpoint"] < 1e-13
+        assert drifts["midpoint"] < 1e-12
+        assert drifts["heun"] > 1e-6
+
+
+def test_bits_are_those_of_the_twin(top):
+    """Whatever the company."""
+    start = np.random.default_rng(0).normal(size=(6, 11))
+    given = {"method": "spherical_midpoint", "step": 0.125, "samples": 5, "seed": 4}
+    one = top.simulate(start, (0, 2), target="numpy", **given)
+    other = top.simulate(start, (0, 2), target="c", threads=2, **given)
+    np.testing.assert_array_equal(one.state, other.state)
+    assert one.settings["keeps"].startswith("Casimirs")
+    midpoint = top.simulate(start, (0, 2), target="c", **(given | {"method": "midpoint"}))
+    assert np.abs(midpoint.state - one.state).max() > 1e-6
+
+
+def test_a_step_is_a_poisson_map(top):
+    """``D J(x) D^T = J(y)`` by differences, with the same noise; the midpoint is none."""
+    eps, n = 1e-5, 6
+    columns = START[:, np.newaxis]
+    states = np.concatenate([columns + eps * np.eye(n), columns - eps * np.eye(n), columns], axis=1)
+
+    def tensor(x):
+        hat = [
+            np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]]) for v in (x[:3], x[3:])
+        ]
+        return np.block([[hat[0], hat[1]], [hat[1], np.zeros((3, 3))]])
+
+    def find_defect(kind):
+        end = step_once(kind, states, 0.25)
+        slope = (end[:, :n] - end[:, n:-1]) / (2 * eps)
+        return np.abs(slope @ tensor(START) @ slope.T - tensor(end[:, -1])).max()
+
+    assert find_defect(SphericalMidpoint) < 1e-8
+    assert find_defect(Midpoint) > 1e-5
+
+
+def test_a_motion_without_spheres_refuses_it():
+    """With what it expects."""
+    text = HEAVY.replace('name = "so(3)"', 'name = "sl(2,R)"').split("[variables]")[0]
+    text += """
+[variables]
+mu = { role = "momentum", default = [0.4, -0.3, 1.2] }
+[hamiltonian]
+h = "mu1^2/2 + mu2^2/4 + mu3^2/6"
+[noise]
+dW1 = "mu1/5"
+"""
+    texts = pipeline.render(read_spec_text(text, "plane.toml")).texts
+    refused = pytest.raises(KernelArgumentError, match=r"product of so\(3\) and se\(3\)")
+    with load_texts(texts) as system, refused:
+        system.simulate(START[:3], (0, 1), method="spherical_midpoint", step=0.1, seed=1)
+
+
+# -- the strong order, with rates by hand ---------------------------------------------------------
+
+INERTIA = np.array([1.0, 2.0, 3.0])[:, np.newaxis]
+WEIGHT = np.array([0.2, 0.0, 1.0])[:, np.newaxis]
+
+
+def move(x, along_Pi, along_Gamma):
+    """``{x, h}`` on se(3)*, left invariant: Pi x dh/dPi + Gamma x dh/dGamma, Gamma x dh/dPi."""
+    Pi, Gamma = x[:3], x[3:]
+    both = np.cross(Pi, along_Pi, axis=0) + np.cross(Gamma, along_Gamma, axis=0)
+    return np.concatenate([both, np.cross(Gamma, along_Pi, axis=0)])
+
+
+def rates(lanes, after, x):
+    """Of the top above."""
+    return move(x, x[:3] / INERTIA, np.broadcast_to(WEIGHT, x[3:].shape))
+
+
+def fields(lanes, after, x):
+    """Of its processes."""
+    zero = np.zeros(x[:3].shape)
+    axes = [np.broadcast_to(np.eye(3)[:, [k]], zero.shape) for k in range(3)]
+    noise = [(0.2 * axes[0], zero), (0.3 * axes[1], zero), (zero, 0.25 * axes[2])]
+    return np.stack([move(x, *each) for each in noise], axis=1)
+
+
+def make_lanes(x, n):
+    """Members at step n."""
+    members = x.shape[1]
+    none = np.zeros((0, members))
+    return Lanes(
+        state=x,
+        time=np.zeros(members),
+        end=np.full(members, math.inf),
+        step=np.zeros(members),
+        parameters=np.zeros(0),
+        driving=none,
+        slopes=none,
+        member=np.arange(members, dtype=np.uint64),
+        steps=np.full(members, n, np.uint64),
+    )
+
+
+def make_method(kind, h, increments):
+    """A method that takes given increments, ``(w, steps, N)``."""
+
+    class Given(kind):
+        def find_noise(self, lanes, h, process):
+            return increments[process, int(lanes.steps[0])] / h
+
+    spheres = (Sphere((3, 4, 5), (0, 1, 2)),)
+    given = {"rates": rates, "fields": fields, "spheres": spheres}
+    return Given(**given, size=h, seed=0, bound=math.inf)
+
+
+def step_once(kind, states, h):
+    """One step of all states with the same noise."""
+    noise = np.array([0.3, -0.2, 0.4])[:, np.newaxis, np.newaxis]
+    increments = np.broadcast_to(noise, (3, 1, states.shape[1]))
+    attempt = make_method(kind, h, increments).try_step(make_lanes(states, 0))
+    assert attempt.accepted.all()
+    return attempt.state
+
+
+def find_strong_order(kind, chosen, members, finest, least, scale):
+    """The slope of the mean error at t = 1 against the step, over three octaves."""
+    counts = least * 2 ** np.arange(4)
+    source = np.random.default_rng(5)
+    fine = np.zeros((3, finest, members))
+    fine[chosen] = scale * source.normal(size=(len(chosen), finest, members)) / math.sqrt(finest)
+
+    def follow(increments):
+        x, steps = np.repeat(START[:, np.newaxis], members, axis=1), increments.shape[1]
+        method = make_method(kind, 1.0 / steps, increments)
+        for n in range(steps):
+            attempt = method.try_step(make_lanes(x, n))
+            assert attempt.accepted.all()
+            x = attempt.state
+        return x
+
+    exact = follow(fine)
+    errors = [
+        np.linalg.norm(
+            follow(fine.reshape(3, steps, -1, members).sum(axis=2)) - exact, axis=0
+        ).mean()
+        for steps in counts.tolist()
+    ]
+    return np.polyfit(np.log2(counts), -np.log2(errors), 1)[0]
+
+
+@pytest.mark.parametrize(("chosen", "order"), [([0, 1, 2], 0.5), ([1], 1.0)])
+def test_the_strong_order_of_a_top(chosen, order):
+    """Half where processes do not commute, 1 for one of them."""
+    found = find_strong_order(SphericalMidpoint, chosen, 100, 256, 4, 3.0)
+    assert abs(found - order) < 0.2
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("kind", [SphericalMidpoint, Midpoint])
+@pytest.mark.parametrize(("chosen", "order"), [([0, 1, 2], 0.5), ([1], 1.0)])
+def test_the_strong_order_of_a_top_to_a_tenth(kind, chosen, order):
+    """With more paths and a finer reference."""
+    assert abs(find_strong_order(kind, chosen, 1000, 4096, 16, 3.0) - order) < 0.1
