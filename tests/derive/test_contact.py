@@ -6,6 +6,7 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.derive.domain import bounds
 from coadjoint.errors import DerivationError
+from coadjoint.lower.lowering import lower
 from coadjoint.resources import derivations_folder
 from tests.contacts import (
     BALL_INSIDE,
@@ -243,3 +244,9 @@ def test_surfaces_that_touch_along_a_line_are_refused():
     with pytest.raises(DerivationError, match="touch along a line or a whole face") as caught:
         derive(spec(ELLIPSOID, *ON_PLANE, flat))
     assert "rolling.surface" in str(caught.value)
+
+
+def test_a_projection_computes_each_step_once():
+    """A step of Newton is a few hundred operations, so that a compiler has little to do."""
+    projection = lower(derived(ELLIPSOID))["projection"]
+    assert 100 < sum(projection.operation_counts().values()) < 1000

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from coadjoint.derive.mechanics.contact import Touch, touch_of, turned_names
+from coadjoint.derive.mechanics.contact import Touch, step_names, touch_of, turned_names
 from coadjoint.derive.mechanics.followed import arm
 from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.exact import Element
@@ -227,7 +227,11 @@ def _about_projection(motion: ConstrainedRates, touch: Touch) -> Iterator[Examin
     if first is None:
         return
     field, names = motion.field, [name for name, _ in touch.missed]
-    after = dict(zip(motion.setting.state, first.exact.rates, strict=True))
+    defined, known = dict(first.exact.definitions), dict[str, Element]()
+    for name in filter(defined.__contains__, step_names()):
+        known[name] = field.substitute(defined[name], known)
+    moved = (field.substitute(value, known) for value in first.exact.rates)
+    after = dict(zip(motion.setting.state, moved, strict=True))
     missed = motion.setting.elements(names)
     points = [touch.place, *([touch.point] if touch.point else [])]
     steps = [[after[name] - field[name] for name in point] for point in points]
@@ -236,10 +240,9 @@ def _about_projection(motion: ConstrainedRates, touch: Touch) -> Iterator[Examin
     def miss() -> Vector:
         """The functions after a step, as far as their gradients tell; and what has their names."""
         told = zip(missed, normals, steps, strict=False)
-        defined = dict(first.exact.definitions)
         rows = [_in_whole(touch, f + dot(normal, step)) for f, normal, step in told]
-        known = [defined[name] - first.close(value) for name, value in touch.missed[: len(rows)]]
-        return [*(rows if touch.point else map(first.close, rows)), *known]
+        named = [defined[name] - first.close(value) for name, value in touch.missed[: len(rows)]]
+        return [*(rows if touch.point else map(first.close, rows)), *named]
 
     text = "the projection moves points of contact by a step of Newton onto the surfaces"
     yield _claim(motion, text, miss)

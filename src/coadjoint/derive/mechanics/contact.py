@@ -39,23 +39,28 @@ Vector = tuple[Element, ...]
 Keep = Callable[[Vector], Vector]
 #: How many values of a contact have names: G in space and from the body, g, Q and the product.
 FUNCTIONS = 16
-#: What Q turns, and what is 0 at contact.
-TURNED, MISSED = 3, 5
+#: What Q turns, what is 0 at contact, and steps towards contact.
+TURNED, MISSED, STEPS = 3, 5, 10
 
 
 def contact_names() -> tuple[str, ...]:
     """The names of what the kernel computes once of a contact."""
-    return tuple(f"_o{n + 1}" for n in range(FUNCTIONS + TURNED + MISSED))
+    return tuple(f"_o{n + 1}" for n in range(FUNCTIONS + TURNED + MISSED + STEPS))
 
 
 def turned_names() -> tuple[str, ...]:
     """The names of what Q turns."""
-    return contact_names()[FUNCTIONS:-MISSED]
+    return contact_names()[FUNCTIONS : FUNCTIONS + TURNED]
 
 
 def missed_names() -> tuple[str, ...]:
     """The names of what a projection makes 0."""
-    return contact_names()[-MISSED:]
+    return contact_names()[-MISSED - STEPS : -STEPS]
+
+
+def step_names() -> tuple[str, ...]:
+    """The names of what a projection computes once."""
+    return contact_names()[-STEPS:]
 
 
 @dataclass(frozen=True)
@@ -215,15 +220,20 @@ class Touch:
     @cached_property
     def _written(self) -> tuple[list[tuple[str, Element]], Bend]:
         """What the kernel computes of them once, and the same in terms of it."""
-        lines, names = list[tuple[str, Element]](), iter(contact_names())
+        lines = list[tuple[str, Element]]()
+        return lines, self._bend(self._keep_in(lines, contact_names()))
+
+    def _keep_in(self, lines: list[tuple[str, Element]], names: Sequence[str]) -> Keep:
+        """Gives names to what is no number, and lists what they stand for."""
+        free = iter(names)
 
         def name(value: Element) -> Element:
             if self.setting.field.as_number(value) is not None:
                 return value
-            lines.append((next(names), value))
+            lines.append((next(free), value))
             return self.setting.field[lines[-1][0]]
 
-        return lines, self._bend(lambda values: tuple(map(name, values)))
+        return lambda values: tuple(map(name, values))
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -355,27 +365,33 @@ class Touch:
             values += [self.f, *self.named.aslant]
         return list(zip(missed_names(), values, strict=False))
 
-    def nearest(self, decide: Callable[[Element], Element]) -> dict[str, Element]:
-        """A state nearer to contact, by one step of Newton; only what it changes.
+    def nearest(
+        self, decide: Callable[[Element], Element]
+    ) -> tuple[list[tuple[str, Element]], dict[str, Element]]:
+        """A state nearer to contact, by one step of Newton.
 
         Each point moves along the normal onto its surface, and the normals are made opposite by
         rolling along both surfaces. The centre of a ball follows.
 
         Args:
             decide: Writes what names stand for that are not computed.
+
+        Returns:
+            What has names, in order, and what the step changes, in terms of these.
         """
-        bend, field = self.named, self.setting.field
+        bend, field, lines = self.named, self.setting.field, list[tuple[str, Element]]()
+        keep = self._keep_in(lines, step_names())
         above, *others = self.setting.elements([name for name, _ in self.missed])
         squared = dot(bend.whole, bend.whole)
         rolled: Vector = (field.zero,) * 3
         changes = dict[str, Element]()
         if others:
             inside, *aslant = others
-            onto = scale(-inside / dot(bend.g, bend.g), bend.g)
-            turned = self._turned_by(bend, onto, scale(-above / squared, bend.G))
-            rolled = scale(field.number(-1), bend.solve(add(tuple(aslant), turned)))
+            onto = keep(scale(-inside / dot(bend.g, bend.g), bend.g))
+            turned = keep(self._turned_by(bend, onto, scale(-above / squared, bend.G)))
+            rolled = keep(scale(field.number(-1), bend.solve(add(tuple(aslant), turned))))
             changes |= zip(self.point, add(rolled, onto), strict=True)
-        above += dot(bend.G, rolled)
+            (above,) = keep((above + dot(bend.G, rolled),))
         down = scale(-above / squared, bend.whole)
         changes |= zip(self.place, add(self.in_space(rolled), down), strict=True)
         after = {name: decide(field[name] + change) for name, change in changes.items()}
@@ -383,7 +399,7 @@ class Touch:
             X = tuple(after[name] for name in self.place)
             out = [field.substitute(x, after) for x in self.outwards]
             after |= zip(self._components(self.contact.centre), add(X, tuple(out)), strict=True)
-        return after
+        return [(name, decide(value)) for name, value in lines], after
 
     def _turned_by(self, bend: Bend, on_body: Vector, in_space: Vector) -> Vector:
         """How the normals change where each point moves on its own."""

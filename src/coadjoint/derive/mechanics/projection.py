@@ -128,11 +128,12 @@ def _nearest_contact(setting: Setting, of: Distribution, exact: Exact) -> Exact:
     """The points of contact moved back onto the surfaces; see `Touch.nearest`."""
     touch, field, known = of.frame.touch, setting.field, kinematics(setting).decided
     assert touch is not None, "asked for only of bodies that touch a surface"
-    after, missed = touch.nearest(known.value), touch.missed
+    steps, after = touch.nearest(known.value)
+    named = (*touch.missed, *steps)
     state = tuple(after.get(name, field[name]) for name in setting.state)
-    needed = [*state, *(value for _, value in (*missed, *exact.residuals))]
+    needed = [*state, *(value for _, value in (*named, *exact.residuals))]
     return Exact(
-        definitions=(*definitions_under(field, exact.definitions, needed), *missed),
+        definitions=(*definitions_under(field, exact.definitions, needed), *named),
         rates=state,
         energy=None,
         emitted=(),
