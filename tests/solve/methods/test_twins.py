@@ -24,7 +24,7 @@ def make_states(name: str, members: int = 12) -> Any:
     x = np.random.default_rng(11).normal(size=(WRITTEN[name].size, members))
     x *= np.linspace(0.1, 2.0, members)
     x[:, 3] = 0.0
-    x[:, -1] *= 400.0
+    x[:, -1] *= 20.0
     return x
 
 
@@ -84,8 +84,10 @@ def test_a_spoiled_text_is_caught(
 ) -> None:
     """Other bits, lanes or sweeps, where a template says something else."""
     x, h = make_states(name), 0.2
+    if "done &" not in one:
+        x[:, -1] *= 0.01  # solved as others are, which takes less time
     if "parts" in one:
-        x *= 10
+        x = np.tile(10 * x[:, :4], 3)
         h = 0.5
     if "done &" in one:
         h = 8.0
