@@ -123,7 +123,7 @@ _QUADRATIC: Final = (
 ACTION: Final = ("energy_gradient", "bracket_vector")
 #: Those of it that discrete gradients call.
 BALANCE: Final = (*ACTION, "energy")
-#: Functions that a motion by Nambu's bracket keeps beside its energy, and their gradients.
+#: Functions that a motion by Nambu's bracket keeps in addition to its energy, and their gradients.
 DISTINGUISHED: Final = ("distinguished", "distinguished_gradient")
 #: All that methods ask of a kernel beyond its rates.
 ASKED: Final = (*BALANCE, "sandwich", *DISTINGUISHED)

@@ -295,7 +295,7 @@ ELSEWHERE = {
     "Take euler-lagrange if it is regular": "test_first_order.py",
     "Let time and inputs act in the potential": "test_first_order.py",
     "take the route first-order, without the momenta": "test_first_order.py",
-    "Choose coordinates that decouple them": "test_first_order.py, test_configuration.py",
+    "Choose coordinates that decouple them": "test_first_order.py",
     "Write the Lagrangian in simpler functions": "where no point shows that a form is regular",
     "Write abs, sign, min and max of positions and parameters alone": "test_words.py",
     "Add the kinetic energy of every velocity that the constraints allow": "test_variational.py",

@@ -39,6 +39,7 @@ from coadjoint.crosscheck.oracle import (
     exact,
     oracle,
 )
+from coadjoint.crosscheck.solver_objects import NOISY
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
 from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.reference import Reference
@@ -73,8 +74,6 @@ METHODS: Final = (
     Choice(name="dop853", order=8),
     Choice(name="taylor", order=ORDER),
 )
-#: The same for motions with noise, besides.
-NOISY: Final = tuple(Choice(name=name, order=2, is_noisy=True) for name in ("heun", "midpoint"))
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
 
@@ -254,7 +253,11 @@ def crosscheck_family(
         equal[name] = {target: count for target, count in counts.items() if target in exact}
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if BUILDS[each].needs_compiler):
-        for choice in (*METHODS, *_list_structured(system), *(NOISY if family.noise else ())):
+        for choice in (
+            *METHODS,
+            *_list_structured(system),
+            *(NOISY.values() if family.noise else ()),
+        ):
             compare_steps(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):

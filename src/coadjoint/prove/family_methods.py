@@ -27,7 +27,7 @@ from coadjoint.lower.program import Program
 from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
-from coadjoint.prove.methods import Judgement, judge, judge_spheres
+from coadjoint.prove.methods import KINKED, Judgement, judge, judge_spheres
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Windows
@@ -238,8 +238,7 @@ def judge_family(
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
     elif facts.has_kinks:
-        reason = "its rates have kinks, at which explicit methods end their steps"
-        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), reason)
+        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), KINKED)
     if facts.is_driven:
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}

@@ -37,6 +37,8 @@ from coadjoint.render.solvers import describe_structured, select_programs
 SWEEPS: Final = "about a dozen sweeps"
 #: The degree up to which the mean of a gradient is exact: Gauss's formula has four nodes.
 MEAN_DEGREE: Final = 8
+#: Why a motion whose rates have corners or jumps has none of them.
+KINKED: Final = "its rates have kinks, at which explicit methods end their steps"
 #: Steps of order 2 that make one of each order.
 STEPS: Final = {2: 1, 4: 5, 6: 9}
 
@@ -114,7 +116,7 @@ def _refuse(facts: Facts, method: StructuredMethod) -> str:
     if facts.is_noisy:
         return "motions with noise have methods of their own: " + ", ".join(NOISY)
     if facts.has_kinks:
-        return "its rates have kinks, at which explicit methods end their steps"
+        return KINKED
     if method.file in ("discrete_gradient", "average_gradient"):
         found = find_product(facts.equations)
         if isinstance(found, str):

@@ -79,12 +79,7 @@ class AverageGradient(LiePoisson):
     def find_excess(self, arc: Arc, middle: Array, chord: Array) -> Array:
         """The mean of the gradient minus the gradient at the middle."""
         at_middle = self.gradient(arc.lanes, arc.middle, middle)
-        total = np.zeros(middle.shape)
-        for node, weight in NODES:
-            ends = (arc.state + (arc.low + part * chord) for part in (node, 1.0 - node))
-            near, far = (self.gradient(arc.lanes, arc.middle, end) for end in ends)
-            total = total + weight * (near + far - 2.0 * at_middle)
-        return total
+        return find_excess(self.gradient, arc, at_middle, chord)
 
     def move(self, arc: Arc, middle: Array, correction: Array) -> Sweep:
         """The step, by what is to be added to the gradient at its middle."""
@@ -92,3 +87,13 @@ class AverageGradient(LiePoisson):
         turn = self.bracket(arc.lanes, arc.middle, middle, correction)
         rise = arc.length * (rates + turn)
         return Sweep(arc.state + (arc.low + 0.5 * rise), rise)
+
+
+def find_excess(gradient: Gradient, arc: Arc, at_middle: Array, chord: Array) -> Array:
+    """The mean of gradients along a chord minus those at its middle, by Gauss's formula."""
+    total = np.zeros(at_middle.shape)
+    for node, weight in NODES:
+        ends = (arc.state + (arc.low + part * chord) for part in (node, 1.0 - node))
+        near, far = (gradient(arc.lanes, arc.middle, end) for end in ends)
+        total = total + weight * (near + far - 2.0 * at_middle)
+    return total

@@ -95,8 +95,19 @@ class DiscreteGradient(AverageGradient):
         for part, more, step in zip(slope, excess, chord, strict=True):
             along, square = along + (part + more) * step, square + step * step
         missing = (last - first) - along
-        is_seen = np.abs(missing) > ROUNDINGS * (np.abs(first) + np.abs(last))
-        factor = np.where(is_seen, missing / np.where(is_seen, square, 1.0), 0.0)
+        factor = find_factor(missing, np.abs(first) + np.abs(last), square)
         kept.approach(middle)
         kept.factor = np.where(kept.done, kept.factor, factor)
         return self.move(arc, middle, excess + kept.factor * chord)
+
+
+def find_factor(missing: Array, size: Array, square: Array) -> Array:
+    """By what the chord is multiplied for what gradients along it miss; 0 for roundings.
+
+    Args:
+        missing: What they miss.
+        size: Of the values whose difference it is part of.
+        square: Of the chord.
+    """
+    is_seen = np.abs(missing) > ROUNDINGS * size
+    return np.where(is_seen, missing / np.where(is_seen, square, 1.0), 0.0)

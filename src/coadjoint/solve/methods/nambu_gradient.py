@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.lower.compositions import COMPOSITIONS
-from coadjoint.solve.methods.average_gradient import NODES
-from coadjoint.solve.methods.discrete_gradient import ROUNDINGS, Corrected
+from coadjoint.solve.methods.average_gradient import find_excess
+from coadjoint.solve.methods.discrete_gradient import Corrected, find_factor
 from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 
 if TYPE_CHECKING:
@@ -71,17 +71,12 @@ class NambuGradient(LiePoisson):
         ends = (arc.state, arc.state + (arc.low + chord))
         first, last = (self.values(arc.lanes, arc.middle, end) for end in ends)
         slopes = self.gradients(arc.lanes, arc.middle, middle)
-        excess = np.zeros(slopes.shape)
-        for node, weight in NODES:
-            inner = (arc.state + (arc.low + part * chord) for part in (node, 1.0 - node))
-            near, far = (self.gradients(arc.lanes, arc.middle, end) for end in inner)
-            excess = excess + weight * (near + far - 2.0 * slopes)
+        excess = find_excess(self.gradients, arc, slopes, chord)
         along = np.zeros(first.shape)
         for i in range(n):
             along = along + (slopes[i::n] + excess[i::n]) * chord[i]
         missing = (last - first) - along
-        is_seen = np.abs(missing) > ROUNDINGS * (np.abs(first) + np.abs(last))
-        factors = np.where(is_seen, missing / np.where(is_seen, square, 1.0), 0.0)
+        factors = find_factor(missing, np.abs(first) + np.abs(last), square)
         kept.approach(middle)
         kept.factor = np.where(kept.done, kept.factor, factors)
         corrections = (kept.factor[:, np.newaxis] * chord).reshape(slopes.shape)
