@@ -100,12 +100,12 @@ def test_loading_reports_progress(own):
 def test_one_setting_raises_the_limit_of_time(own, monkeypatch):
     """The environment bounds a derivation, the message says how to raise it, an argument does."""
     monkeypatch.setenv("COADJOINT_SECONDS", "1")
-    large = derivations_folder() / "body_of_revolution.toml"  # takes several seconds
+    large = derivations_folder() / "heavy_top.toml"  # takes several seconds
     own.write_text(large.read_text())
     with pytest.raises(ResourceError, match=r"my_body\.toml: stopped .*1 s of processor") as caught:
         coadjoint.load(own)
     assert "COADJOINT_SECONDS" in str(caught.value)
-    assert coadjoint.load(own, seconds=300).title == "Body of revolution"
+    assert coadjoint.load(own, seconds=300).title == "Heavy top"
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,8 @@ ROOT = Path(__file__).parents[1]
 
 def copy_source(folder: Path, *systems: str) -> Path:
     """A checkout with the engine, the templates, and the specs of some systems."""
-    ignore = shutil.ignore_patterns("__pycache__")
     for name in ("src", "templates"):
-        shutil.copytree(ROOT / name, folder / name, ignore=ignore)
+        shutil.copytree(ROOT / name, folder / name)
     (folder / "derivations").mkdir()
     for system in systems:
         shutil.copy(ROOT / "derivations" / f"{system}.toml", folder / "derivations")

@@ -103,11 +103,11 @@ def judge():
 
 
 def copy_tree(folder):
-    """What the judge needs, and nothing compiled."""
+    """What the judge needs; bytecode of files that are changed is not that of what stands there."""
     for name in COPIED:
         source, target = ROOT / name, folder / name
         if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(source, target)
         else:
             shutil.copy(source, target)
 

@@ -239,7 +239,9 @@ STEPS, ROUNDING = 50, 1e-12
 MISSED = {("kepler", "average_gradient"): 2e-12}
 
 
-@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.campaign] * (n == "galilei")) for n in RUNS]
+)
 def test_what_is_kept_exactly_stays_on_runs(name):
     """Drifts at rounding of all that a method keeps, and above it of all that it does not."""
     system, start, parameters = RUNS[name]
