@@ -114,9 +114,10 @@ gradients and `energy_gradient`, ``dc x dh`` of three coordinates.""",
         name="sandwich",
         summary="Product B W B of the matrices of a state W and of a vector B",
         shape="(n, *batch)",
-        doc="""Only free systems have it whose state is a momentum of an algebra of antisymmetric
-matrices that has all these products, as so(n). Arguments are as of `bracket_vector`, whose rows are
-those of the commutator of the two; the isospectral midpoint calls both.""",
+        doc="""Only free systems have it whose state is a momentum of an algebra of matrices that
+has all these products, as so(n) and sp(2n). On su(n) and sl(n) it is the product
+``B (W + c Z) B`` in the middle of a step of u(n) or gl(n). Arguments are as of `bracket_vector`,
+whose rows are those of the commutator of the two; the isospectral midpoint calls both.""",
         below="vector",
         looped="never",
     ),

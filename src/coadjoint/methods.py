@@ -255,7 +255,9 @@ _ENTRIES: Final = (
             "matrices (K. Modin and M. Viviani, Foundations of Computational Mathematics 20 (2020) "
             "889)",
             expects="a motion that is the bracket with its energy alone, of the momentum of an "
-            "algebra of antisymmetric matrices that has all products B W B, as so(n) from 4 on",
+            "algebra of 4 to 28 matrices of numbers on which tr(A B) is not degenerate and which "
+            "has all products B W B, or lacks multiples of 1 or i alone: so(n), so(p,q), su(n), "
+            "u(n), sl(n), gl(n) and sp(2n)",
         )
         for suffix, order, steps in (
             ("", 2, ""),

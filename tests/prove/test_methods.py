@@ -298,3 +298,22 @@ def test_a_wrong_claim_would_be_seen():
     """RK4 in place of the methods that keep the Casimir: its drift is far above rounding."""
     run = rigid_body.simulate([0.5, 0.3, 0.9], (0, 50), method="rk4", step=0.125, samples=41)
     assert min(run.drift.values()) > 1e3 * ROUNDING
+
+
+def test_the_element_of_a_step_turns_attitudes_with_the_momentum():
+    """So the coadjoint mean keeps the momentum in space; methods of Gauss do so only nearly."""
+    _, methods = judge_shipped("rigid_body_attitude")
+    assert methods["coadjoint_mean"].exactly == ("casimir1", "Pi_spatial")
+    assert methods["coadjoint_mean"].nearly == ("energy",)
+    assert "Pi_spatial stays" in methods["coadjoint_mean"].decides
+    assert "Pi_spatial" in methods["midpoint"].nearly
+    assert "Pi_spatial" in methods["discrete_gradient"].nearly
+
+
+def test_vectors_that_the_energy_names_are_no_element_of_the_group():
+    """The momentum in space of a free body stays by all elements, that of a top by no method."""
+    facts, _ = judge_shipped("rigid_body_attitude")
+    spatial = next(each for each in facts.integrals if each.name == "Pi_spatial")
+    assert facts.is_kept_by_action(spatial.values)
+    assert not facts.is_kept_by_tensor(spatial.values)
+    assert not facts.is_kept_by_action([facts.energy])

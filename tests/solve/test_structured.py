@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import coadjoint
 from coadjoint.errors import KernelArgumentError
@@ -13,6 +14,7 @@ from coadjoint.systems import (
     kapitza_top,
     kepler,
     rigid_body,
+    rigid_body_attitude,
     stochastic_rigid_body,
     suslov,
     toda_lattice,
@@ -213,3 +215,17 @@ def test_a_loaded_system_has_them(tmp_path):
     swing = coadjoint.load(path)
     run = swing.simulate([1.0, 0.0], (0, 300), method="midpoint6", step=0.1, samples=301)
     assert run.drift["energy"] < 1e-7
+
+
+def test_attitudes_are_turned_by_the_element_that_moves_the_momentum():
+    """So the momentum in space stays; with the element of the end of each step it drifts."""
+    start, h, inertia = [1.0, 0.0, 0.0, 0.0, *TURNING], 0.125, np.array(FREE["I"])
+    run = rigid_body_attitude.simulate(
+        start, (0, 25), FREE, method="coadjoint_mean", step=h, samples=201, target="numpy"
+    )
+    assert run.drift["Pi_spatial"] < 1e-14
+    assert run.drift["energy"] > 1e-6
+    turned = Rotation.identity()
+    for momentum in run["Pi"].T[1:]:
+        turned *= Rotation.from_rotvec(h * momentum / inertia)
+    assert abs(turned.apply(run["Pi"][:, -1]) - TURNING).max() > 1e-3

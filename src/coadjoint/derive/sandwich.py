@@ -1,9 +1,15 @@
 r"""The product B W B of the matrices of a momentum W and of a vector B.
 
-An algebra of antisymmetric matrices :math:`E_k`, orthogonal to one another, has the momentum
-:math:`\mu` as the matrix W with :math:`\mu_k = \mathrm{tr}(W^T E_k)`, and the coadjoint action is a
-commutator, :math:`\pm [B, W]`. Where B W B lies in the algebra for all B and W, as on so(n), steps
-by Cayley's transform stay on coadjoint orbits: the isospectral midpoint takes them.
+An algebra of matrices :math:`E_k` on which :math:`\mathrm{tr}(A B)` is not degenerate has the
+momentum :math:`\mu` as the one W in it with :math:`\mu_k = \mathrm{tr}(W E_k)`, and the coadjoint
+action is a commutator, :math:`\pm [B, W]`. Where B W B lies in the algebra for all B and W, as on
+so(n), so(p,q) and sp(2n), steps by Cayley's transform stay on coadjoint orbits: the isospectral
+midpoint takes them.
+
+On su(n) and sl(n) all B W B lie in the sum of the algebra and of multiples of one matrix Z that
+commutes with it. Energies do not depend on these, and with :math:`W + c Z` in place of W the step
+is that of the larger algebra. It begins and ends at c = 0, so that in its middle
+:math:`c\,\mathrm{tr}(Z Z) = \mathrm{tr}(B (W + c Z) B\, Z)`, B times half the length of the step.
 Comes in: Equations. Goes out: Equations with the components of B W B in place of the rates.
 Read next: `coadjoint.solve.methods.isospectral_midpoint`.
 """
@@ -12,11 +18,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
 
-from coadjoint.algebra.matrices import SparseMatrix, size
+from coadjoint.algebra.matrices import SparseMatrix, combination, commutator, product, size
 from coadjoint.algebra.planes import find_planes
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.records import Exact
@@ -31,6 +37,21 @@ LARGEST: Final = 28
 PAIRS: Final = 3
 
 
+@dataclass(frozen=True)
+class _Basis:
+    """Matrices of an algebra, and what pairs with them.
+
+    Attributes:
+        matrices: The basis.
+        duals: Of each the matrix of the algebra with which it alone has a trace, 1.
+        outside: Z, of which products have multiples in addition; None where they have none.
+    """
+
+    matrices: tuple[SparseMatrix, ...]
+    duals: tuple[SparseMatrix, ...]
+    outside: SparseMatrix | None = None
+
+
 @once
 def sandwich(equations: Equations) -> Equations | None:
     """``B(v) W(x) B(v)`` in place of the rates; None where the algebra has no such product.
@@ -43,35 +64,39 @@ def sandwich(equations: Equations) -> Equations | None:
     if setting.momenta != setting.state or times_vector(equations) is None:
         return None
     matrices = algebra.matrices or find_planes(algebra)
-    if len(matrices) != len(setting.state) or not _are_orthogonal(matrices):
+    if len(matrices) != len(setting.state):
         return None
-    if not _is_commutator(equations, matrices):
-        return None
-    return _emit(equations, matrices)
+    basis = _find_products(equations, matrices)
+    return None if basis is None else _emit(equations, basis)
 
 
-def _are_orthogonal(matrices: Sequence[SparseMatrix]) -> bool:
-    """Whether matrices of numbers are antisymmetric, and orthogonal to one another."""
-    numbers = (value for each in matrices for value in each.values())
+def _find_duals(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...] | None:
+    """The dual basis by the trace of products; None where that is degenerate, or not of numbers."""
+    numbers = [value for each in matrices for value in each.values()]
     if not all(isinstance(value, int | Fraction) for value in numbers):
-        return False
-    turned = all(each.get((j, i), 0) == -x for each in matrices for (i, j), x in each.items())
-    return turned and all(not _trace(a, b) for n, a in enumerate(matrices) for b in matrices[:n])
+        return None
+    count = len(matrices)
+    rows = [
+        [_trace(a, b) for b in matrices] + [Fraction(i == j) for j in range(count)]
+        for i, a in enumerate(matrices)
+    ]
+    for place in range(count):
+        pivot = next((n for n in range(place, count) if rows[n][place]), None)
+        if pivot is None:
+            return None
+        rows[place], rows[pivot] = rows[pivot], rows[place]
+        own = [x / rows[place][place] for x in rows[place]]
+        rows = [
+            own if n == place else [a - row[place] * b for a, b in zip(row, own, strict=True)]
+            for n, row in enumerate(rows)
+        ]
+    inverse = (row[count:] for row in rows)
+    return tuple(combination(zip(row, matrices, strict=True)) for row in inverse)
 
 
 def _trace(a: SparseMatrix, b: SparseMatrix) -> Fraction:
-    """``tr(A^T B)``."""
-    return sum((Fraction(x) * b.get(place, 0) for place, x in a.items()), Fraction(0))
-
-
-def _combine(parts: Sequence[Fraction], matrices: Sequence[SparseMatrix]) -> list[list[Fraction]]:
-    """A combination of matrices."""
-    n = size(matrices)
-    found = [[Fraction(0)] * n for _ in range(n)]
-    for part, each in zip(parts, matrices, strict=True):
-        for (i, j), x in each.items():
-            found[i][j] += part * x
-    return found
+    """``tr(A B)``."""
+    return sum((Fraction(x) * b.get((j, i), 0) for (i, j), x in a.items()), Fraction(0))
 
 
 def _multiply(a: list[list[Any]], b: list[list[Any]]) -> list[list[Any]]:
@@ -79,62 +104,96 @@ def _multiply(a: list[list[Any]], b: list[list[Any]]) -> list[list[Any]]:
     return [[sum(x * y for x, y in zip(row, c, strict=True)) for c in columns] for row in a]
 
 
-def _is_commutator(equations: Equations, matrices: Sequence[SparseMatrix]) -> bool:
-    """Whether the bracket is ``[B, W]`` or ``[W, B]``, and ``B W B`` lies in the algebra."""
+def _find_products(equations: Equations, matrices: Sequence[SparseMatrix]) -> _Basis | None:
+    """The basis, where the bracket is ``[B, W]`` or ``[W, B]`` and all ``B W B`` lie in it.
+
+    Or in it and in multiples of one matrix that commutes with it.
+    """
     own, source = times_vector(equations), random.Random(1)  # noqa: S311
     assert own is not None, equations.route
     field, state = own.setting.field, equations.setting.state
-    squares = [_trace(each, each) for each in matrices]
-    signs = {-1, 1}
+    duals = _find_duals(matrices)
+    if duals is None:
+        return None
+    signs, outside = {-1, 1}, None
     for _ in range(PAIRS):
         x, v = ([Fraction(source.randint(-99, 99)) for _ in state] for _ in range(2))
-        W = _combine([a / b for a, b in zip(x, squares, strict=True)], matrices)
-        B = _combine(v, matrices)
-        both, other = _multiply(B, W), _multiply(W, B)
-        turned = [
-            [a - b for a, b in zip(*rows, strict=True)] for rows in zip(both, other, strict=True)
-        ]
+        W, B = combination(zip(x, duals, strict=True)), combination(zip(v, matrices, strict=True))
         known = dict(zip((*state, *vector_names(len(state))), (*x, *v), strict=True))
         at = {name: field.number(number) for name, number in known.items()}
         rows = [field.as_number(field.substitute(rate, at)) for rate in own.exact.rates]
-        found = _measure(turned, matrices)
+        turned = commutator(B, W)
+        found = [_trace(turned, each) for each in matrices]
         signs &= {sign for sign in signs if rows == [sign * each for each in found]}
-        product = _multiply(both, B)
-        inside = [a / b for a, b in zip(_measure(product, matrices), squares, strict=True)]
-        if not signs or _combine(inside, matrices) != product:
-            return False
-    return True
+        if not signs:
+            return None
+        for middle in (W, outside) if outside else (W,):
+            rest = _find_rest(product(product(B, middle), B), matrices, duals)
+            outside = outside or rest
+            if _find_multiple(rest, outside) is None:
+                return None
+    if not outside:
+        return _Basis(tuple(matrices), duals)
+    commutes = not any(commutator(outside, each) for each in matrices)
+    is_seen = bool(_trace(outside, outside))
+    return _Basis(tuple(matrices), duals, outside) if commutes and is_seen else None
+
+
+def _find_rest(
+    whole: SparseMatrix, matrices: Sequence[SparseMatrix], duals: Sequence[SparseMatrix]
+) -> SparseMatrix:
+    """What of a matrix is orthogonal to an algebra."""
+    parts = ((-_trace(whole, a), b) for a, b in zip(matrices, duals, strict=True))
+    return combination([(1, whole), *parts])
+
+
+def _find_multiple(rest: SparseMatrix, of: SparseMatrix) -> Fraction | None:
+    """The number by which a matrix is a multiple of another; None where it is none."""
+    if not rest:
+        return Fraction(0)
+    place = next(iter(of))
+    factor = Fraction(rest.get(place, 0)) / of[place]
+    return None if combination([(1, rest), (-factor, of)]) else factor
 
 
 def _measure(matrix: list[list[Any]], matrices: Sequence[SparseMatrix]) -> list[Any]:
-    """``tr(M^T E_k)`` for each k."""
-    return [sum(matrix[i][j] * x for (i, j), x in each.items()) for each in matrices]
+    """``tr(M E_k)`` for each k."""
+    return [sum(matrix[j][i] * x for (i, j), x in each.items()) for each in matrices]
 
 
-def _emit(equations: Equations, matrices: Sequence[SparseMatrix]) -> Equations:
+def _emit(equations: Equations, basis: _Basis) -> Equations:
     """The products, the entries of B W by their names."""
-    setting, n = equations.setting, size(matrices)
+    setting, n = equations.setting, size(basis.matrices)
     state, vector = setting.state, vector_names(len(setting.state))
     names = [[f"_bw{i + 1}_{j + 1}" for j in range(n)] for i in range(n)]
-    field = Field([*state, *vector, *setting.parameters, *(x for row in names for x in row)])
-    squares = [_trace(each, each) for each in matrices]
+    field = Field(
+        [*state, *vector, *setting.parameters, *(x for row in names for x in row), "_bwz"]
+    )
 
-    def write(parts: Sequence[str], scale: Sequence[Fraction]) -> list[list[Any]]:
+    def write(parts: Sequence[str], matrices: Sequence[SparseMatrix]) -> list[list[Any]]:
         found = [[field.zero] * n for _ in range(n)]
-        for part, by, each in zip(parts, scale, matrices, strict=True):
+        for part, each in zip(parts, matrices, strict=True):
             for (i, j), x in each.items():
-                found[i][j] = found[i][j] + field[part] * (Fraction(x) / by)
+                found[i][j] = found[i][j] + field[part] * Fraction(x)
         return found
 
-    W, B = write(state, squares), write(vector, [Fraction(1)] * len(matrices))
+    W, B = write(state, basis.duals), write(vector, basis.matrices)
     both = _multiply(B, W)
     named = [[field[name] for name in row] for row in names]
-    product = _multiply(named, B)
+    rows = _measure(_multiply(named, B), basis.matrices)
+    definitions = [(names[i][j], both[i][j]) for i in range(n) for j in range(n) if both[i][j] != 0]
+    if basis.outside is not None:
+        Z = [[field.zero + basis.outside.get((i, j), 0) for j in range(n)] for i in range(n)]
+        turned = _multiply(B, Z)
+        (along,) = _measure(_multiply(named, B), [basis.outside])
+        (less,) = _measure(_multiply(turned, B), [basis.outside])
+        whole = field.zero + _trace(basis.outside, basis.outside)
+        definitions.append(("_bwz", along / (whole - less)))
+        more = _measure(_multiply(turned, B), basis.matrices)
+        rows = [a + field["_bwz"] * b for a, b in zip(rows, more, strict=True)]
     own = Exact(
-        definitions=tuple(
-            (names[i][j], both[i][j]) for i in range(n) for j in range(n) if both[i][j] != 0
-        ),
-        rates=tuple(_measure(product, matrices)),
+        definitions=tuple(definitions),
+        rates=tuple(rows),
         energy=None,
         emitted=(),
         poisson_tensor=None,

@@ -330,18 +330,35 @@ class Facts:
         quadratic = all(self.find_degree([x]) == 2 for x in self._turning)
         return quadratic and self.is_kept_by_tensor(self._turning)
 
-    def is_kept_by_tensor(self, values: Sequence[Element]) -> bool:
+    def is_kept_by_action(self, values: Sequence[Element]) -> bool:
+        """Whether functions stay along the tensor times any vector that gradients of energies are.
+
+        Components are zero there by which the energy does not change, as those of attitudes.
+        """
+        if self.energy is None or not values:
+            return False
+        slopes = self.field.gradient(self.energy, self.state)
+        still = [row for row, slope in enumerate(slopes) if self.field.is_zero(slope)]
+        return self.is_kept_by_tensor(values, still)
+
+    def is_kept_by_tensor(self, values: Sequence[Element], still: Sequence[int] = ()) -> bool:
         """Whether the gradients of functions are orthogonal to the tensor times any vector.
 
         It is asked at points modulo primes.
+
+        Args:
+            values: The functions.
+            still: Components of the vector that are zero.
         """
         bracket, field = self.programs.get("bracket_vector"), self.field
         named = {*self.state, *self.equations.setting.parameters}
         if bracket is None or any(field.reach(value) - named for value in values):
             return False
         slopes = [field.gradient(value, self.state) for value in values]
+        zeros = [bracket.state[len(self.state) + row] for row in still]
 
         def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+            at = at | dict.fromkeys(zeros, number(0))
             turned = run(bracket, at, number, call_modulo)
             for row in slopes:
                 along = (field.evaluate(slope, dict(at), number, call_modulo) for slope in row)

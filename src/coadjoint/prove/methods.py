@@ -198,7 +198,16 @@ def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     cost = f"{SWEEPS} of {count(stages, 'coadjoint arc')}, each a dozen brackets"
     if method.file == "isospectral_midpoint":
         cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
-    return Judgement(_on_orbits(facts), True, _ACTION, cost)
+        return Judgement(_on_orbits(facts), True, _ACTION, cost)
+    kept = _on_orbits(facts)
+    # the whole state moves by exp(h xi), attitudes with it: what all such elements leave as it is
+    moved = [each for each in facts.integrals if each not in kept]
+    turned = [each for each in moved if facts.is_kept_by_action(each.values)]
+    if not turned:
+        return Judgement(kept, True, _ACTION, cost)
+    exactly = tuple(each for each in facts.integrals if each in kept or each in turned)
+    decides = f"{_ACTION}; the element of a step moves all of the state, so that {_list(turned)}"
+    return Judgement(exactly, True, f"{decides} {'stays' if len(turned) == 1 else 'stay'}", cost)
 
 
 def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:

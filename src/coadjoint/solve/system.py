@@ -269,6 +269,8 @@ class System(Functions):
                 of it begins, as ``{"x": 1.0}``, for all members or each. Otherwise the rest begins
                 at its default, else at zero; an attitude at the identity, that of a rolling body
                 turned upright the shortest way. Methods with a Jacobian find it by differences.
+                For a momentum in space that stays to rounding the attitude has to be part of the
+                state: ``"coadjoint_mean"`` then moves both by one element of the group.
             checkpoint: A file that a generated solver replaces as a whole every ten seconds, less
                 often where writing it takes longer than half a second, and at the end. Called again
                 with the same arguments, it goes on from there, with the bits and events of a run

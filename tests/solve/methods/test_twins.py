@@ -69,7 +69,7 @@ def test_bits_are_those_of_numpy(macro: str, name: str, tmp_path: Path) -> None:
         ("COADJOINT_MEAN", "se(3)", "2.0 * parts", "parts"),
         ("SPHERICAL_MIDPOINT", "se(3)", "1.5 - part * both", "1.25 - 0.5 * part * both"),
         ("SPHERICAL_MIDPOINT", "se(3)", "lean = lean + 2.0", "lean = lean + 1.0"),
-        ("ISOSPECTRAL_MIDPOINT", "so(4)", "half * both[i]", "both[i]"),
+        ("ISOSPECTRAL_MIDPOINT", "so(4)", "half * whole[STATE + i]", "whole[STATE + i]"),
         (
             "SPHERICAL_MIDPOINT",
             "so(3)",

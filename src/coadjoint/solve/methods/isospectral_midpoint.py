@@ -5,7 +5,8 @@ A motion ``W' = [B, W]`` of matrices, B and W in an algebra of matrices that sat
 ``(1 + h B/2) X (1 - h B/2)``, B that of X: K. Modin and M. Viviani, Foundations of Computational
 Mathematics 20 (2020) 889. It is a Poisson map on the dual of such an algebra and keeps the
 spectrum of W. In the coordinates of the state it is ``x + h J(X) xi`` where
-``X = x + h/2 J(X) xi + h^2/4 (B X B)``; the last product is a function of the kernel.
+``X = x + h/2 J(X) xi + (h/2 B) X (h/2 B)``; the last product is a function of the kernel, which on
+su(n) and sl(n) is that of a larger algebra (`coadjoint.derive.sandwich`).
 Read next: `coadjoint.solve.methods.lie_poisson`.
 """
 
@@ -63,5 +64,5 @@ class IsospectralMidpoint(LiePoisson):
         lanes, after, half = arc.lanes, arc.middle, 0.5 * arc.length
         xi = self.gradient(lanes, after, middle)
         rates = self.bracket(lanes, after, middle, xi)
-        both = self.sandwich(lanes, after, middle, xi)
-        return Sweep(arc.state + (arc.low + half * (rates + half * both)), arc.length * rates)
+        both = self.sandwich(lanes, after, middle, half * xi)
+        return Sweep(arc.state + (arc.low + (half * rates + both)), arc.length * rates)
