@@ -137,6 +137,13 @@ ADVICE = [
         "Write 0 in the place of Omega3.",
         write("[1, 2, 3]", "[1, 2, 0]"),
     ),
+    # -- forms
+    (
+        TOP.replace("so(3)", "su(3)").replace('"vector"', '"adjoint"').replace("diag(I)*", ""),
+        write('role = "momentum"', 'role = "momentum", form = "matrix"'),
+        "Without form, Pi[1] to Pi[8] are along A12, A13, A23, S12,",
+        write(', form = "matrix"', ""),
+    ),
     # -- blocks
     (
         TOP.replace("[parameters]", '[representations.turn]\nright = "rotation"\n[parameters]'),

@@ -211,7 +211,7 @@ class System(Functions):
 
     def simulate(
         self,
-        state: Values,
+        state: Values | None,
         t: ArrayLike,
         parameters: Values | None = None,
         inputs: Any = None,
@@ -234,7 +234,8 @@ class System(Functions):
         """Integrate one trajectory, or many at a time.
 
         Args:
-            state: Initial state, ``(n,)`` or by name; of many members ``(n, *batch)``.
+            state: Initial state, ``(n,)`` or by name; of many members ``(n, *batch)``. What is
+                left out by name begins at the default of the spec, and with None all does.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared, or of each member.
             inputs: Constants, ``(m,)`` or by name, of a batch also ``(m, *batch)``; samples over
