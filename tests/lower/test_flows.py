@@ -6,6 +6,7 @@ from functools import partial
 
 import pytest
 
+from coadjoint.derive import derive
 from coadjoint.derive.flows import Flow, Flows
 from coadjoint.derive.splittings import NoSplitting, find_splitting
 from coadjoint.errors import CrossCheckError, DerivationError
@@ -227,6 +228,14 @@ def test_kahan_is_refused_where_a_term_is_not_quadratic():
     assert "has noise" in lower_kahan(specs.emitted("stochastic_rigid_body"))
     assert "solves for _d1" in lower_kahan(specs.emitted("suslov"))
     assert "operations, more than" in lower_kahan(specs.emitted("so6_body"))
+
+
+def test_kahan_takes_functions_of_numbers_and_parameters():
+    """They are constants of a quadratic motion, also in the check of its equation."""
+    for factor in ("sqrt(2)", "2^(1/3)", "exp(cos(I1))"):
+        energy = ("dot(Omega, diag(I)*Omega)/2", "dot(Omega, diag(I)*Omega)/2 + Omega1^2/4")
+        turned = specs.spec(specs.RIGID_BODY, energy, ("Omega1^2/4", f"{factor}*Omega1^2"))
+        assert not isinstance(lower_kahan(derive(turned)), str)
 
 
 def test_a_step_of_kahan_that_does_not_solve_its_equation_is_refused():

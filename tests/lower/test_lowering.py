@@ -3,6 +3,7 @@
 import dataclasses
 import random
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -299,8 +300,11 @@ def test_programs_that_compilers_choke_on_are_refused(limit, monkeypatch):
     jacobian = lower(equations)["jacobian"]
     check_size(equations, jacobian)
     monkeypatch.setattr(f"coadjoint.lower.check.{limit}", 5)
-    with pytest.raises(LimitError, match=rf"jacobian takes \d+ .* at most 5 .{limit}."):
+    with pytest.raises(LimitError, match=rf"jacobian takes \d+ .* at most 5 .{limit}.*fewer coup"):
         check_size(equations, jacobian)
+    observed = replace(jacobian, name="observables")
+    with pytest.raises(LimitError, match=r"Declare fewer observables\.$"):
+        check_size(equations, observed)
 
 
 def test_statements_are_assigned_once_and_used(system):

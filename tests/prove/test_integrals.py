@@ -6,6 +6,7 @@ import pytest
 
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.prove import Verdict
+from coadjoint.prove.certificate import failure_text
 from tests.specs import RIGID_BODY, prove_claims, spec
 
 #: I = (4k, 4k, k), weight along chi in the equatorial plane: Goryachev's and Chaplygin's top.
@@ -71,6 +72,7 @@ def test_without_the_level_set_the_same_integral_is_refuted():
     assert claim.verdict is Verdict.REFUTED
     point = {name: Fraction(value) for name, value in claim.counterexample.items()}
     assert sum(point.get(f"Pi{n}", 0) * point.get(f"Gamma{n}", 0) for n in (1, 2, 3)) != 0
+    assert 'where = ["I1 - I2"]' in failure_text(claim)
 
 
 @pytest.mark.parametrize(

@@ -383,8 +383,6 @@ BAD = [
     ({"rtol": 1e-6}, "expected no rtol or atol"),
     ({"dense": True}, "expected no dense"),
     ({"target": "python"}, "they are written for the targets c, c-fast and numpy"),
-    ({"samples": 8}, "lies between the ends of steps of 0.1, where nothing is known"),
-    ({"step": 0.25}, "as those of samples=5 are"),
     ({"step": 1e-9}, "max_steps"),
 ]
 
@@ -398,9 +396,17 @@ def test_bad_input_is_refused_before_the_first_step(changes, said):
     assert said in str(caught.value)
 
 
-def test_the_advice_about_samples_helps():
-    """The number that the message says is taken."""
-    assert body.simulate(START, (0, 1), step=0.25, seed=1, samples=5).status == "OK"
+def test_samples_of_a_span_are_ends_of_steps():
+    """The nearest ones, no more than there are, with values of the path; given times are kept."""
+    few, all_of_them = (
+        body.simulate(START, (0, 1), step=0.25, seed=1, samples=n) for n in (4, 1001)
+    )
+    assert all_of_them.time.tolist() == [0, 0.25, 0.5, 0.75, 1]
+    assert few.time.tolist() == [0, 0.25, 0.75, 1]
+    assert np.array_equal(few.state, all_of_them.state[:, [0, 1, 3, 4]])
+    with pytest.raises(KernelArgumentError, match=r"sample at t = 0\.3 lies between the ends") as e:
+        body.simulate(START, [0, 0.3, 1], step=0.25, seed=1)
+    assert "give t as a pair" in str(e.value)
 
 
 @pytest.mark.parametrize("options", [{"seed": 1}, {"method": "heun", "step": 0.1}])

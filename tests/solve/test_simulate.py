@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.systems import heavy_top, kirchhoff, rigid_body
+from coadjoint.systems import chaplygin_sleigh, heavy_top, kirchhoff, rigid_body
 from tests.solve.systems import EMPTYING, POLE, STIFF, build
 
 #: Local errors of 1e-10 per step add up to less than this over the times below.
@@ -85,6 +85,18 @@ def test_motion_backwards_returns():
     there = rigid_body.simulate([1.0, 0.3, -0.8], (0, 10))
     back = rigid_body.simulate(-there.state[:, -1], (0, 10))
     assert np.abs(back.state[:, -1] + there.state[:, 0]).max() < TOLERANCE
+
+
+def test_a_start_that_is_left_out_is_that_of_the_spec():
+    """All of it, or what a mapping does not name; rates at a state need all of it."""
+    declared, named = chaplygin_sleigh.STATE.defaults, {"v": 2.0}
+    for state, start in ((None, declared), ({}, declared), (named, {**declared, **named})):
+        found = chaplygin_sleigh.simulate(state, (0, 0.1), samples=2)
+        assert {name: found[name][0] for name in declared} == start
+    with pytest.raises(KernelArgumentError, match="state lacks omega; expected a value of each"):
+        chaplygin_sleigh.rhs(named)
+    with pytest.raises(KernelArgumentError, match="state lacks Pi1, Pi2, Pi3, Gamma1"):
+        heavy_top.simulate(None, (0, 1))
 
 
 @pytest.mark.parametrize(

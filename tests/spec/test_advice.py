@@ -137,6 +137,13 @@ ADVICE = [
         "Write 0 in the place of Omega3.",
         write("[1, 2, 3]", "[1, 2, 0]"),
     ),
+    # -- forms
+    (
+        TOP.replace("so(3)", "su(3)").replace('"vector"', '"adjoint"').replace("diag(I)*", ""),
+        write('role = "momentum"', 'role = "momentum", form = "matrix"'),
+        "Without form, Pi[1] to Pi[8] are along A12, A13, A23, S12,",
+        write(', form = "matrix"', ""),
+    ),
     # -- blocks
     (
         TOP.replace("[parameters]", '[representations.turn]\nright = "rotation"\n[parameters]'),
@@ -882,6 +889,7 @@ BAD = [
     ('[friction]\nR = "1"', "friction", "friction", "dissipation, double_bracket"),
     ('[noise]\ndW1 = "Pi"', "noise.dW1", "Pi", "need not keep the bracket"),
     ('[noise]\ndW1 = "Omega1"', "noise.dW1", "Omega1", "a Hamiltonian of noise"),
+    ('[noise]\ndPi2 = "Pi2"', "noise.dPi2", "dPi2", "the name of a Wiener process"),
     ('[noise]\nPi2 = "1"', "noise.Pi2", "Pi2", "the name of a Wiener process"),
     ('[noise]\nI = "Pi1"', "noise.I", "I", "has that name too"),
     ('[dissipation]\nr = "1"', "dissipation.r", "r", "one of R. Did you mean 'R'?"),

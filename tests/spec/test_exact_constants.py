@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from fractions import Fraction
 from itertools import combinations
 
@@ -14,6 +15,7 @@ from coadjoint.exact.numbers import sign
 from coadjoint.prove.examination import examine
 from coadjoint.spec import Spec
 from coadjoint.spec.reader import read_spec_text
+from tests.specs import prove_claims
 
 #: f_abc of Gell-Mann's matrices (Georgi, Lie Algebras in Particle Physics, 2nd ed., section 7.1).
 GELL_MANN = {
@@ -160,6 +162,46 @@ def test_what_is_zero_and_what_is_not() -> None:
     positive = p * p > 2 * q * q
     assert algebra.killing_signature() == ((0, 3, 0) if positive else (2, 1, 0))
     assert sign(algebra.constants[0, 1][2]) == (1 if positive else -1)
+
+
+@pytest.mark.parametrize(
+    ("zero", "spoiled"),
+    [
+        ("(2^(1/3))^3 - 2", "(3^(1/3))^3 - 2"),
+        ("2^(1/3)*4^(1/3) - 2", "2^(1/3)*4^(1/4) - 2"),
+        ("3^0.25*sqrt(sqrt(27)) - 3", "3^0.25*sqrt(sqrt(28)) - 3"),
+        ("sqrt(2 + sqrt(3)) - (sqrt(6) + sqrt(2))/2", "sqrt(2 - sqrt(3)) - (sqrt(6) + sqrt(2))/2"),
+        ("(7 + 5*sqrt(2))^(1/3) - 1 - sqrt(2)", "(7 + 4*sqrt(2))^(1/3) - 1 - sqrt(2)"),
+    ],
+)
+def test_roots_of_any_degree_and_of_sums(zero: str, spoiled: str) -> None:
+    """The last one is the root of Cardano's formula: ``(1 + sqrt(2))^3 = 7 + 5 sqrt(2)``."""
+    assert algebra_of(E3, {"e1, e2": f"({zero})*e3"}).is_abelian
+    assert not algebra_of(E3, {"e1, e2": f"({spoiled})*e3"}).is_abelian
+
+
+def test_a_root_in_a_casimir_is_that_of_the_algebra() -> None:
+    """``[e1, e2] = c e3`` and cyclic ones without c: ``M1^2 + M2^2 + c M3^2``, c its cubic root."""
+    brackets = {"e1, e2": "2^(1/3)*e3", "e2, e3": "e1", "e3, e1": "e2"}
+    claim = '[claims]\ncasimirs = ["M1^2 + M2^2 + {}*M3^2"]'
+    for factor, holds in (("2^(1/3)", True), ("2^(1/4)", False)):
+        certificate = prove_claims(read(list(E3), brackets, claim.format(factor)))
+        assert certificate.holds is holds
+
+
+@pytest.mark.parametrize("number", ["2^(1/30)", "2^(1/100003)", "2^(1/3) + 3^(1/5) + 5^(1/7)"])
+def test_a_field_of_too_large_a_degree_is_refused(number: str) -> None:
+    """Before polynomials of this degree are made."""
+    with pytest.raises(SpecError, match="Name a parameter for one of them") as caught:
+        algebra_of(E3, {"e1, e2": f"({number})*e3"})
+    assert caught.value.parts["limit"] == "ALGEBRAIC_DEGREE"
+
+
+@pytest.mark.parametrize("number", ["(2 - sqrt(5))^(1/2)", "sqrt(2 - sqrt(5))"])
+def test_a_root_without_a_real_value_is_refused(number: str) -> None:
+    """As it is written, with its parentheses."""
+    with pytest.raises(SpecError, match=rf"{re.escape(number)} is not a real number"):
+        algebra_of(E3, {"e1, e2": f"{number}*e3"})
 
 
 def test_parameters_roots_and_pi_together() -> None:

@@ -37,6 +37,11 @@ if TYPE_CHECKING:
 
 CANDIDATES = ("cc", "gcc", "clang")
 ANOTHER = "Set CC to another compiler."
+#: What to do where one takes too long.
+SMALLER = (
+    "Long texts take long: a system with fewer coupled variables, members or observables has "
+    "shorter ones. Where the text is short, the compiler hangs: set CC to another one."
+)
 HOW_TO_GET_ONE = "Install one: `apt install gcc`, or `pip install 'coadjoint[c]'` anywhere."
 #: What ``CC`` may be: a name or path; a leading - or @ would be an option of another program.
 _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
@@ -367,7 +372,8 @@ def _run(
             output = process.communicate(timeout=wall_seconds)[0].decode(errors="replace")
         except subprocess.TimeoutExpired as error:
             said = (error.output or b"").decode(errors="replace")
-            raise _timeout_error(command, wall_seconds, "", _advise(said)) from None
+            advice = remedy_for(said) or SMALLER
+            raise _timeout_error(command, folder, wall_seconds, "", advice) from None
         finally:
             with _lock:
                 _running.discard(process)
@@ -385,10 +391,10 @@ def _run(
                 os.close(end)
     if process.returncode == 128 + signal.SIGXCPU or _OUT_OF_TIME in output:
         most = resource.getrlimit(resource.RLIMIT_CPU)[1]
-        kind, advice = " of processor time", ANOTHER
+        kind, advice = " of processor time", SMALLER
         if 0 <= most < seconds:  # RLIM_INFINITY is -1 on some systems
             seconds, advice = most, "Raise the limit of processor time (ulimit -t)."
-        raise _timeout_error(command, seconds, kind, advice)
+        raise _timeout_error(command, folder, seconds, kind, advice)
     return process.returncode, output
 
 
@@ -408,11 +414,18 @@ def _advise(said: str) -> str:
 
 
 def _timeout_error(
-    command: tuple[str, ...], seconds: float, kind: str, advice: str
+    command: tuple[str, ...], folder: Path, seconds: float, kind: str, advice: str
 ) -> CompilerError:
-    """The compiler took too long."""
+    """The compiler took too long, for a text whose size is told."""
+    sources = [folder / each for each in command if each.endswith(".c") and each != "build.c"]
+    at_work = "".join(
+        f" while it compiled {each.name} of {each.stat().st_size / 1024:.0f} KiB"
+        for each in sources
+        if each.is_file()
+    )
     return CompilerError(
-        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped. {advice}",
+        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped{at_work}. "
+        f"{advice}",
         found=command[0],
         limit=seconds,
     )

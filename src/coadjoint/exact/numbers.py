@@ -309,6 +309,9 @@ def _degree(written: Written, expression: Any) -> int:
             raise ValueError(f"{written.text} is not known to be an algebraic number")
         if sympy.totient(angle.q) > 2 * ALGEBRAIC_DEGREE:
             raise OverflowError(str(sympy.totient(angle.q)))
+    for exponent in (each.exp for each in expression.atoms(sympy.Pow) if each.exp.is_Rational):
+        if exponent.q > ALGEBRAIC_DEGREE:
+            raise OverflowError(str(exponent.q))
     try:
         polynomial = sympy.minimal_polynomial(expression, sympy.Symbol("x"), polys=True)
     except (NotAlgebraic, NotImplementedError):

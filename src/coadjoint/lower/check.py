@@ -82,9 +82,12 @@ def check_size(equations: Equations, program: Program) -> None:
         (statements, C_STATEMENTS, "statements", "C_STATEMENTS"),
     ):
         if count > most:
+            fewer = (
+                "observables" if "observables" in program.name else "coupled variables or members"
+            )
             raise LimitError(
                 f"{equations.spec.path}: {program.name} takes {count} {what}; expected at most "
-                f"{most} ({limit}). Declare a smaller system, or fewer observables.",
+                f"{most} ({limit}). Declare fewer {fewer}.",
                 path=str(equations.spec.path),
                 found=count,
                 limit=most,

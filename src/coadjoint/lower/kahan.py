@@ -24,6 +24,7 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, residue
+from coadjoint.lower.check import call_residue
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program, run
@@ -144,13 +145,8 @@ def _check(
     """
     field, state, source = equations.setting.field, equations.setting.state, random.Random(1)  # noqa: S311
     for _, prime in zip(range(POINTS), primes(), strict=False):
-        number = partial(residue, prime=prime)
+        number, call = partial(residue, prime=prime), partial(call_residue, prime=prime)
         values = {name: Residue(source.randrange(1, prime), prime) for name in program.names}
-
-        def call(function: str, *arguments: Residue) -> Residue:
-            """Functions of parameters are numbers; the quotient by a prime knows none."""
-            raise AssertionError(f"{function}{arguments} in a quadratic motion")
-
         change = run(program, values, number, call)
         for name, rate, row, own in zip(state, rates, slopes, change, strict=True):
             moved = field.evaluate(rate, values, number, call)

@@ -218,15 +218,23 @@ def _are_doubles(array: NDArray[Any]) -> bool:
     return bool(inside.all())
 
 
-def pack(values: Any, quantities: Quantities, name: str) -> Array:
+def pack(
+    values: Any, quantities: Quantities, name: str, defaults: Mapping[str, float] | None = None
+) -> Array:
     """A packed array, or one put together from a mapping by quantity or component.
+
+    Args:
+        values: As given.
+        quantities: What the rows are.
+        name: What messages call it.
+        defaults: Of components that a mapping leaves out; without any, all have to be given.
 
     Raises:
         KernelArgumentError: A name is unknown, missing, or has the wrong shape.
     """
     if not isinstance(values, Mapping):
         return as_float64(values, name)
-    return _assemble({}, values, quantities, name)
+    return _assemble(defaults or {}, values, quantities, name)
 
 
 def pack_parameters(system: System, parameters: Any) -> Array:
@@ -355,7 +363,7 @@ def _assemble(
     missing = [component for component in quantities.components if component not in parts]
     if missing:
         raise KernelArgumentError(
-            f"{name} lacks {', '.join(missing)}, which have no default. "
+            f"{name} lacks {', '.join(missing)}; expected a value of each. "
             f"Pass them by name, e.g. {{{missing[0]!r}: 1.0}}.",
             found=missing,
         )

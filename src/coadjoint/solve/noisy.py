@@ -135,14 +135,10 @@ def check_samples(request: Request) -> None:
     off[-1] = False  # the last step may be shorter
     if off.any():
         time = float(times[int(off.argmax())])
-        count = places[-1]
-        advice = f"times that are whole numbers of steps after {request.start:g}"
-        if abs(count - round(count)) <= _NEAR:
-            fit = max(n for n in range(1, len(times)) if round(count) % n == 0)
-            advice += f", as those of samples={fit + 1} are"
         raise KernelArgumentError(
             f"the sample at t = {time:.12g} lies between the ends of steps of {step:.12g}, where "
-            f"nothing is known of a path with noise; expected {advice}.",
+            "nothing is known of a path with noise; expected times that are whole numbers of steps "
+            f"after {request.start:g}. Or give t as a pair (start, end).",
             found=time,
         )
     if request.state[0].size > MEMBERS:

@@ -104,12 +104,13 @@ class Request:
 
 
 def check_state(system: System, state: Any) -> Array:
-    """Finite states, ``(n, *batch)``.
+    """Finite states, ``(n, *batch)``, with the defaults of the spec for what is left out by name.
 
     Raises:
         KernelArgumentError: Another shape, or a number that is not finite.
     """
-    packed = pack(state, system.STATE, "state")
+    given = {} if state is None else state
+    packed = pack(given, system.STATE, "state", system.STATE.defaults)
     check_rows(packed, system.STATE, "state", system.name)
     if not packed.size:
         raise KernelArgumentError(

@@ -132,8 +132,8 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
-    if np.size(t) == 2 and name in {*STRUCTURED, *MAPPED} and not has_noise(system):
-        assert step is not None, "methods that keep structure have steps of one length"
+    if np.size(t) == 2 and (name in {*STRUCTURED, *MAPPED} or has_noise(system)):
+        assert step is not None, "methods that keep structure, and noise, have steps of one length"
         times = take_ends_of_steps(start, times, float(step))
     request = Request(
         state=initial,

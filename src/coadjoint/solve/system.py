@@ -211,7 +211,7 @@ class System(Functions):
 
     def simulate(
         self,
-        state: Values,
+        state: Values | None,
         t: ArrayLike,
         parameters: Values | None = None,
         inputs: Any = None,
@@ -234,7 +234,8 @@ class System(Functions):
         """Integrate one trajectory, or many at a time.
 
         Args:
-            state: Initial state, ``(n,)`` or by name; of many members ``(n, *batch)``.
+            state: Initial state, ``(n,)`` or by name; of many members ``(n, *batch)``. What is
+                left out by name begins at the default of the spec, and with None all does.
             t: ``(start, end)``, or an increasing sequence of three or more times to sample at.
             parameters: As in `rhs`, shared, or of each member.
             inputs: Constants, ``(m,)`` or by name, of a batch also ``(m, *batch)``; samples over
@@ -255,9 +256,9 @@ class System(Functions):
             step: A fixed step for a generated method, in the place of tolerances; the order of
                 ``"taylor"`` still follows from ``rtol``. The last step before a sample of inputs
                 or the end is shorter, or longer by up to a millionth.
-            samples: Number of evenly spaced samples when ``t`` is a pair; 1 for the end alone. Of
-                a method that keeps structure they are the nearest ends of steps, no more than
-                there are: between these it keeps nothing.
+            samples: Number of evenly spaced samples when ``t`` is a pair; 1 for the end alone. With
+                noise, and of a method that keeps structure, they are the nearest ends of steps,
+                no more than there are: between these nothing is known, or kept.
             max_steps: After so many steps a trajectory ends with the status ``MAX_STEPS``.
             target: Kernel that computes the rates, or language of the generated solver.
             threads: How many threads share a batch, at the most; None for one on each processor.

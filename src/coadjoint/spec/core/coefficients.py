@@ -50,7 +50,7 @@ Coefficient = Any
 _Linear = dict[int | None, Coefficient]  # of each basis vector; None for the part without one
 
 #: Functions that take numbers.
-KNOWN = {*ELEMENTARY, "tan"}
+KNOWN = {*ELEMENTARY, "tan", "pow"}
 _COMBINATION = (
     "a linear combination of the basis",
     ("sums of basis names times numbers or polynomials of parameters, such as -2*e1 + e3/2, or 0"),
@@ -120,7 +120,7 @@ class Scalars:
         try:
             number, turns = self._numbers.index(self._places[node])
         except ValueError as error:
-            shown = list(self._calls.values())[self._places[node]].text
+            shown = str(error).partition(" is not ")[0]  # of all numbers, the first that is none
             raise ExpressionError(
                 str(error),
                 node.start,
@@ -151,7 +151,10 @@ class Scalars:
                 continue  # refused where it is read
             for node in walk(tree):
                 if isinstance(node, Call) and is_constant_call(node):
-                    shown = text[node.start : node.end]
+                    start = node.start
+                    while text.count("(", start, node.end) < text.count(")", start, node.end):
+                        start = text.rindex("(", 0, start)  # of a base in parentheses
+                    shown = text[start : node.end]
                     result.setdefault(node, Written(shown, partial(_evaluate, node)))
         return result
 
@@ -230,6 +233,9 @@ def _evaluate(node: Node, own: Arithmetic) -> Any:
                 return own.negate(below[0])
             case Call(function="tan"):
                 return own.divide(own.call("sin", *below), own.call("cos", *below))
+            case Call(function="pow"):
+                base, exponent = below
+                return own.call("exp", own.multiply(exponent, own.call("log", base)))
             case Call(function=function):
                 return own.call(function, *below)
             case Power(exponent=exponent):

@@ -214,7 +214,7 @@ def _function(node: Node, function: str, arguments: Sequence[Size]) -> Size:
     """An elementary function: a new name; a constant argument must be within the limits."""
     if not all(argument.fixed for argument in arguments):
         return Size(degree=1)
-    if function in OF_NUMBERS:
+    if function in OF_NUMBERS or (function == "sqrt" and arguments[0].constant is None):
         return Size(fixed=True)
     values = tuple(argument.constant or Fraction(0) for argument in arguments)
     if any(each.constant is None for each in arguments) or max(map(abs, values)) > (

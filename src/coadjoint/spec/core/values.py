@@ -7,6 +7,7 @@ become exact fractions. Read next: `coadjoint.spec.schema`, which puts them into
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -203,10 +204,22 @@ _SIZED = {
 }
 
 
-def misfit_form(source: Source, key: KeyPath, count: int, form: str) -> CoadjointError:
-    """A number of components that no matrix of a form keeps."""
+def misfit_form(
+    source: Source, key: KeyPath, count: int, form: str, along: Sequence[str] = ()
+) -> CoadjointError:
+    """A number of components that no matrix of a form keeps.
+
+    Args:
+        source: The spec.
+        key: Where the form stands.
+        count: How many components there are.
+        form: The form.
+        along: The elements of a basis that the components belong to, if to any.
+    """
     counts = {"antisymmetric": "n(n - 1)/2", "symmetric": "n(n + 1)/2", "matrix": "n^2"}
     problem = f"{count} components fill no matrix of the form {form!r}"
     expected = f"{counts[form]} components for an n by n matrix"
     hint = f"Remove form, or choose another {_SIZED[str(key[0])]}."
+    if along:
+        hint += f" Without form, {key[1]}[1] to {key[1]}[{count}] are along {', '.join(along)}."
     return source.fault(key, problem, count, expected, hint)

@@ -112,7 +112,7 @@ def _texts(part: Any) -> Iterator[str]:
     """The texts that may hold a number with a name, in a part or a nest of them."""
     match part:
         case str():
-            if "(" in part or "pi" in part:
+            if any(sign in part for sign in ("(", "pi", "^", "**")):
                 yield part
         case Mapping():
             for value in part.values():

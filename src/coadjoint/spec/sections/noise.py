@@ -90,9 +90,11 @@ def read_noise(reading: Reading, texts: Mapping[str, str]) -> tuple[Noise, ...]:
 
 
 def _check_name(reading: Reading, key: KeyPath, name: str) -> None:
-    """Noise is not declared along a variable, as a force is."""
-    if any(name in (each.name, *each.components) for each in VARIABLES.of(reading)):
-        problem = f"{name!r} is a variable, and noise along one need not keep the bracket"
+    """Noise is not declared along a variable, as a force is: neither for x nor for dx."""
+    taken = {name for each in VARIABLES.of(reading) for name in (each.name, *each.components)}
+    if name in taken or name.removeprefix("d") in taken:
+        what = "is a variable" if name in taken else "reads as the change of a variable"
+        problem = f"{name!r} {what}, and noise along one need not keep the bracket"
         raise reading.at_key(key, problem, name, "the name of a Wiener process", _HINT)
 
 

@@ -214,7 +214,8 @@ def _read_variable(
         given = find_shape(source, key, turning, representation, invariance)
         form = form if turning == "quaternion" else ""
     if form in FORMS and matrix_size(count, form) is None:
-        raise misfit_form(source, (*key, "form"), count, form)
+        along = [algebra.basis[place] for place in block] if algebra is not None else ()
+        raise misfit_form(source, (*key, "form"), count, form, along)
     elements: tuple[SparseMatrix, ...] = ()
     if form and block and algebra is not None and algebra.elements:
         check_elements(source, (*key, "form"), algebra, block, form)
