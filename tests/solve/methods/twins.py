@@ -159,7 +159,8 @@ void go(double *state, double *memory, uint8_t *solved, double *made, size_t cou
     for (size_t first = 0; first < count; first += BLOCKS) {
         const int here = count - first < BLOCKS ? (int)(count - first) : BLOCKS;
         Block blocks[BLOCKS] = {0};
-        V ends[BLOCKS][STATE], memories[BLOCKS][MEMORY], sweeps[BLOCKS], size[BLOCKS], *left[BLOCKS];
+        V ends[BLOCKS][STATE], memories[BLOCKS][MEMORY], sweeps[BLOCKS], size[BLOCKS];
+        V *left[BLOCKS];
         I fine[BLOCKS];
         for (int b = 0; b < here; ++b) {
             size[b] = all(h);

@@ -40,8 +40,8 @@ Bracket = Callable[[Lanes, "Array", "Array", "Array"], "Array"]
 
 #: Sweeps that are made before any may be the last one.
 FREE: Final = 3
-#: Sweeps that end a search only where they change nothing. To ask that costs a third of what it costs
-#: to ask how much they change: a midpoint of a free body takes 0.8 of the time.
+#: Sweeps that end a search only where they change nothing: to ask that costs less than to ask how
+#: much they change.
 EXACT: Final = 12
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44
