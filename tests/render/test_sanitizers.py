@@ -16,6 +16,7 @@ from importlib import import_module
 import pytest
 
 from coadjoint import systems
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from tests.conftest import FAMILIES
 from tests.kernels import COMPILER, STRICT
 
@@ -31,7 +32,7 @@ MAIN = """#include "kernel.h"
 enum {{ STATE = {state}, PARAMETERS = {parameters}, INPUTS = {inputs}, OUT = {out} }};
 typedef struct {{
     size_t first, last, members, separate;
-    const double *state, *parameters, *inputs, *time;
+    const double *state, *both, *parameters, *inputs, *time;
     double *out;
 }} Part;
 static void *evaluate(void *given)
@@ -55,9 +56,11 @@ int main(void)
     for (size_t members = 0; members < 24; members += 3)
         for (size_t separate = 0; separate < 2; ++separate) {{
             const size_t many = separate ? members : 1;
-            double *state = fill(STATE * members), *parameters = fill(PARAMETERS * many);
+            double *state = fill(STATE * members), *both = fill(2 * STATE * members);
+            double *parameters = fill(PARAMETERS * many);
             double *inputs = fill(INPUTS * many), *time = fill(many), *out = fill(OUT * members);
-            Part one = {{0, members / 2, members, separate, state, parameters, inputs, time, out}};
+            Part one = {{0, members / 2, members, separate, state, both, parameters, inputs, time,
+                        out}};
             Part other = one;
             other.first = members / 2, other.last = members;
             pthread_t thread;
@@ -65,7 +68,7 @@ int main(void)
                 return 2;
             evaluate(&one);
             pthread_join(thread, 0);
-            free(state), free(parameters), free(inputs), free(time), free(out);
+            free(state), free(both), free(parameters), free(inputs), free(time), free(out);
         }}
     return 0;
 }}
@@ -73,6 +76,7 @@ int main(void)
 #: How a call gives each array that a function may take.
 GIVEN = {
     "state": "p->state + p->first, members",
+    "both": "p->both + p->first, members",  # the state with a vector below it
     "parameters": "p->parameters + own, stride",
     "inputs": "p->inputs + own, stride",
     "time": "p->time + own, stride",
@@ -86,8 +90,10 @@ def write_driver(system):
     calls = []
     for name in system.functions:
         (listed,) = re.findall(rf"void {system.name}_{name}\(\s*size_t count,([^)]*)\);", header)
-        arrays = re.findall(r"double \*(\w+)", listed)
-        given = ", ".join(GIVEN.get(array, GIVEN["state"]) for array in arrays)
+        first, *arrays = re.findall(r"double \*(\w+)", listed)
+        assert first == "state"
+        first = "both" if KERNEL_FUNCTIONS[name].below == "vector" else first
+        given = ", ".join(GIVEN[array] for array in (first, *arrays))
         calls.append(f"    {system.name}_{name}(count, {given});")
     return MAIN.format(
         state=system.STATE.size + system.RECONSTRUCTED.size,

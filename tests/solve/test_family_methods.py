@@ -245,7 +245,7 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
     [
         ("const double left = 1.5 - part", "const double left = 1.25 - part"),
         ("half[l] = 0.5 * search->length[l]", "half[l] = 0.4375 * search->length[l]"),
-        ("change[l] >= search->last[l]", "change[l] <= search->last[l]"),
+        ("change >= turn->last", "change <= turn->last"),
         (
             "(x[n] - (total - other)) + (added - other)",
             "(x[n] - (total - other)) - (added - other)",

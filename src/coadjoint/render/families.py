@@ -37,6 +37,7 @@ from coadjoint.render.kernels import (
 from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
 from coadjoint.solve.methods import spherical_midpoint
+from coadjoint.solve.methods.lie_poisson import STOPPING
 
 
 @dataclass(frozen=True)
@@ -479,6 +480,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         },
         "positions": [int(n in context.positions) for n in range(count)],
         "sweeps": normals.SWEEPS,
+        "stopping": STOPPING,
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
     }

@@ -47,6 +47,7 @@ from coadjoint.solve.methods import (
     spherical_midpoint,
 )
 from coadjoint.solve.methods.gauss import TABLEAUS
+from coadjoint.solve.methods.lie_poisson import STOPPING
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 
@@ -344,6 +345,7 @@ def describe_structured(
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
             },
             "sweeps": normals.SWEEPS,
+            "stopping": STOPPING,
             "terms": TERMS,
         }
     }

@@ -73,10 +73,10 @@ def test_c_has_the_bits_of_numpy(method: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("method", "found", "put"),
     [
-        ("gauss4", "0.5 * h", "0.25 * h"),
+        ("gauss4", ": 0.5 * arc->length;", ": 0.25 * arc->length;"),
         ("gauss8", "total + stage_shares[s][j]", "total - stage_shares[s][j]"),
-        ("gauss6", "change >= search->last", "change <= search->last"),
-        ("gauss4", "V total = low[i]", "V total = 0.0 * low[i]"),
+        ("gauss6", "found &= following[r] == search->middle[r]", "found &= ~(I){0}"),
+        ("gauss4", "V total = arc->low[i]", "V total = 0.0 * arc->low[i]"),
         ("gauss8", "V added = rise + *low", "V added = rise + 0.0 * *low"),
     ],
 )

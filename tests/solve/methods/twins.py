@@ -21,7 +21,7 @@ from coadjoint.render.environment import environment
 from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
 from coadjoint.solve.methods.coadjoint_mean import CoadjointMean
 from coadjoint.solve.methods.isospectral_midpoint import IsospectralMidpoint
-from coadjoint.solve.methods.lie_poisson import LiePoisson
+from coadjoint.solve.methods.lie_poisson import STOPPING, LiePoisson
 from coadjoint.solve.methods.spherical_midpoint import SphericalMidpoint
 from coadjoint.solve.steps import Lanes
 
@@ -160,9 +160,11 @@ void go(double *state, double *memory, uint8_t *solved, double *made, size_t cou
         const int here = count - first < BLOCKS ? (int)(count - first) : BLOCKS;
         Block blocks[BLOCKS] = {0};
         V ends[BLOCKS][STATE], memories[BLOCKS][MEMORY], sweeps[BLOCKS], size[BLOCKS];
+        V *left[BLOCKS];
         I fine[BLOCKS];
         for (int b = 0; b < here; ++b) {
             size[b] = all(h);
+            left[b] = memories[b];
             for (size_t i = 0; i < MEMORY; ++i) EACH(w) {
                 const size_t n = i * members + (first + (size_t)b) * LANES + (size_t)w;
                 if (i < STATE)
@@ -171,7 +173,7 @@ void go(double *state, double *memory, uint8_t *solved, double *made, size_t cou
             }
         }
         for (long s = 0; s < steps; ++s)
-            advance(blocks, here, size, ends, memories, fine, sweeps);
+            advance(blocks, here, size, ends, left, fine, sweeps);
         for (int b = 0; b < here; ++b) EACH(w) {
             const size_t m = (first + (size_t)b) * LANES + (size_t)w;
             for (size_t i = 0; i < STATE; ++i)
@@ -201,6 +203,8 @@ def render(written: Written) -> str:
             lie_poisson={
                 "names": names,
                 "stages": {order: list(map(repr, each)) for order, each in COMPOSITIONS.items()},
+                "tableaus": {},
+                "stopping": STOPPING,
                 "spheres": written.spheres,
                 "sweeps": SWEEPS,
                 "terms": TERMS,

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -37,8 +38,15 @@ Gradient = Callable[[Lanes, "Array", "Array"], "Array"]
 #: state and vector.
 Bracket = Callable[[Lanes, "Array", "Array", "Array"], "Array"]
 
+#: Sweeps that are made before any may be the last one.
+FREE: Final = 3
+#: Sweeps that end a search only where they change nothing: to ask that costs less than to ask how
+#: much they change.
+EXACT: Final = 12
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44
+#: These numbers, as templates read them.
+STOPPING: Final = MappingProxyType({"FREE": FREE, "EXACT": EXACT, "SOLVED": SOLVED})
 
 
 @dataclass
@@ -78,11 +86,12 @@ class Sweep:
 class Search:
     """The search for the middle of a step: sweeps, until they no longer improve it.
 
-    A lane stops at the first sweep that changes nothing. Where roundings never end it stops one
-    sweep after one that changes next to nothing, and no less than the sweep before it: what the
-    step adds belongs to the middle before the last sweep, which has to be such an end itself. To
-    stop earlier leaves an error of one sign: with steps of 0.1 of a free body 1e-10 of its Casimir
-    in 2e6 steps where it is at a given size of the change, and 2e-21 a step where it is by one.
+    A lane stops at the first sweep that changes nothing, after `FREE`. Where roundings never end it
+    goes on to `EXACT` of them and stops one sweep after one that changes next to nothing, and no
+    less than the sweep before it: what the step adds belongs to the middle before the last sweep,
+    which has to be such an end itself. To stop earlier leaves an error of one sign: with steps of
+    0.1 of a free body 1e-10 of its Casimir in 2e6 steps where it is at a given size of the change,
+    and 2e-21 a step where it is by one.
 
     Attributes:
         middle: What was found, ``(n, N)``.
@@ -103,20 +112,30 @@ class Search:
         """Where it has ended, and what the step adds is finite."""
         return np.asarray(self.done & np.isfinite(self.rise).all(axis=0))
 
-    def take(self, sweep: Sweep) -> None:
-        """Go on to what a sweep finds, in lanes that have not ended."""
-        change, size = (
-            np.fmax.reduce(np.abs(rows), axis=0, initial=0.0)  # what is no number is left out
-            for rows in (sweep.middle - self.middle, sweep.middle)
-        )
-        small = (change <= SOLVED * size) & ~np.asarray(sweep.goes_on)
-        ends = small & ((change == 0.0) | self.turned)
+    def take(self, number: int, sweep: Sweep) -> None:
+        """Go on to what a sweep finds, in lanes that have not ended; sweeps are counted from 0."""
+        ends = ~np.asarray(sweep.goes_on)
+        if number >= EXACT:
+            ends = ends & self._may_end(sweep.middle)
+        elif number >= FREE:
+            ends = ends & (sweep.middle == self.middle).all(axis=0)
         self.middle = np.where(self.done, self.middle, sweep.middle)
         self.rise = np.where(self.done, self.rise, sweep.rise)
         self.made = np.where(self.done, self.made, self.made + np.uint64(1))
+        if number >= FREE:
+            self.done = self.done | ends
+
+    def _may_end(self, middle: Array) -> Mask:
+        """Where a sweep changes nothing, or follows one after which roundings turn back."""
+        change, size = (
+            np.fmax.reduce(np.abs(rows), axis=0, initial=0.0)  # what is no number is left out
+            for rows in (middle - self.middle, middle)
+        )
+        small = change <= SOLVED * size
+        ends = small & ((change == 0.0) | self.turned)
         self.turned = self.turned | (small & (change >= self.last))
-        self.last = np.where(self.done, self.last, change)
-        self.done = self.done | ends
+        self.last = change
+        return np.asarray(ends)
 
     def take_over(self, other: Search, lanes: Mask) -> None:
         """Have what another search found in some lanes; its sweeps count in all of them."""
@@ -187,10 +206,10 @@ class LiePoisson:
         """A search from some middle on in lanes that are not done, and where it is solved."""
         search, kept = Search(middle, len(arc.state)), self.prepare(arc, middle)
         search.done = done
-        for _ in range(SWEEPS):
+        for number in range(SWEEPS):
             if search.done.all():
                 break
-            search.take(self.sweep(arc, search.middle, kept))
+            search.take(number, self.sweep(arc, search.middle, kept))
         return search, search.solved & self.confirm(kept)
 
     def prepare(self, arc: Arc, middle: Array) -> Any:
