@@ -35,7 +35,6 @@ WRONG = [
     ({"parameters": {"m": np.ones(5)}}, "follows one trajectory for a state without a batch"),
     # types
     ({"state": "abc"}, "state is 'abc'; expected real numbers"),
-    ({"state": None}, "state is None; expected real numbers"),
     ({"state": ONE + 0j}, "the type complex128; .* if a loss is meant"),
     ({"state": ONE.astype(np.longdouble)}, "the type float128"),
     ({"state": np.ones(6, bool)}, "the type bool"),
