@@ -55,7 +55,15 @@ LONG_BRACKETS = ("n_link_chain", "veselova_so4")
 
 
 #: Systems on so(n), n above 3, in the basis of the planes.
-MATRICES = ("manakov_so4", "manakov_so6", "so4_body", "so5_body", "so6_body", "so8_body")
+MATRICES = (
+    "complex_rigid_body",
+    "manakov_so4",
+    "manakov_so6",
+    "so4_body",
+    "so5_body",
+    "so6_body",
+    "so8_body",
+)
 
 
 def has_bracket(equations):

@@ -35,6 +35,7 @@ WRONG = [
     ({"parameters": {"m": np.ones(5)}}, "follows one trajectory for a state without a batch"),
     # types
     ({"state": "abc"}, "state is 'abc'; expected real numbers"),
+    ({"state": None}, "state lacks Pi1, Pi2, .*; expected a value of each"),
     ({"state": ONE + 0j}, "the type complex128; .* if a loss is meant"),
     ({"state": ONE.astype(np.longdouble)}, "the type float128"),
     ({"state": np.ones(6, bool)}, "the type bool"),
