@@ -23,7 +23,7 @@ _WORDS: Final = {
 }
 #: What a text defines for itself at its top level: functions, tables, records and constants.
 _DEFINED: Final = (
-    re.compile(r"^(?:INLINE|APART) \w+ (\w+)\(", re.MULTILINE),
+    re.compile(r"^(?:INLINE|APART) \w+ \*?(\w+)\(", re.MULTILINE),
     re.compile(r"^static const [\w ]+ (\w+)\[", re.MULTILINE),
     re.compile(r"^\} (\w+);", re.MULTILINE),
 )
