@@ -29,6 +29,7 @@ from coadjoint.derive.records import Exact
 from coadjoint.derive.setting import Setting, once, vector_names
 from coadjoint.derive.times_vector import times_vector
 from coadjoint.exact import Field
+from coadjoint.exact.ansatz import solve_exactly
 
 #: Components of a momentum up to which products are written out: those of so(8).
 LARGEST: Final = 28
@@ -75,23 +76,19 @@ def _find_duals(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...] | 
     numbers = [value for each in matrices for value in each.values()]
     if not all(isinstance(value, int | Fraction) for value in numbers):
         return None
+    # Of traces times x = y, y first: where y may be anything, each x is a row of the inverse.
     count = len(matrices)
     rows = [
-        [_trace(a, b) for b in matrices] + [Fraction(i == j) for j in range(count)]
+        {i: Fraction(-1)} | {count + j: _trace(a, b) for j, b in enumerate(matrices)}
         for i, a in enumerate(matrices)
     ]
-    for place in range(count):
-        pivot = next((n for n in range(place, count) if rows[n][place]), None)
-        if pivot is None:
-            return None
-        rows[place], rows[pivot] = rows[pivot], rows[place]
-        own = [x / rows[place][place] for x in rows[place]]
-        rows = [
-            own if n == place else [a - row[place] * b for a, b in zip(row, own, strict=True)]
-            for n, row in enumerate(rows)
-        ]
-    inverse = (row[count:] for row in rows)
-    return tuple(combination(zip(row, matrices, strict=True)) for row in inverse)
+    solved = sorted(solve_exactly(range(2 * count), rows), key=min)
+    if [min(each) for each in solved] != list(range(count)):
+        return None
+    return tuple(
+        combination((x, matrices[n - count]) for n, x in each.items() if n >= count)
+        for each in solved
+    )
 
 
 def _trace(a: SparseMatrix, b: SparseMatrix) -> Fraction:
@@ -130,7 +127,7 @@ def _find_products(equations: Equations, matrices: Sequence[SparseMatrix]) -> _B
         for middle in (W, outside) if outside else (W,):
             rest = _find_rest(product(product(B, middle), B), matrices, duals)
             outside = outside or rest
-            if _find_multiple(rest, outside) is None:
+            if not _is_multiple(rest, outside):
                 return None
     if not outside:
         return _Basis(tuple(matrices), duals)
@@ -147,13 +144,12 @@ def _find_rest(
     return combination([(1, whole), *parts])
 
 
-def _find_multiple(rest: SparseMatrix, of: SparseMatrix) -> Fraction | None:
-    """The number by which a matrix is a multiple of another; None where it is none."""
+def _is_multiple(rest: SparseMatrix, of: SparseMatrix) -> bool:
+    """Whether a matrix is a multiple of another, 0 among them."""
     if not rest:
-        return Fraction(0)
+        return True
     place = next(iter(of))
-    factor = Fraction(rest.get(place, 0)) / of[place]
-    return None if combination([(1, rest), (-factor, of)]) else factor
+    return not combination([(1, rest), (-Fraction(rest.get(place, 0)) / of[place], of)])
 
 
 def _measure(matrix: list[list[Any]], matrices: Sequence[SparseMatrix]) -> list[Any]:
