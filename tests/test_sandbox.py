@@ -2,7 +2,9 @@
 
 import errno
 import json
+import multiprocessing
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -29,7 +31,7 @@ def helper(monkeypatch, tmp_path):
         textwrap.dedent(
             """
             import os, time
-            from coadjoint.sandbox_child import report_progress
+            from coadjoint.sandbox_child import prepared_by, report_progress
 
             def spin(_):
                 while True:
@@ -86,6 +88,32 @@ def helper(monkeypatch, tmp_path):
                 while time.process_time() < seconds:
                     pass
                 return os.getpid()
+
+            def who(_):
+                return [os.getpid(), os.getppid()]
+
+            def complain(text):
+                print(text, flush=True)
+                os._exit(3)
+
+            def look(variable):
+                return [os.getcwd(), os.environ.get(variable), os.getppid()]
+
+            made = []
+
+            def prepare():
+                made.append(os.getpid())
+
+            @prepared_by("coadjoint.tasks:prepare")
+            def prepared(_):
+                return made[0]
+
+            def fail():
+                raise RuntimeError("no preparation")
+
+            @prepared_by("coadjoint.tasks:fail")
+            def unprepared(_):
+                fail()
 
             def bug(_):
                 raise RuntimeError("a bug of ours")
@@ -275,42 +303,91 @@ def test_stopping_all_children_ends_what_they_started(helper):
         run_bounded(helper + "sleep", 600, **GENEROUS, children=children)
 
 
-def test_a_child_serves_one_request_after_the_other(helper):
-    """It is there for the next request of its task, with limits of its own; then it ends."""
-    children, _ballast = sandbox.Children(), bytearray(b"x") * (200 * 2**20)  # not the child's own
+def test_a_nursery_serves_one_request_after_the_other(helper):
+    """Each in a child of its own, with limits of its own, whatever became of the one before."""
 
-    def ask(function, argument, seconds=60):
-        return run_bounded(
-            helper + function, argument, seconds=seconds, memory=2**29, children=children
-        )
+    def ask(function, argument=None, seconds=60):
+        return run_bounded(helper + function, argument, seconds=seconds, memory=2**29)
 
-    first = ask("compute", 1)
-    assert ask("compute", 1.6, 1) == first  # of which one second was used by the request before
+    first = ask("who")
+    assert ask("compute", 1.6, 2) not in first  # which has two seconds for itself
     with pytest.raises(ResourceError, match="spin: stopped after 1 s") as caught:
         ask("spin", 0, 1)
     assert caught.value.used < 3
-    second = ask("chatter", None)
     with pytest.raises(InternalError, match="a bug of ours"):
-        ask("bug", None)
-    third = ask("chatter", None)
-    os.kill(third, signal.SIGKILL)
-    os.waitid(os.P_PID, third, os.WEXITED | os.WNOWAIT)
-    fourth = ask("chatter", None)
-    assert len({first, second, third, fourth}) == 4
-    children.stop()
-    for process in (first, second, third, fourth):
-        wait_until_gone(process)
+        ask("bug")
+    with pytest.raises(ResourceError, match="half: lost"):
+        ask("half")
+    second = ask("who")
+    assert (first[1], first[0] != second[0]) == (second[1], True)
+    os.kill(first[1], signal.SIGKILL)
+    os.waitid(os.P_PID, first[1], os.WEXITED | os.WNOWAIT)
+    assert ask("who")[1] != first[1]
 
 
-def test_a_child_of_great_needs_serves_no_other_request(helper):
-    """What it holds would be missing from the memory of the next one."""
-    children = sandbox.Children()
-    found = [
-        run_bounded(helper + function, size, **GENEROUS, children=children)
-        for function, size in (("chatter", 0), ("hoard", 2**29), ("chatter", 0))
-    ]
-    children.stop()
-    assert found[0] != found[2]
+def test_complaints_are_those_of_the_child(helper):
+    """What an earlier child said is not told of the next one."""
+    for text in ("first", "second"):
+        with pytest.raises(ResourceError, match=text) as caught:
+            run_bounded(helper + "complain", text, **GENEROUS)
+    assert "first" not in str(caught.value)
+
+
+def test_a_child_stands_where_its_parent_stands(helper, tmp_path, monkeypatch):
+    """Folder and variables are those of the request, and not those of when the nursery began."""
+
+    def look():
+        return run_bounded(helper + "look", "COADJOINT_TRIAL", **GENEROUS)
+
+    monkeypatch.delenv("COADJOINT_TRIAL", raising=False)
+    before = look()
+    monkeypatch.setenv("COADJOINT_TRIAL", "yes")
+    monkeypatch.chdir(tmp_path)
+    assert look() == [str(tmp_path), "yes", before[2]]
+    monkeypatch.delenv("COADJOINT_TRIAL")
+    assert look() == [str(tmp_path), None, before[2]]
+
+
+def test_limits_of_the_system_are_those_of_now(helper):
+    """A nursery that began under other limits is not asked."""
+    before = run_bounded(helper + "who", None, **GENEROUS)
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft - 1, hard))
+    try:
+        assert run_bounded(helper + "who", None, **GENEROUS)[1] != before[1]
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_what_is_prepared_is_there_in_every_child(helper):
+    """It is computed once, before any child; one that fails is left to the children."""
+    prepared = {run_bounded(helper + "prepared", None, **GENEROUS) for _ in range(2)}
+    assert len(prepared) == 1
+    assert run_bounded(helper + "who", None, **GENEROUS)[1] in prepared
+    with pytest.raises(InternalError, match="no preparation"):
+        run_bounded(helper + "unprepared", None, **GENEROUS)
+
+
+def test_a_nursery_waits_for_some_time(helper, monkeypatch):
+    """Then it ends; and so it does when the process has ended that it could serve."""
+    monkeypatch.setattr(sandbox, "PATIENCE", 0.1)
+    wait_until_gone(run_bounded(helper + "who", None, **GENEROUS)[1])
+    script = (
+        "from coadjoint import sandbox\n"
+        f"sandbox._BOOT = {sandbox._BOOT!r}\n"
+        f"print(sandbox.run_bounded({helper + 'who'!r}, None, seconds=60, memory=2**31)[1])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stderr == ""
+    wait_until_gone(int(done.stdout))
+
+
+def test_a_forked_process_has_a_nursery_of_its_own(helper):
+    """Two processes that talk to one nursery would take each other's answers."""
+    mine = run_bounded(helper + "who", None, **GENEROUS)[1]
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert pool.apply(run_bounded, (helper + "who", None), GENEROUS)[1] != mine
+    assert run_bounded(helper + "who", None, **GENEROUS)[1] == mine
 
 
 def test_prints_do_not_disturb_the_protocol(helper):

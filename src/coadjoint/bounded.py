@@ -20,7 +20,7 @@ from coadjoint.budget import allowed_seconds
 from coadjoint.errors import CoadjointError, ResourceError, from_record
 from coadjoint.limits import WORKER_BYTES
 from coadjoint.sandbox import run_bounded
-from coadjoint.sandbox_child import report_progress
+from coadjoint.sandbox_child import prepared_by, report_progress
 
 if TYPE_CHECKING:
     from coadjoint.spec import Spec
@@ -184,6 +184,7 @@ def read_all_bounded(
     return [from_record(each["error"]) if "error" in each else each for each in records]
 
 
+@prepared_by("coadjoint.spec")
 def read_records(paths: Sequence[str]) -> list[dict[str, Any]]:
     """What specs declare, as plain JSON values; runs in a bounded child."""
     from coadjoint.spec import read_spec  # SymPy loads here, in the child, and never in the parent
@@ -213,6 +214,7 @@ def describe_declared(spec: Spec) -> dict[str, Any]:
     }
 
 
+@prepared_by("coadjoint.derive.document")
 def document_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """A derivation as plain JSON values; runs in a bounded child."""
     from coadjoint.derive import derive
@@ -225,6 +227,7 @@ def document_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     return asdict(document(equations))
 
 
+@prepared_by("coadjoint.prove")
 def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """The certificate of a spec as JSON values, times included; runs in a bounded child."""
     from coadjoint.prove import prove
@@ -245,6 +248,7 @@ def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+@prepared_by("coadjoint.pipeline:prepare")
 def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """Methods of integration, judged, as plain JSON values; runs in a bounded child."""
     from coadjoint.pipeline import render
@@ -258,6 +262,7 @@ def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     return {"system": spec.name, **judged}
 
 
+@prepared_by("coadjoint.pipeline:prepare")
 def header_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """A method as a header, as plain JSON values; runs in a bounded child."""
     from coadjoint.export import export_header

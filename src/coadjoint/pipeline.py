@@ -36,6 +36,7 @@ from coadjoint.prove.declaration import family_context, kernel_context
 from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
+from coadjoint.render.environment import compile_templates
 from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.folders import load_texts
@@ -121,6 +122,11 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
         context=context,
         methods=methods,
     )
+
+
+def prepare() -> None:
+    """What a process does once for all the systems that it works on."""
+    compile_templates()
 
 
 def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:

@@ -37,7 +37,7 @@ from coadjoint.render.write import (
     write_systems,
 )
 from coadjoint.sandbox import Children, run_bounded
-from coadjoint.sandbox_child import report_progress
+from coadjoint.sandbox_child import prepared_by, report_progress
 from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.core.names import system_refusal
 from coadjoint.spec.reader import read_file
@@ -255,6 +255,7 @@ def is_written_out(path: Path, sizes: Mapping[str, int], seconds: float | None =
     return written
 
 
+@prepared_by("coadjoint.spec")
 def tell_written(argument: Mapping[str, Any]) -> dict[str, Any]:
     """Whether all members of a spec are written out; runs in a bounded child."""
     from coadjoint.spec import read_spec
@@ -401,6 +402,7 @@ def _guess_work(source: _Source, output: Path) -> float:
     return -inf
 
 
+@prepared_by("coadjoint.pipeline:prepare")
 def build_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """One system through the pipeline, as plain JSON values; runs in a bounded child."""
     # SymPy loads here, in the child, and never in the parent.

@@ -2,13 +2,16 @@
 
 Comes in: the name of a function and a JSON value. Goes out: its JSON result, or the error that it
 raised, as in this process. Processor time and memory are limited, since no static limit on a spec
-keeps every computation short; time by the clock only so that nothing waits without end. A child
-dies with its parent, and with a child dies what it started.
+keeps every computation short; time by the clock only so that nothing waits without end. Children
+come from a nursery: a process that has imported what they need, which takes longer than many of
+them work, and that waits for a while for the next request. They die with their parent, and with
+them dies what they started.
 Read next: `coadjoint.sandbox_child`, the other side.
 """
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import resource
@@ -17,11 +20,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock, Timer
-from typing import IO, Any
+from typing import IO, Any, Final
 
 from coadjoint.budget import VARIABLE
 from coadjoint.ending import kill
@@ -41,60 +44,111 @@ _BOOT = (
 )
 
 
-@dataclass
-class _Child:
-    """A child that runs or waits for a request.
+#: Seconds for which a nursery waits for another request.
+PATIENCE: Final = 60
+#: Limits of the system that children inherit.
+_LIMITS = tuple(sorted({getattr(resource, each) for each in dir(resource) if "RLIMIT_" in each}))
+
+
+@dataclass(eq=False)
+class _Nursery:
+    """A process that forks a child for each request.
 
     Attributes:
         process: It.
-        errors: The file of what it complains of.
-        used: Processor time of its former requests, seconds.
+        errors: The file of what children complain of.
+        surroundings: What it inherited and cannot be told; see `_find_surroundings`.
+        patience: What ends it while it waits.
     """
 
     process: subprocess.Popen[str]
     errors: IO[bytes]
-    used: float = 0.0
+    surroundings: object
+    patience: Timer | None = None
 
     def close(self) -> None:
         """End it and whatever it started, at the latest now."""
         kill(self.process)
+        self._let_go()
+
+    def retire(self) -> None:
+        """End it while it waits, which it does by itself when nobody can ask any more."""
+        assert self.process.stdin is not None
+        with suppress(BrokenPipeError):
+            self.process.stdin.close()
+        self._let_go()
+
+    def _let_go(self) -> None:
         with self.errors, self.process, suppress(BrokenPipeError):
             assert self.process.stdin is not None
             self.process.stdin.close()
 
 
-class Children:
-    """The children of one task: ended together, and one after the other for its requests.
+class _Waiting:
+    """The nurseries of this process that have no work."""
 
-    A child that has answered without an error waits for another request, so that what it has
-    imported is there; one that is lost is lost for the request that it worked on alone.
-    """
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._nurseries: list[_Nursery] = []
+        self._strange: list[_Nursery] = []
+
+    def take(self, surroundings: object) -> _Nursery | None:
+        """One that would not differ from a new one, if there is one."""
+        with self._lock:
+            found = [each for each in self._nurseries if each.surroundings == surroundings]
+            for nursery in found[-1:]:
+                self._nurseries.remove(nursery)
+                if nursery.patience is not None:
+                    nursery.patience.cancel()
+                if nursery.process.poll() is None:
+                    return nursery
+                nursery.close()
+        return None
+
+    def keep(self, nursery: _Nursery) -> None:
+        """Let one wait, for some time."""
+        nursery.patience = timer = Timer(PATIENCE, lambda: self._retire([nursery]))
+        timer.daemon = True
+        with self._lock:
+            self._nurseries.append(nursery)
+        timer.start()
+
+    def retire_all(self) -> None:
+        """End them with this process."""
+        self._retire(list(self._nurseries))
+
+    def _retire(self, nurseries: list[_Nursery]) -> None:
+        for nursery in nurseries:
+            with self._lock:
+                if nursery not in self._nurseries:
+                    continue
+                self._nurseries.remove(nursery)
+            if nursery.patience is not None:
+                nursery.patience.cancel()
+            nursery.retire()
+
+    def disown(self) -> None:
+        """Leave them to the process that this one was forked from."""
+        self._lock = Lock()  # which a thread of that process may have held
+        self._strange += self._nurseries  # or their finalisers would wait for them
+        self._nurseries = []
+
+
+_waiting = _Waiting()
+atexit.register(_waiting.retire_all)
+os.register_at_fork(after_in_child=_waiting.disown)
+
+
+class Children:
+    """The children of one task, ended together."""
 
     def __init__(self) -> None:
         self._lock = Lock()
         self._running: set[subprocess.Popen[str]] = set()
-        self._waiting: list[_Child] = []
         self._stopped = False
 
-    def take(self) -> _Child | None:
-        """One that waits, if there is one."""
-        with self._lock:
-            while self._waiting:
-                child = self._waiting.pop()
-                if child.process.poll() is None:
-                    return child
-                child.close()
-        return None
-
-    def keep(self, child: _Child) -> None:
-        """Let one wait for another request."""
-        with self._lock:
-            if not self._stopped:
-                return self._waiting.append(child)
-        return child.close()
-
     def add(self, process: subprocess.Popen[str]) -> None:
-        """Note a child that works; one that comes after the end of the task is ended at once."""
+        """Note a nursery at work; one that comes after the end of the task is ended at once."""
         with self._lock:
             self._running.add(process)
             stopped = self._stopped
@@ -102,7 +156,7 @@ class Children:
             kill(process)
 
     def remove(self, process: subprocess.Popen[str]) -> None:
-        """Forget a child that works no more."""
+        """Forget one that works no more."""
         with self._lock:
             self._running.discard(process)
 
@@ -110,12 +164,9 @@ class Children:
         """End every child and what it started, now and later."""
         with self._lock:
             self._stopped = True
-            running, waiting = list(self._running), self._waiting
-            self._waiting = []
+            running = list(self._running)
         for process in running:
             kill(process)
-        for child in waiting:
-            child.close()
 
 
 def run_bounded(
@@ -138,7 +189,7 @@ def run_bounded(
             its own. Rounded up to whole seconds.
         memory: Limit of address space, bytes.
         on_progress: Told what the function reports through `report_progress`.
-        children: The children of one task, of which one that waits serves the request.
+        children: The children of one task, which can be stopped together.
         wall: Limit of time by the clock; by default `WALL_FACTOR` times ``seconds``, and what a
             compiler may take.
         subject: What it is about, for messages: the path of a spec. By default the function.
@@ -154,7 +205,7 @@ def run_bounded(
     """
     subject = subject or target.rpartition(":")[2]
     request = {"target": target, "argument": argument, "seconds": seconds, "memory": memory}
-    request |= {"subject": subject, "again": children is not None}
+    request |= {"subject": subject, "environment": {**os.environ}, "folder": _find_folder()}
     task = _Task(
         subject,
         find_processor_limit(seconds),
@@ -166,70 +217,94 @@ def run_bounded(
         task.stage = stage
         on_progress(stage, done, total)
 
-    noted = children or Children()
     try:
-        child = noted.take() or _start()
+        nursery = _waiting.take(_find_surroundings()) or _start()
     except OSError as error:
         refused = system_error(error)
         if refused is None:
             raise
         raise refused from error
-    with ExitStack() as stack:
-        stack.callback(child.close)
-        last = _follow(task, child, request, note, noted)
-        if last is None:
-            child.errors.seek(0)
-            raise task.explain_loss(child.process.returncode, child.errors.read())
-        if last["again"]:
-            child.used = last["again"]
-            stack.pop_all()
-            noted.keep(child)
+    begin = nursery.errors.seek(0, os.SEEK_END)
+    try:
+        last, end = _follow(task, nursery, request, note, children or Children())
+    except BaseException:
+        nursery.close()
+        raise
+    if end is not None:
+        task.used = end["used"]
+    if last is None:
+        status = nursery.process.wait() if end is None else end["status"]
+        nursery.errors.seek(begin)
+        errors = nursery.errors.read()
+    if end is None or request["folder"] is None:
+        nursery.close()
+    else:
+        _waiting.keep(nursery)
+    if last is None:
+        raise task.explain_loss(status, errors)
     if "error" in last:
         raise from_record(last["error"])
     return last["result"]
 
 
 def _follow(
-    task: _Task, child: _Child, request: dict[str, Any], note: Progress, noted: Children
-) -> dict[str, Any] | None:
-    """Have a child do its work; its final message, or none where it is lost."""
-    noted.add(child.process)
+    task: _Task, nursery: _Nursery, request: dict[str, Any], note: Progress, noted: Children
+) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """Have a child do its work; its final message, and what its nursery says of its end.
+
+    None stands for what did not come.
+    """
+    process = nursery.process
+    noted.add(process)
 
     def expire() -> None:
         task.expired = True
-        kill(child.process)
+        kill(process)
 
     timer = Timer(task.wall, expire)
     timer.daemon = True
     timer.start()
     try:
-        last = _converse(child.process, request, note)
-        if last is None or not last["again"]:
-            task.used = _reap(child.process) - child.used
+        found = _converse(process, request, note)
+        if found[1] is None:
+            task.used = _reap(process)
     finally:
         timer.cancel()
-        noted.remove(child.process)
-    return last
+        noted.remove(process)
+    return found
 
 
-def _start() -> _Child:
-    """A child that waits for its request."""
-    errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the child)
+def _find_folder() -> str | None:
+    """The working folder, or None where it is gone."""
+    with suppress(OSError):
+        return str(Path.cwd())
+    return None
+
+
+def _find_surroundings() -> object:
+    """What a nursery inherits when it is started, and its children with it."""
+    return _BOOT, _find_folder() is None, tuple(map(resource.getrlimit, _LIMITS))
+
+
+def _start() -> _Nursery:
+    """A nursery that waits for its first request."""
+    errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the nursery)
     try:
         process = subprocess.Popen(
-            [sys.executable, "-I", *_bytecode(), "-c", _BOOT, _ROOT, str(os.getpid())],
+            [sys.executable, "-I", *_bytecode(), "-c", _BOOT, _ROOT],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=errors,
             text=True,
             start_new_session=True,
-            # One thread: each pool of a numerical library reserves memory of the child's limit.
+            # One thread: a fork takes no other ones along, and each pool of a numerical library
+            # reserves memory of the child's limit.
             env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         )
     except BaseException:
         errors.close()
         raise
-    return _Child(process, errors)
+    return _Nursery(process, errors, _find_surroundings())
 
 
 def _bytecode() -> list[str]:
@@ -239,27 +314,30 @@ def _bytecode() -> list[str]:
 
 def _converse(
     process: subprocess.Popen[str], request: dict[str, Any], on_progress: Progress
-) -> dict[str, Any] | None:
-    """Send the request, pass progress on, and return the final message, if one comes."""
+) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """Send the request, pass progress on; the final message and the end, if they come."""
     assert process.stdin is not None
     assert process.stdout is not None
-    try:
+    last = None
+    with suppress(BrokenPipeError):
         process.stdin.write(json.dumps(request) + "\n")
         process.stdin.flush()
-    except BrokenPipeError:
-        return None
     for line in process.stdout:
-        if not line.endswith("\n"):  # killed in the middle of a message
-            return None
-        message: dict[str, Any] = json.loads(line)
-        if "progress" not in message:
-            return message
-        on_progress(*message["progress"])
-    return None
+        try:
+            message: dict[str, Any] = json.loads(line)
+        except ValueError:  # of a child that was killed in the middle of it
+            continue
+        if "status" in message:
+            return last, message
+        if "progress" in message:
+            on_progress(*message["progress"])
+        else:
+            last = message
+    return last, None
 
 
 def _reap(process: subprocess.Popen[str]) -> float:
-    """Wait for the end of a child; processor time that it and what it waited for have used."""
+    """Wait for the end of a nursery; processor time that it and what it waited for have used."""
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     return usage.ru_utime + usage.ru_stime

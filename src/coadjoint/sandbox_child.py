@@ -1,8 +1,8 @@
-"""Bounded children, the other side: the process that serves requests, under its own limits.
+"""Bounded children, the other side: the nursery, and the child that it forks for each request.
 
-Comes in: requests as lines of JSON on standard input. Goes out: progress and results as lines of
-JSON, or errors of this package. Limits of processor time and memory are set before a request is
-served.
+Comes in: requests as lines of JSON on standard input. Goes out: of a child progress and a result
+as lines of JSON, or an error of this package, and of the nursery the child's exit status and
+processor time. Limits of processor time and memory are the child's.
 """
 
 from __future__ import annotations
@@ -13,23 +13,36 @@ import gc
 import json
 import math
 import os
-import re
 import resource
+import select
 import signal
 import sys
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
-from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeVar
 
 from coadjoint.errors import CoadjointError, InternalError, ResourceError, system_error
 
+#: Variables that the nursery was given beside those of its parent; see `coadjoint.sandbox`.
+_OWN = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
-#: A child that has had this part of its memory serves no other request.
-MEMORY_PART = 4
 _channel: IO[str] | None = None
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def prepared_by(target: str) -> Callable[[_Function], _Function]:
+    """Say what a nursery does before children run this function: they then find it done.
+
+    ``module`` of this package is imported, and of ``module:function`` the function is called.
+    """
+
+    def note(function: _Function) -> _Function:
+        function.preparation = target  # type: ignore[attr-defined]
+        return function
+
+    return note
 
 
 def report_progress(stage: str, done: int, total: int) -> None:
@@ -38,69 +51,81 @@ def report_progress(stage: str, done: int, total: int) -> None:
 
 
 def serve() -> None:
-    """Serve requests, each but the last with a result; the entry point of the child process."""
-    global _channel  # one channel for all requests of this process
-    _die_with(int(sys.argv[2]))
+    """Serve requests, each in a child; the entry point of the nursery."""
+    global _channel  # one channel for all requests
     _channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not meet the messages
-    used = 0
     for line in sys.stdin:
-        if not _serve_one(json.loads(line), used):
-            return
-        used = math.ceil(_measure_use(resource.RUSAGE_SELF))
+        request = json.loads(line)
+        with suppress(Exception):  # a child then meets it within its limits, and tells of it
+            _prepare(request["target"])
+        try:
+            status, used = _fork(request)
+        except OSError as error:
+            _send({"error": _describe(error, request).as_record()})
+            status, used = 0, 0.0
+        _send({"status": status, "used": used}, begin="\n")  # a child may have left half a line
+    os._exit(0)
 
 
-def _serve_one(request: dict[str, Any], used: int) -> bool:
-    """Serve one request after processor time of others; whether another one may follow."""
-    _limit(resource.RLIMIT_AS, request["memory"])
-    _limit(resource.RLIMIT_CORE, 0)
-    # The soft limit alone: what this child starts may be given another one.
-    _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (find_processor_limit(request["seconds"] + used), most))
-    again = 0.0
+def _prepare(target: str) -> None:
+    """Import and compute what children need."""
+    preparation = getattr(_function(target), "preparation", None)
+    if preparation is not None and ":" in preparation:
+        _function(preparation)()
+    elif preparation is not None:
+        import_module(preparation)
+    # What is imported stays: looking for cycles in all of it again and again takes a fifth of the
+    # time of a large derivation, and would copy the memory that children share.
+    gc.freeze()
+
+
+def _fork(request: dict[str, Any]) -> tuple[int, float]:
+    """Serve a request in a child; its exit status and processor time.
+
+    Raises:
+        OSError: There is no room for another process.
+    """
+    nursery = os.getpid()
+    ended, end = os.pipe()  # which the system closes with the child
+    child = os.fork()
+    if child == 0:
+        os.close(ended)
+        _die_with(nursery)
+        _serve_one(request)
+        sys.exit()
+    os.close(end)
     try:
-        function = _function(request["target"])
-        # What is imported stays, and elements make no cycles: looking for some in all of it again
-        # and again takes a fifth of the time of a large derivation.
-        gc.freeze()
-        gc.set_threshold(50_000, 10, 10)
-        result = function(request["argument"])
-        again = _measure_use() if request["again"] and _is_fresh(request["memory"]) else 0.0
-        _send({"result": result, "again": again})
+        # More on standard input is its end: nobody asks for two things at once.
+        if sys.stdin.fileno() in select.select([ended, sys.stdin.fileno()], [], [])[0]:
+            os.killpg(0, signal.SIGKILL)  # the group of this process: it was made for it
+    finally:
+        os.close(ended)
+    _, status, usage = os.wait4(child, 0)
+    return os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
+
+
+def _serve_one(request: dict[str, Any]) -> None:
+    """Serve a request in this process, with a result or an error."""
+    try:
+        os.environ.update(request["environment"])
+        for name in os.environ.keys() - request["environment"].keys() - _OWN:
+            del os.environ[name]
+        if request["folder"] is not None:
+            os.chdir(request["folder"])
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        _limit(resource.RLIMIT_AS, request["memory"])
+        _limit(resource.RLIMIT_CORE, 0)
+        # The soft limit alone: what this child starts may be given another one.
+        _, most = resource.getrlimit(resource.RLIMIT_CPU)
+        limit = find_processor_limit(request["seconds"])
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, most))
+        gc.set_threshold(50_000, 10, 10)  # elements make no cycles
+        _send({"result": _function(request["target"])(request["argument"])})
     except CoadjointError as error:
-        _send({"error": error.as_record(), "again": 0.0})
+        _send({"error": error.as_record()})
     except Exception as error:
-        _send({"error": _describe(error, request).as_record(), "again": 0.0})
-    gc.collect()
-    return bool(again)
-
-
-def _is_fresh(memory: int) -> bool:
-    """Whether this process may serve another request as if it were the first.
-
-    A limit of processor time of the whole session is shared out to processes of their own.
-    """
-    unlimited = resource.getrlimit(resource.RLIMIT_CPU)[1] == resource.RLIM_INFINITY
-    return unlimited and _find_peak() < memory / MEMORY_PART
-
-
-def _find_peak() -> int:
-    """The most memory that this process has had, bytes.
-
-    What getrusage says begins with the peak of the process that started this one, which may be a
-    large one.
-    """
-    with suppress(OSError):
-        told = re.search(r"VmHWM:\s*(\d+) kB", Path("/proc/self/status").read_text("ascii"))
-        if told is not None:
-            return int(told[1]) * 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-
-
-def _measure_use(*whose: int) -> float:
-    """Processor time of this process and of what it waited for, or of one of them, seconds."""
-    whose = whose or (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    return sum(each.ru_utime + each.ru_stime for each in map(resource.getrusage, whose))
+        _send({"error": _describe(error, request).as_record()})
 
 
 def _describe(error: Exception, request: dict[str, Any]) -> CoadjointError:
@@ -149,9 +174,9 @@ def _limit(kind: int, value: int) -> None:
     resource.setrlimit(kind, (value, most if most != resource.RLIM_INFINITY else value))
 
 
-def _send(message: dict[str, Any]) -> None:
+def _send(message: dict[str, Any], begin: str = "") -> None:
     if _channel is not None:
-        _channel.write(json.dumps(message) + "\n")
+        _channel.write(begin + json.dumps(message) + "\n")
         _channel.flush()
 
 

@@ -26,6 +26,7 @@ from coadjoint.cli.arguments import (
     spec_path,
 )
 from coadjoint.cli.output import plural, show_text
+from coadjoint.sandbox_child import prepared_by, report_progress
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
@@ -109,10 +110,10 @@ def _render(record: Mapping[str, Any], form: str) -> str:
     return render_document(record, form)
 
 
+@prepared_by("coadjoint.prove.examination")
 def examination_record(request: Mapping[str, Any]) -> dict[str, Any]:
     """The examination of an algebra as plain JSON values; runs in a bounded child."""
     from coadjoint.prove.examination import examine
-    from coadjoint.sandbox_child import report_progress
 
     word, most, degree = request["algebra"], request["generators"], request["degree"]
     report_progress("examine", 0, 1)

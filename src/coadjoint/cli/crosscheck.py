@@ -18,6 +18,7 @@ from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import load_system, seconds_option, spec_path, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, say
 from coadjoint.errors import OutputError
+from coadjoint.sandbox_child import prepared_by, report_progress
 
 
 @click.command("crosscheck")
@@ -49,6 +50,7 @@ def command(system: str, points: int, seconds: int | None, as_json: bool) -> Non
         _print(report)
 
 
+@prepared_by("coadjoint.pipeline:prepare")
 def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """Figures of the ladder as JSON values; runs in a bounded child."""
     from coadjoint.crosscheck.ladder import crosscheck
@@ -57,7 +59,6 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.lower.lowering import lower
     from coadjoint.lower.mapped import lower_maps
     from coadjoint.render.targets import TARGETS
-    from coadjoint.sandbox_child import report_progress
     from coadjoint.solve.folders import load_folder
     from coadjoint.solver_kinds import FILES, list_kinds
     from coadjoint.spec import read_spec

@@ -137,6 +137,15 @@ def names_read(template: str) -> frozenset[str]:
     return frozenset(environment().read[template])
 
 
+def compile_templates() -> None:
+    """Compile the templates of code now, which takes as long as rendering some systems."""
+    for name in environment().list_templates(extensions=["j2"]):
+        if not name.startswith(
+            "document/"
+        ):  # whose filters are those of `coadjoint.render.document`
+            environment().get_template(name)
+
+
 def template_source(template: str) -> str:
     """The text of a template as it stands in its file."""
     loader = environment().loader
