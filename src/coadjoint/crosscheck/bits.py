@@ -23,13 +23,13 @@ from coadjoint.render.kernels import find_chunk
 from coadjoint.render.solvers import count_unknowns
 from coadjoint.render.targets import BUILDS
 
-#: Members compared at a time: few enough for the cache.
-BLOCK: Final = 10_000
+#: Members of a family compared at a time: few enough for the cache.
+BLOCK: Final = 5000
 #: Numbers that a function may give for the members of one batch: of those with more rows, such as
 #: the Jacobian of a hundred masses, the first members are compared.
 NUMBERS: Final = 8_000_000
 #: Operations and outputs of a slow target in each batch, all its members together.
-SLOW_WORK: Final = 2000
+SLOW_WORK: Final = 4000
 #: The last of many members, which are compared; one of them is beyond a chunk of NumPy's.
 LAST: Final = 64
 
@@ -178,9 +178,10 @@ def _bit_batches(points: Points, count: int) -> Iterator[Batch]:
     """Blocks of every family, special values and odd sizes; parameters shared in every other."""
     yield from _vary_sharing(points.draw_special(seed, size) for seed, size in enumerate(ODD_SIZES))
     yield from _vary_sharing(iter([points.draw_special(99, BLOCK)]))
-    for seed in range(-(-count // BLOCK)):
-        quarter = -(-min(BLOCK, count - seed * BLOCK) // 4)
-        for number, batch in enumerate(points.families(seed + 10, quarter).values()):
+    quarter = -(-count // 4)
+    for seed in range(-(-quarter // BLOCK)):
+        size = min(BLOCK, quarter - seed * BLOCK)
+        for number, batch in enumerate(points.families(seed + 10, size).values()):
             yield batch.share("parameters") if (seed + number) % 2 else batch
 
 

@@ -18,8 +18,7 @@ from coadjoint.crosscheck.oracle import (
     Bounded,
     OutsideDomain,
     distance_in_envelopes,
-    error_in_envelopes,
-    error_in_ulp,
+    errors,
     oracle,
 )
 from coadjoint.crosscheck.points import Array, Batch
@@ -85,9 +84,8 @@ def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
     batches = []
     for batch in hard_batches(subject, function, -(-count // BATCHES)):
         exact = {}
-        for member in range(batch.size):
+        for member, inputs in enumerate(subject.members(batch)):
             with suppress(OutsideDomain):
-                inputs = subject.inputs(batch, member)
                 exact[member] = oracle(subject.reference, function, inputs)
         batches.append((batch, exact))
     return ExactPoints(function, batches)
@@ -147,7 +145,7 @@ def _measure(exact: list[Bounded]) -> Callable[[int, float], tuple[float, float]
     def measure(row: int, value: float) -> tuple[float, float]:
         if value == 0 and not exact[row].envelope:  # most entries of a large Jacobian
             return 0.0, 0.0
-        return error_in_envelopes(value, exact[row]), error_in_ulp(value, exact[row])
+        return errors(value, exact[row])
 
     return measure
 

@@ -34,8 +34,7 @@ from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
     CONTEXT,
     OutsideDomain,
-    error_in_envelopes,
-    error_in_ulp,
+    errors,
     exact,
     oracle,
 )
@@ -331,8 +330,8 @@ def _check_window(
             now = times[n] if window.time else None
             computed = sized.evaluate(name, *given, time=now, target=target)
             for row, (value, bounded) in enumerate(zip(np.ravel(computed), expected, strict=True)):
-                error = error_in_envelopes(float(value), bounded)
-                k, ulp = max(k, error), max(ulp, error_in_ulp(float(value), bounded))
+                error, last = errors(float(value), bounded)
+                k, ulp = max(k, error), max(ulp, last)
                 if error > largest:
                     raise _fail(
                         system.name,

@@ -292,11 +292,7 @@ def error_in_envelopes(computed: float, bounded: Bounded) -> float:
     >>> error_in_envelopes(1.0, exact(1.0)), error_in_envelopes(float("nan"), exact(1.0))
     (0.0, inf)
     """
-    if not math.isfinite(computed):
-        return math.inf
-    with localcontext(CONTEXT):
-        error = abs(Decimal(computed) - bounded.value)
-        return float(error / (_UNIT * bounded.envelope + _FLOOR))
+    return errors(computed, bounded)[0]
 
 
 def distance_in_envelopes(one: float, other: float, bounded: Bounded) -> float:
@@ -311,17 +307,21 @@ def distance_in_envelopes(one: float, other: float, bounded: Bounded) -> float:
         return float(abs(Decimal(one) - Decimal(other)) / (_UNIT * bounded.envelope + _FLOOR))
 
 
-def error_in_ulp(computed: float, bounded: Bounded) -> float:
-    """The error in units of the last place, for readers; 0 where terms cancel.
+def errors(computed: float, bounded: Bounded) -> tuple[float, float]:
+    """The error as of `error_in_envelopes`, and in units of the last place; 0 where terms cancel.
 
     Cancelling means an envelope of more than twice the magnitude: an error in units of the last
     place would say nothing there (6e11 of them with a perfect kernel).
 
-    >>> error_in_ulp(1.0 + 2.0**-52, exact(1.0))
-    1.0
+    >>> errors(1.0 + 2.0**-52, exact(1.0))
+    (2.0, 1.0)
     """
+    value, envelope = bounded.value, bounded.envelope
+    if not math.isfinite(computed):
+        return math.inf, math.inf
     with localcontext(CONTEXT):
-        if bounded.envelope > 2 * abs(bounded.value):
-            return 0.0
-        error = abs(Decimal(computed) - bounded.value)
-        return float(error / Decimal(math.ulp(float(bounded.value))))
+        error = abs(Decimal(computed) - value)
+        k = float(error / (_UNIT * envelope + _FLOOR))
+        if not error or envelope > 2 * abs(value):
+            return k, 0.0
+        return k, float(error / Decimal(math.ulp(float(value))))
