@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 from collections import Counter
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from coadjoint.build.compiler import OPTIMIZE
 from coadjoint.resources import derivations_folder
 from tests import specs
 
@@ -55,7 +57,16 @@ PROCESSOR_SECONDS = 300
 
 def pytest_configure(config):
     """Where campaigns are run, proofs of claims are whole certificates."""
-    specs.SEARCH_EVERYWHERE = "not campaign" not in config.option.markexpr
+    everything = "not campaign" not in config.option.markexpr
+    specs.SEARCH_EVERYWHERE = everything
+    if not everything:  # what compilers make of a text is for tests of compilers and of the ladder
+        os.environ.setdefault(OPTIMIZE, "1")
+
+
+@pytest.fixture
+def optimized(monkeypatch):
+    """Compilers do for a test what they do for users."""
+    monkeypatch.delenv(OPTIMIZE, raising=False)
 
 
 def pytest_collection_modifyitems(items):

@@ -111,6 +111,27 @@ def _macros(found):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
+def test_the_environment_lowers_how_much_is_optimised(monkeypatch):
+    """Never more than a source asks for, and with another key of the cache."""
+    found, source = find_compiler(), Source(level=2)
+    most = found.flags("exact")
+    monkeypatch.setenv("COADJOINT_OPTIMIZE", "1")
+    assert "-O1" in found.flags("exact")
+    assert found.flags("exact") != most
+    monkeypatch.setenv("COADJOINT_OPTIMIZE", "3")
+    assert (found.flags("exact"), "-O2" in found.flags("exact", source)) == (most, True)
+
+
+@pytest.mark.parametrize("value", ["4", "-1", "fast", "1.0"])
+def test_another_level_is_refused(monkeypatch, value):
+    """The message says what may stand there, and what to do."""
+    monkeypatch.setenv("COADJOINT_OPTIMIZE", value)
+    with pytest.raises(CompilerError, match=r"expected 0, 1, 2 or 3\. Unset it"):
+        find_compiler().flags("exact")
+    monkeypatch.delenv("COADJOINT_OPTIMIZE")
+    assert "-O3" in find_compiler().flags("exact")
+
+
 @pytest.mark.parametrize(
     "value",
     ["gcc --version; touch x #", "gcc -O0", "-wrapper", "@options", "$(id)", "gcc\n", "a|b"],

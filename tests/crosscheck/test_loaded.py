@@ -25,7 +25,10 @@ from tests.programs import PENDULUM, program
 from tests.specs import RIGID_BODY, spec
 
 TARGETS = tuple(BUILDS)
-pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+pytestmark = [
+    pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine"),
+    pytest.mark.usefixtures("optimized"),
+]
 #: Everything but the version is refused.
 FAILS_ON_KERNELS = '[ "$1" = --version ] && exec {real} --version\nexit 1'
 #: A macro that shortens every loop, behind the definitions of the template.

@@ -56,6 +56,9 @@ _FLAGS = ("-std=c11", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", "-pedant
 _NATIVE, _WIDE = "-march=native", "-mprefer-vector-width=512"
 _IS_X86 = platform.machine().lower() in ("x86_64", "amd64")
 MACHINES = (*(((_NATIVE, _WIDE),) if _IS_X86 else ()), (_NATIVE,), ())
+#: The environment variable that lowers how much is optimised, and its values.
+OPTIMIZE = "COADJOINT_OPTIMIZE"
+_LEVELS = ("0", "1", "2", "3")
 #: Passes of GCC that take more than half of its time on long straight loops and gain nothing there
 #: (docs/decisions/compiler.md has the figures). The last leaves the members that fill no vector to
 #: scalar code, in the place of a second and third copy of the loop with shorter vectors.
@@ -88,8 +91,8 @@ class Source:
         stem: Name of the C file and of its header without their endings.
         defines: Options that choose what is compiled of it, such as ``-DRK4``.
         is_loops: Whether it is long straight loops over members, which need fewer passes of GCC.
-        level: How much is optimised: 3 for what users run; for what is run for some steps alone 0,
-            or 1, from where on products and sums are fused.
+        level: How much is optimised, where the environment asks for no less: 3 for what users run;
+            for what is run for some steps alone 0, or 1, from where on products and sums are fused.
     """
 
     stem: str = "kernel"
@@ -132,11 +135,32 @@ class Compiler:
     def flags(
         self, build: str, source: Source = KERNEL, *, machine: tuple[str, ...] = MACHINES[0]
     ) -> tuple[str, ...]:
-        """Options for one build of a source, ``exact`` or ``fast``, on one of `MACHINES`."""
+        """Options for one build of a source, ``exact`` or ``fast``, on one of `MACHINES`.
+
+        Raises:
+            CompilerError: The environment asks for no level of optimisation.
+        """
         own = _GNU if self.is_gnu and source.is_loops else ()
-        fusing = _FUSING if self.is_gnu and source.level == 1 else ()
-        level = (f"-O{source.level}", *fusing)
-        return (*_FLAGS, *level, *own, *machine, BUILDS[build], *source.defines, *_SHARED)
+        level = min(source.level, _allowed_level())
+        fusing = _FUSING if self.is_gnu and level == 1 else ()
+        suited = (f"-O{level}", *fusing, *own, *machine)
+        return (*_FLAGS, *suited, BUILDS[build], *source.defines, *_SHARED)
+
+
+def _allowed_level() -> int:
+    """How much the environment lets compilers optimise.
+
+    Raises:
+        CompilerError: It says something else than a level.
+    """
+    text = os.environ.get(OPTIMIZE, "").strip() or _LEVELS[-1]
+    if text not in _LEVELS:
+        raise CompilerError(
+            f"{OPTIMIZE} is {text[:40]!r}; expected {', '.join(_LEVELS[:-1])} or {_LEVELS[-1]}. "
+            "Unset it for kernels as fast as they can be; 1 compiles in a third of the time.",
+            found=text[:40],
+        )
+    return int(text)
 
 
 def find_compiler() -> Compiler:
