@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from coadjoint.crosscheck.families import crosscheck_family
-from coadjoint.crosscheck.ladder import Report, crosscheck
+from coadjoint.crosscheck.ladder import LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.indexed import derive_family
@@ -160,7 +160,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
 def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Report:
     """Compile, load and cross-check: the numeric rungs, each of which raises what it refuses."""
     progress("compile and cross-check")
-    with load_texts(rendered.texts) as system:
+    with load_texts(rendered.texts, LEVELS) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
             return crosscheck_family(*given, rendered.texts, own.printed, system)

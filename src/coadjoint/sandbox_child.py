@@ -150,11 +150,11 @@ def _is_want_of_memory(error: Exception) -> bool:
     return refused or getattr(error, "errno", None) == errno.ENOMEM
 
 
-def _function(target: str) -> Callable[[Any], Any]:
+def _function(target: str) -> Callable[..., Any]:
     """The function that a request names, of this package alone."""
     module, _, name = target.partition(":")
     assert module.split(".")[0] == "coadjoint", target
-    function: Callable[[Any], Any] = getattr(import_module(module), name)
+    function: Callable[..., Any] = getattr(import_module(module), name)
     return function
 
 

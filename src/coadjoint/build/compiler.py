@@ -19,7 +19,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -104,6 +104,10 @@ class Source:
     def files(self) -> tuple[str, str]:
         """Its files: the one that is compiled, and the header that this reads."""
         return f"{self.stem}.c", f"{self.stem}.h"
+
+    def at(self, levels: Mapping[tuple[str, str], int], build: str) -> Source:
+        """The same, optimised less where levels by stem and build say so."""
+        return replace(self, level=levels.get((self.stem, build), self.level))
 
     def label(self, name: str) -> str:
         """The symbol of the id that its object carries, for the name of a system."""

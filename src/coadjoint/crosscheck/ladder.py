@@ -36,8 +36,11 @@ from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 from coadjoint.render.solvers import select_programs
 from coadjoint.render.targets import BUILDS, TARGETS
-from coadjoint.solver_kinds import list_kinds
+from coadjoint.solver_kinds import SOLVER, list_kinds
 
+#: How much is optimised what the ladder runs for some points or steps alone, by stem and build: the
+#: kernels of the exact build are those that users load.
+LEVELS: Final = {("kernel", "fast"): 1, (SOLVER.stem, "exact"): 0, (SOLVER.stem, "fast"): 1}
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
 ORACLE_POINTS: Final = 2000

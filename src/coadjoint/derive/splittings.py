@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
 from itertools import permutations, product
@@ -42,6 +43,8 @@ from coadjoint.poisson.structure import PoissonStructure
 MOST = 6
 #: States at which errors are compared, where a component has no default.
 STATES = 6
+#: Digits with which they are computed, as many of which may cancel.
+DIGITS = 40
 #: Work of nested brackets, in products of terms; beyond, parts keep their order.
 WORK = 300_000
 
@@ -216,7 +219,7 @@ class _Search:
         if not partitions:
             raise NoFlowError(f"its energy has more than {MOST} parts that do not commute")
         try:
-            with self.field.budget(WORK):
+            with self.field.budget(WORK), localcontext(prec=DIGITS):
                 brackets = self._find_brackets()
         except BudgetSpent:
             return partitions[0], {}
@@ -308,7 +311,7 @@ def _find_error(brackets: NDArray[np.float64], order: Sequence[Sequence[int]]) -
 
 
 def _number(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
+    return Decimal(value.numerator) / value.denominator
 
 
 def _call(function: str, *arguments: Any) -> Any:
@@ -317,4 +320,9 @@ def _call(function: str, *arguments: Any) -> Any:
     if own is None:
         entry = ELEMENTARY[function]
         raise NoFlowError(f"{entry.name} has no value here")
-    return np.frompyfunc(own, len(arguments), 1)(*arguments)
+
+    def evaluate(*of: Decimal) -> Decimal:
+        with mpmath.workdps(DIGITS):
+            return Decimal(mpmath.nstr(own(*map(str, of)), DIGITS))
+
+    return np.frompyfunc(evaluate, len(arguments), 1)(*arguments)

@@ -184,7 +184,7 @@ class FamilySystem(System):
         """
         size = check_sizes(self.name, self.index, self.small, sizes)
         state, shared, indexed, observables, functions, elementary = self._declared
-        return FamilySystem(
+        made = FamilySystem(
             self.name,
             str(self.folder / "__init__.py"),
             (replace(self.index, size=size), self.small),
@@ -204,6 +204,8 @@ class FamilySystem(System):
             spheres=self.spheres,
             positions=self.positions,
         )
+        made.levels = self.levels
+        return made
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
         """A quantity of a member as one of all members, component after component.

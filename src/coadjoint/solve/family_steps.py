@@ -354,7 +354,8 @@ def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
     def verify(library: Library) -> None:
         compare_steps(system, choice, target, library)
 
-    given = (system.folder, system.name, system.id, "exact", verify, choice.source)
+    source = choice.source.at(system.levels, "exact")
+    given = (system.folder, system.name, system.id, "exact", verify, source)
     return FamilyStepper(system, choice, target, load_library(*given))
 
 

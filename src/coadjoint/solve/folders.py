@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from coadjoint.errors import CoadjointError, OutputError, system_error
@@ -46,14 +47,23 @@ def load_folder(folder: Path) -> System:
 
 
 @contextmanager
-def load_texts(texts: Mapping[str, str]) -> Iterator[System]:
-    """The System of generated files that are only texts yet, for the length of a block."""
+def load_texts(
+    texts: Mapping[str, str], levels: Mapping[tuple[str, str], int] = MappingProxyType({})
+) -> Iterator[System]:
+    """The System of generated files that are only texts yet, for the length of a block.
+
+    Args:
+        texts: The files by name.
+        levels: How much compilers optimise, as in `System`.
+    """
     from coadjoint.build.cache import working_folder
 
     with working_folder() as folder:
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
-        yield load_folder(folder)
+        system = load_folder(folder)
+        system.levels = levels
+        yield system
 
 
 def _execute(folder: Path, spec: ModuleSpec | None) -> Any:

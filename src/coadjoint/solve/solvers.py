@@ -152,5 +152,6 @@ def load(system: System, choice: Choice, target: str) -> CStepper:
     def verify(library: Library) -> None:
         compare_steps(system, choice, target, make(library), NumpyStepper(system, choice))
 
-    build, source = FLAGS[target], choice.source
+    build = FLAGS[target]
+    source = choice.source.at(system.levels, build)
     return make(load_library(system.folder, system.name, system.id, build, verify, source))

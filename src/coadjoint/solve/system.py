@@ -63,7 +63,11 @@ class System(Functions):
         unit_of_time: The unit of the time, also where the system does not depend on it.
         written: The index of members that are all written out, and their number; else None.
         METHODS: Methods that keep structure, with what each keeps of this system.
+        levels: How much compilers optimise, by stem and build, where that is less than they can;
+            see `coadjoint.build.compiler.Source`.
     """
+
+    levels: Mapping[tuple[str, str], int] = MappingProxyType({})
 
     def __init__(
         self,

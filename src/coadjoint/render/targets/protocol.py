@@ -33,6 +33,7 @@ class Generated(Protocol):
     id: str
     functions: Mapping[str, tuple[int, ...]]
     elementary: tuple[str, ...]
+    levels: Mapping[tuple[str, str], int]
 
     @property
     def fixed(self) -> Mapping[str, NDArray[Any]]:

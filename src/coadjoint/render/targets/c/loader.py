@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from coadjoint.build.compiler import one_function
+from coadjoint.build.compiler import KERNEL, one_function
 from coadjoint.build.library import Library, find_library, load_library
 from coadjoint.errors import CrossCheckError
 from coadjoint.render.targets.protocol import Call, Evaluate, Generated, Kernel
@@ -58,12 +58,17 @@ class CKernel(Kernel):
             return
         system, flags = self._system, FLAGS[self._build]
         given = (system.folder, system.name, system.id, flags)
-        whole = find_library(*given) if function else load_library(*given, self._verify())
+        kernel, alone = (kind.at(system.levels, flags) for kind in (KERNEL, one_function(function)))
+        whole = (
+            find_library(*given, kernel)
+            if function
+            else load_library(*given, self._verify(), kernel)
+        )
         if whole is not None:
             self._libraries, self.source = dict.fromkeys(system.functions, whole), whole.source
         else:
             verify = self._verify(function)
-            self._libraries[function] = load_library(*given, verify, one_function(function))
+            self._libraries[function] = load_library(*given, verify, alone)
 
     def _verify(self, function: str = "") -> Callable[[Library], None]:
         """What compares a function of a fresh library with NumPy, or all of them."""
