@@ -79,17 +79,21 @@ def killable():
     ]
 
 
+#: Controls of every run; the others repeat what the suite proves and tests without a judge.
+CONTROLS = 3
+
+
 def judged():
     """Routes with the systems that judge their mutants."""
-    regular = {(m.route, s) for m in choose_regular() for s in m.systems}
     pairs = sorted({(m.route, s) for m in ROUTE_MUTANTS for s in m.systems})
+    regular = sorted({(m.route, s) for m in choose_regular() for s in m.systems})[:CONTROLS]
     return [pytest.param(*pair, marks=in_campaigns(regular, pair)) for pair in pairs]
 
 
 def judging():
     """Source tests that judge mutants."""
-    regular = {test for m in choose_regular() for test in m.tests}
     tests = sorted({test for m in ROUTE_MUTANTS for test in m.tests})
+    regular = sorted({test for m in choose_regular() for test in m.tests})[:CONTROLS]
     return [pytest.param(test, marks=in_campaigns(regular, test)) for test in tests]
 
 
