@@ -107,7 +107,8 @@ class KernelFunction:
         turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
         below: What follows the rows of the state in its first argument: what is reconstructed,
-            a vector with a row for each of them, or one with a row for each Wiener process.
+            a vector with a row for each of them, one with a row for each Wiener process, or one
+            with a sign for each kink.
         looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
@@ -119,7 +120,7 @@ class KernelFunction:
     turning: str = ""
     turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: Literal["", "reconstructed", "vector", "noise"] = ""
+    below: Literal["", "reconstructed", "vector", "noise", "sides"] = ""
     looped: Literal["", "only", "never"] = ""
 
 

@@ -92,6 +92,8 @@ _DRIVEN_RUN: Final = (
     ("slopes", _PLACE),
     ("now", _PLACE),
 )
+#: And where there are kinks.
+_SIDED_RUN: Final = (("joined", _PLACE),)
 #: ``NAME_solver_ensemble``, likewise.
 _ENSEMBLE: Final = (
     ("sizes", _PLACE),
@@ -144,6 +146,11 @@ class FamilyTwin(StepwiseStepper):
         self._members, self._family = system.fixed["sizes"], system
         #: Rows of inputs, and the time below them.
         self.driving_rows = system.INPUTS.size + system.TIME.size
+        #: Which rates are integrated: those of given signs where there are kinks.
+        self._rates_name = "sided_rhs" if "kinks" in system.functions else "rhs"
+        if "kinks" in system.functions:
+            self._sizes |= {n: system.rows(n).size for n in ("kinks", "sided_rhs")}
+            self._limits = replace(self._limits, kinks=partial(self._evaluate, ("kinks",)))
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
@@ -156,6 +163,12 @@ class FamilyTwin(StepwiseStepper):
             "along": partial(self._evaluate, ("noise_vector",)),
             "processes": self._family.NOISE.size,
         }
+
+    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The rates, on the sides of the step where there are kinks."""
+        if lanes.sides is not None:
+            state = np.concatenate([state, lanes.sides])
+        return self._evaluate((self._rates_name,), lanes, after, state)
 
     def _method(self, run: Ensemble) -> Method:
         """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
@@ -185,7 +198,7 @@ class FamilyTwin(StepwiseStepper):
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
         driven = (lanes.driving, lanes.slopes) if self.driving_rows else ()
-        given = (lanes.state, lanes.parameters, *driven, self._members)
+        given = (lanes.state, lanes.given, *driven, self._members)
         path: Array = self._series(*given, order)
         return path
 
@@ -203,14 +216,18 @@ class FamilyStepper(FamilyTwin):
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
         others = ("projection", "noise_vector")
-        called = {"rates": "rhs"} | {n: n for n in others if n in system.functions}
+        called = {"rates": self._rates_name}
+        called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
-        self._run_type = _make_structure(tuple(called), (*_RUN, *_DRIVEN_RUN * is_driven))
+        is_led = self._limits.kinks is not None
+        fields = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * is_led)
+        self._run_type = _make_structure(tuple(called), fields)
         has_noise = bool(system.NOISE)
         fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
         self._ensemble_type = _make_structure(tuple(called), fields)
-        names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
+        own = () if is_led else ("advance", "work")
+        names = (*own, *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
         self.first_work = max(1, FIRST_NUMBERS // system.STATE.size)
@@ -218,8 +235,8 @@ class FamilyStepper(FamilyTwin):
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
-        """As `Stepper.advance`; the twin leads steps that are recorded."""
-        if record is not None:
+        """As `Stepper.advance`; the twin leads steps that are recorded, or that end at kinks."""
+        if record is not None or self._limits.kinks is not None:
             return super().advance(ensemble, first, last, work, record)
         given = self._describe(ensemble, first, last)
         given.work = work
@@ -278,6 +295,9 @@ class FamilyStepper(FamilyTwin):
         if self.driving_rows:
             given.driving_rows = self.driving_rows
             given.driving, given.slopes = lanes.driving.ctypes.data, lanes.slopes.ctypes.data
+        if lanes.sides is not None:
+            lanes.joined = np.concatenate([state, lanes.sides])
+            given.joined = lanes.joined.ctypes.data
         return given
 
     def _provide(self, size: int) -> int:

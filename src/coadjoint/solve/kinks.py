@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Roundings of time: a kink in time is met again where the time after it is rounded to before it.
 ROUNDINGS = 2.0**-47
+#: Kinks that are named where all are told of in one line.
+SHOWN = 6
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class Kinks:
         )
 
     def __repr__(self) -> str:
-        return f"<Kinks: {len(self)} of {', '.join(self.names)}>"
+        told = [*self.names[:SHOWN], *(["..."] * (len(self.names) > SHOWN))]
+        return f"<Kinks: {len(self)} of {', '.join(told)}>"
 
 
 def list_kinks_met(run: Ensemble, names: tuple[str, ...], batch: Place) -> Kinks | None:
