@@ -183,7 +183,7 @@ def lower_family(family: Family) -> dict[str, Loops]:
     if family.noise:
         functions.append(lowering.noise())
     held = hold_family(family)
-    if held is not None and held.kinks:
+    if held is not None:
         functions.append(_Lowering(held.family).rates("sided_rhs"))
         functions.append(_Lowering(held.family).kinks(held))
     return {each.name: each for each in functions}

@@ -29,13 +29,11 @@ class HeldFamily:
         family: It, with these signs as ``sides``.
         kinks: What they are the signs of, for member i.
         ends: The same for members at the ends of an open chain, as in `Family.ends`.
-        wholly: Whether all signs are given: those in sums over pairs are not.
     """
 
     family: Family
     kinks: tuple[Tree, ...]
     ends: Mapping[int, tuple[Tree, ...]]
-    wholly: bool = True
 
 
 @dataclass(frozen=True)
@@ -66,19 +64,37 @@ def hold_family(family: Family) -> HeldFamily | None:
 def name_kinks(family: Family) -> dict[int | None, tuple[str, ...]]:
     """What is 0 at the kinks of member i, as text, and of those at the ends by their places."""
     held, i = hold_family(family), family.index.name
-    if held is None or not held.kinks:
+    if held is None:
         return {}
     names = {each: f"{each.name}[{i}]" for each in family.own}
     for (each, shift), symbol in held.family.neighbours.items():
         names[symbol] = f"{each.name}[{i}{shift:+d}]"
     for (each, number), symbol in family.singles.items():
         names[symbol] = f"{each.name}[{number if number >= 0 else f'N{number}'}]"
-    shown = {symbol: sympy.Symbol(name) for symbol, name in names.items()}
     places = {None: held.kinks} | dict(held.ends)
     return {
-        place: tuple(str(tree.xreplace(shown)).replace("**", "^") for tree in trees)
-        for place, trees in places.items()
+        place: tuple(_write(tree, names) for tree in trees) for place, trees in places.items()
     }
+
+
+def name_pair_kinks(family: Family) -> tuple[str, ...]:
+    """What is 0 at the kinks of the terms of pairs, as text: these signs are not given."""
+    i, terms = family.index.name, [each.term for each in family.pair_sums]
+    names = {each: f"{each.name}[{i}]" for each in family.own}
+    names |= {other: f"{own.name}[{other_index(i)}]" for own, other in family.partners.items()}
+    found = _Holding(family).list_signs(terms)
+    return tuple(dict.fromkeys(_write(side.argument, names) for side in found.values()))
+
+
+def other_index(name: str) -> str:
+    """The name of the other index of a sum over pairs."""
+    return "j" if name != "j" else "k"
+
+
+def _write(tree: Tree, names: Mapping[Symbol, str]) -> str:
+    """A tree in the names of members."""
+    shown = {symbol: sympy.Symbol(name) for symbol, name in names.items()}
+    return str(tree.xreplace(shown)).replace("**", "^")
 
 
 class _Holding:
@@ -91,7 +107,8 @@ class _Holding:
         moving = {*family.states, *inputs, *family.time, *sums}
         near = {s for (each, _), s in family.neighbours.items() if each in moving}
         single = {s for (each, _), s in family.singles.items() if each in moving}
-        self._moving = moving | near | single
+        others = {other for each, other in family.partners.items() if each in moving}
+        self._moving = moving | near | single | others
         self._places = {each: (each, 0) for each in family.own}
         self._places |= {symbol: key for key, symbol in family.neighbours.items()}
         self._neighbours = dict(family.neighbours)
@@ -101,14 +118,13 @@ class _Holding:
         """The rates with given signs."""
         family = self.family
         places = {None: family.rates} | dict(family.ends)
-        signs = {place: self._list_signs(rates) for place, rates in places.items()}
+        signs = {place: self.list_signs(rates) for place, rates in places.items()}
         for found in signs.values():
             for side in found.values():
                 name = f"{SIDE}{len(self._sides) + 1}"
                 self._sides.setdefault(side.argument, sympy.Symbol(name))
-        wholly = not any(self._list_signs([each.term]) for each in family.pair_sums)
         if not self._sides:
-            return None if wholly else HeldFamily(family, (), {}, wholly=False)
+            return None
         held = {place: self._replace(rates, signs[place]) for place, rates in places.items()}
         rates = held.pop(None)
         own = replace(
@@ -131,9 +147,9 @@ class _Holding:
         firsts = range(max((place + 1 for place in ends if place >= 0), default=0))
         lasts = range(min((place for place in ends if place < 0), default=0), 0)
         ends = {place: ends.get(place, kinks) for place in (*firsts, *reversed(lasts))}
-        return HeldFamily(own, kinks, ends, wholly)
+        return HeldFamily(own, kinks, ends)
 
-    def _list_signs(self, trees: tuple[Tree, ...] | list[Tree]) -> dict[Tree, _Side]:
+    def list_signs(self, trees: tuple[Tree, ...] | list[Tree]) -> dict[Tree, _Side]:
         """The signs and absolute values in trees whose argument moves."""
         found = dict[Tree, _Side]()
         for tree in trees:

@@ -22,7 +22,7 @@ from coadjoint.derive.emitted import list_following
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
-from coadjoint.lower.family_kinks import name_kinks
+from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.families import Loops
 from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
@@ -128,6 +128,7 @@ def family_context(
         index=family.index,
         small=family.small,
         kinks=name_kinks(family),
+        pair_kinks=name_pair_kinks(family),
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),

@@ -305,6 +305,7 @@ class FamilyContext:
             of its radius.
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
+        pair_kinks: What is zero at the kinks of the terms of pairs.
     """
 
     name: str
@@ -332,6 +333,7 @@ class FamilyContext:
     spheres: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     positions: tuple[int, ...] = ()
     kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
+    pair_kinks: tuple[str, ...] = ()
 
     @property
     def held(self) -> Loops:
@@ -432,6 +434,10 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *(f"{name.lower()}={name}" for name in _declare_driving(context)),
             *(["methods=METHODS"] * bool(context.methods)),
             *(["kinks=KINKS"] * bool(context.kinks)),
+            *(
+                [f"pair_kinks={tuple_text(map(quote, context.pair_kinks))}"]
+                * bool(context.pair_kinks)
+            ),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),

@@ -55,6 +55,7 @@ class FamilySystem(System):
             its radius, if a member has nothing else.
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of members at the ends by their places.
+        pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -83,9 +84,11 @@ class FamilySystem(System):
         spheres: Mapping[str, tuple[int, ...]] = MappingProxyType({}),
         positions: tuple[int, ...] = (),
         kinks: Mapping[int | None, tuple[str, ...]] = MappingProxyType({}),
+        pair_kinks: tuple[str, ...] = (),
     ) -> None:
         self.index, self.small = index
-        self.spheres, self.positions, self.kinks = spheres, positions, kinks
+        self.spheres, self.positions = spheres, positions
+        self.kinks, self.pair_kinks = kinks, pair_kinks
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -128,8 +131,9 @@ class FamilySystem(System):
             return Quantities(*self.STATE.values(), *self.NOISE.values())
         if KERNEL_FUNCTIONS[function].below == "sides":
             count = len(self.kinks.get(None, ()))
-            sides = (Quantity(each, (), "1", (each,)) for each in map("side{}".format, range(1, count + 1)))
-            return Quantities(*self.STATE.values(), *(self._repeat(each, self.size) for each in sides))
+            names = [f"side{n}" for n in range(1, count + 1)]
+            sides = [self._repeat(Quantity(each, (), "1", (each,)), self.size) for each in names]
+            return Quantities(*self.STATE.values(), *sides)
         return super().rows(function)
 
     def list_kinks(self) -> tuple[str, ...]:
@@ -141,11 +145,12 @@ class FamilySystem(System):
             first = {self.index.name: member, "N": size}.get(found[1], 0)
             return f"[{(first + int(found[2] or 0)) % size}]"
 
+        own = self.kinks.get(None, ())
         return tuple(
-            re.sub(rf"\[({i}|N|)([+-]?\d+)?\]", partial(number, member=n), places.get(n, own)[row])
-            for own in [self.kinks.get(None, ())]
+            re.sub(rf"\[({i}|N|)([+-]?\d+)?\]", partial(number, member=n), rows[row])
             for row in range(len(own))
             for n in range(size)
+            for rows in [places.get(n, own)]
         )
 
     @property
@@ -227,6 +232,7 @@ class FamilySystem(System):
             spheres=self.spheres,
             positions=self.positions,
             kinks=self.kinks,
+            pair_kinks=self.pair_kinks,
         )
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:

@@ -495,6 +495,13 @@ def find_stepper(
         target: Who computes the rates.
         inputs: A function of Python, which only the twin can call.
     """
+    if system.pair_kinks:
+        say_once(
+            f"steps of {system.name} do not end at the kinks of pairs of members, where "
+            f"{' or '.join(system.pair_kinks)} is 0: they cross them with an error, and with fixed "
+            "steps a method loses its order there. Take tolerances that fit the jump, or a sum "
+            "that is smooth."
+        )
     if inputs is not None:
         return FamilyTwin(system, choice, target, inputs)
     if (choice, target) not in system.steppers:
