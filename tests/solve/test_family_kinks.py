@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from coadjoint import pipeline
+from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower import families, family_kinks
 from coadjoint.lower.families import lower_family
@@ -132,13 +133,12 @@ def test_methods_keep_their_order_across_kinks(monkeypatch, held):
                 exact = [[arc(t + shift) for t in found.time] for shift in late]
                 errors.append(np.abs(found["q"] - exact).max())
             slope = math.log(errors[0] / errors[-1]) / math.log(steps[0] / steps[-1])
-            assert slope > order - 0.3 if held else slope < 1.6, errors
+            assert slope > order - 0.5 if held else slope < 1.6, errors
             assert (found.kinks is None) is not held
 
 
 def test_members_of_a_chain_move_as_those_that_are_written_out():
     """Kinks between neighbours, at the ends of the chain and in time, in both targets."""
-    own = "abcd"
     texts = {f"q_{n}": f'q_{n} = {{ role = "coordinate" }}' for n in range(4)}
     texts |= {f"p_{n}": f'p_{n} = {{ role = "momentum", of = "q_{n}" }}' for n in range(4)}
     energy = [f"p_{n}^2/2 + q_{n}^2/2 + max(t - 1, 0)*q_{n}" for n in range(4)]
@@ -154,7 +154,6 @@ h = "{" + ".join(energy)}"
 [time]
 name = "t"
 """
-    assert len(own) == 4
     start = np.array([0.3, -0.4, 0.9, -1.2, 0.0, 0.8, 0.0, -0.5])
     run = {"rtol": 1e-11, "atol": 1e-11}
     with load(written) as single, load(LINKED) as chain:
@@ -209,9 +208,14 @@ def test_wrong_rates_of_a_side_are_seen():
         check_loops(family, {**loops, "sided_rhs": wrong})
 
 
-def test_the_ladder_is_climbed():
+@pytest.mark.parametrize("targets", [("numpy",), pytest.param(None, marks=pytest.mark.campaign)])
+def test_the_ladder_is_climbed(targets):
     """Rungs 3 to 5 of rates with given signs, and of what these are the signs of."""
-    report = pipeline.verify(pipeline.render(read_spec_text(LINKED, "linked.toml")))
+    rendered = pipeline.render(read_spec_text(LINKED, "linked.toml"))
+    own = rendered.family
+    with load_texts(rendered.texts) as system:
+        given = (own.windows, own.declared, own.family, own.context)
+        report = crosscheck_family(*given, rendered.texts, own.printed, system, targets)
     for name in ("sided_rhs", "kinks"):
         assert report.lines[name] > 0
         assert all(figures.points > 20 for figures in report.figures[name].values())

@@ -327,7 +327,9 @@ def _check_window(
             own = state[: len(window.state)]
             now = times[n] if window.time else None
             given = own, parameters[n], inputs[n] if window.inputs else None
-            state[len(own) :] = np.sign(sized.evaluate("kinks", *given, time=now, target=targets[0]))
+            state[len(own) :] = np.sign(
+                sized.evaluate("kinks", *given, time=now, target=targets[0])
+            )
     points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
     known = {n: v for n, each in enumerate(points) for v in _evaluate(window, loops, each)}
     if not known:

@@ -182,7 +182,9 @@ class _Sides(_Symbols):
         """The symbol of a name, of neighbours that no rate reads as well."""
         if read.shift and not read.of_partner:
             own = super().find(replace(read, shift=0), name)
-            return self._family.neighbours.get((own, read.shift), sympy.Symbol(f"{own} {read.shift}"))
+            return self._family.neighbours.get(
+                (own, read.shift), sympy.Symbol(f"{own} {read.shift}")
+            )
         return super().find(read, name)
 
     def find(self, read: Read, function: str) -> Symbol:
@@ -209,7 +211,11 @@ class _Sides(_Symbols):
 
     def _look_up(self, inner: Tree) -> tuple[int, int, int] | None:
         """Of which row and neighbour an argument is, and with which sign."""
-        shifts = {shift for s in inner.free_symbols & self._places.keys() for shift in [self._places[s][1]]}
+        shifts = {
+            shift
+            for s in inner.free_symbols & self._places.keys()
+            for shift in [self._places[s][1]]
+        }
         for shift in sorted({0, *shifts}):
             for row, argument in enumerate(self.arguments):
                 moved = self._move(argument, shift)

@@ -2,7 +2,7 @@
 
 Comes in: a Family. Goes out: the same with the sign of each argument that moves as a further symbol
 of a member, and these arguments. An argument such as ``q[i+1] - q[i]`` belongs to its first member,
-so that both members which it pushes read one sign, as they read other things of a neighbour.
+so that both members that it pushes read one sign, as they read other things of a neighbour.
 Read next: `coadjoint.lower.families`; for other systems `coadjoint.lower.kinks`.
 """
 
@@ -72,9 +72,7 @@ def name_kinks(family: Family) -> dict[int | None, tuple[str, ...]]:
     for (each, number), symbol in family.singles.items():
         names[symbol] = f"{each.name}[{number if number >= 0 else f'N{number}'}]"
     places = {None: held.kinks} | dict(held.ends)
-    return {
-        place: tuple(_write(tree, names) for tree in trees) for place, trees in places.items()
-    }
+    return {place: tuple(_write(tree, names) for tree in trees) for place, trees in places.items()}
 
 
 def name_pair_kinks(family: Family) -> tuple[str, ...]:
@@ -181,9 +179,7 @@ class _Holding:
         key = component, shift
         return self._neighbours.setdefault(key, sympy.Symbol(f"{component}[{shift:+d}]"))
 
-    def _replace(
-        self, rates: tuple[Tree, ...], signs: Mapping[Tree, _Side]
-    ) -> tuple[Tree, ...]:
+    def _replace(self, rates: tuple[Tree, ...], signs: Mapping[Tree, _Side]) -> tuple[Tree, ...]:
         """Rates with given signs."""
         given = dict[Tree, Tree]()
         for sign, side in signs.items():

@@ -24,7 +24,7 @@ from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.ensemble import MET, Ensemble, Inputs
 from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.methods.sequence import Maps
@@ -64,6 +64,8 @@ CLOSE: Final = 1e-9
 #: Bytes of series of pairs of one trajectory beyond which ``dop853`` is faster:
 #: docs/decisions/family-kernels.md.
 KEPT_NEAR: Final = 1 << 17
+#: Kinks of which a call can tell: so many steps that meet all of them, and further ones.
+KINK_ROOM, MET_ROOM = 8, 1 << 12
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
@@ -116,6 +118,10 @@ _ENSEMBLE: Final = (
 _NOISE: Final = (("processes", _SIZE), ("seed", ctypes.c_uint64), ("bound", _DOUBLE))
 #: Likewise, and the lines of inputs.
 _DRIVEN: Final = (("driving_rows", _SIZE),)
+_KINKED: Final = (
+    *((name, _PLACE) for name in ("crossed", "brief", "met")),
+    *((name, _SIZE) for name in ("met_room", "met_count")),
+)
 _INPUTS: Final = (
     *((name, _PLACE) for name in ("knots", "inputs", "input_slopes")),
     ("pieces", _SIZE),
@@ -215,19 +221,19 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        others = ("projection", "noise_vector")
+        others = ("projection", "noise_vector", "kinks")
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
-        is_led = self._limits.kinks is not None
-        fields = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * is_led)
+        has_kinks = self._limits.kinks is not None
+        fields = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
         self._run_type = _make_structure(tuple(called), fields)
         has_noise = bool(system.NOISE)
         fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
+        fields = (*fields, *_KINKED * has_kinks)
         self._ensemble_type = _make_structure(tuple(called), fields)
-        own = () if is_led else ("advance", "work")
-        names = (*own, *FUNCTIONS.get(choice.name, ()))
+        names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
         self.library, self._own = library, threading.local()
         self.first_work = max(1, FIRST_NUMBERS // system.STATE.size)
@@ -235,13 +241,19 @@ class FamilyStepper(FamilyTwin):
     def advance(
         self, ensemble: Ensemble, first: int, last: int, work: int, record: Record | None = None
     ) -> int:
-        """As `Stepper.advance`; the twin leads steps that are recorded, or that end at kinks."""
-        if record is not None or self._limits.kinks is not None:
+        """As `Stepper.advance`; the twin leads steps that are recorded."""
+        if record is not None:
             return super().advance(ensemble, first, last, work, record)
         given = self._describe(ensemble, first, last)
         given.work = work
         given.scratch = self._provide(self._functions["work"](ctypes.byref(given)))
-        return self._functions["advance"](ctypes.byref(given))
+        met = np.empty((ensemble.sides * KINK_ROOM + MET_ROOM * bool(ensemble.sides), MET))
+        if ensemble.sides:
+            given.met, given.met_room = met.ctypes.data, len(met)
+        on = self._functions["advance"](ctypes.byref(given))
+        if ensemble.sides and given.met_count:
+            ensemble.met.append(met[: given.met_count].copy())
+        return int(on)
 
     def _describe(self, run: Ensemble, first: int, last: int) -> Any:
         """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
@@ -274,6 +286,8 @@ class FamilyStepper(FamilyTwin):
             for name, array in (lines | {"input_slopes": run.inputs.slopes}).items():
                 assert array.flags.c_contiguous, name
                 setattr(given, name, array.ctypes.data)
+        if run.kinks is not None and run.brief is not None:
+            given.crossed, given.brief = run.kinks.ctypes.data, run.brief.ctypes.data
         for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
@@ -406,7 +420,8 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
         for stepper, run in ((fresh, found), (twin, expected)):
             while stepper.advance(run, 0, members, 5):
                 pass
-        for name in (*COMPARED, *(LEFT if structured and exact else ())):
+        kinked = ("kinks", "brief") if system.kinks else ()
+        for name in (*COMPARED, *(LEFT if structured and exact else ()), *kinked):
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
@@ -447,6 +462,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         remembered=choice.count_memory(system.STATE.size, searches=False),
         is_implicit=choice.is_structured,
         has_clock=False,
+        sides=len(system.list_kinks()),
     )
     run.begin(0.0)
     return run
