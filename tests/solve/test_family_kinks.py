@@ -40,7 +40,8 @@ FREE = f'{HEAD}h = "sum(i, p[i]^2/2 + k[i]*abs(q[i]))"\n'
 ARCS = f'{HEAD}h = "sum(i, p[i]^2/2 + q[i]^2/2 + k[i]*abs(q[i]))"\n'
 #: Springs that only push, stops that only hold, and a force that begins with time, of a chain.
 LINKED = f"""{HEAD}
-h = \"\"\"sum(i, p[i]^2/2 + k[i]*q[i]^2/2) + sum(i, max(q[i+1] - q[i], 0)^2) + sum(i, abs(q[i-1] - q[i+1] - 1))
+h = \"\"\"sum(i, p[i]^2/2 + k[i]*q[i]^2/2) + sum(i, max(q[i+1] - q[i], 0)^2)
+  + sum(i, abs(q[i-1] - q[i+1] - 1))
   + max(t - 1, 0)*sum(i, q[i])\"\"\"
 [time]
 name = "t"
@@ -157,7 +158,7 @@ name = "t"
     start = np.array([0.3, -0.4, 0.9, -1.2, 0.0, 0.8, 0.0, -0.5])
     run = {"rtol": 1e-11, "atol": 1e-11}
     with load(written) as single, load(LINKED) as chain:
-        names = {name: value for name, value in zip(texts, start.tolist(), strict=True)}
+        names = dict(zip(texts, start.tolist(), strict=True))
         expected = single.simulate(names, (0, 12), **run)
         assert len(expected.kinks) > 15
         four = chain.resize({"i": 4})
@@ -193,7 +194,7 @@ def test_a_wrong_kink_is_seen(place):
     else:
         last = dict(kinks.ends)[-1]
         wrong = replace(kinks, ends=((-1, last), (-2, last)))
-    with pytest.raises(CrossCheckError, match="rung 2: (kinks|sided_rhs)"):
+    with pytest.raises(CrossCheckError, match=r"rung 2: (kinks|sided_rhs)"):
         check_loops(family, {**loops, "kinks": wrong})
 
 

@@ -67,10 +67,10 @@ def check_sides(family: Family, rates: Loops, kinks: Loops) -> None:
     assert len(places) == 1 + len(family.ends), rates.name
     assert sides.read, rates.name
     sides.check_members(rates)
-    if rates.partners is not None:
-        terms = [each.term for each in family.pair_sums]
-        for part in (rates.partners, *([kinks.partners] * bool(kinks.partners))):
-            _check_part(rates.name, part, sides.of_both(terms), sides, ())
+    terms = [each.term for each in family.pair_sums]
+    for pairs in (rates.partners, kinks.partners):
+        if pairs is not None:
+            _check_part(rates.name, pairs, sides.of_both(terms), sides, ())
 
 
 class _Symbols:
@@ -191,7 +191,8 @@ class _Sides(_Symbols):
         count = len(self._family.states)
         if read.array != "state" or read.blocks < count:
             return super().find(read, function)
-        assert read.rows == 0 and read.shift is not None and not read.of_partner, read
+        assert (read.rows, read.of_partner) == (0, False), read
+        assert read.shift is not None, read
         return self._find_side(read.blocks - count, read.shift)
 
     def _find_side(self, row: int, shift: int) -> Symbol:

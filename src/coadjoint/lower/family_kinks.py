@@ -115,20 +115,19 @@ class _Holding:
     def hold(self) -> HeldFamily | None:
         """The rates with given signs."""
         family = self.family
-        places = {None: family.rates} | dict(family.ends)
-        signs = {place: self.list_signs(rates) for place, rates in places.items()}
+        signs: dict[int | None, dict[Tree, _Side]] = {None: self.list_signs(family.rates)}
+        for end, rates in family.ends.items():
+            signs[end] = self.list_signs(rates)
         for found in signs.values():
             for side in found.values():
                 name = f"{SIDE}{len(self._sides) + 1}"
                 self._sides.setdefault(side.argument, sympy.Symbol(name))
         if not self._sides:
             return None
-        held = {place: self._replace(rates, signs[place]) for place, rates in places.items()}
-        rates = held.pop(None)
         own = replace(
             family,
-            rates=rates,
-            ends=held,
+            rates=self._replace(family.rates, signs[None]),
+            ends={each: self._replace(rates, signs[each]) for each, rates in family.ends.items()},
             neighbours=self._neighbours,
             sides=tuple(self._sides.values()),
         )

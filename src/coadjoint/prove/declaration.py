@@ -22,8 +22,8 @@ from coadjoint.derive.emitted import list_following
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
-from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.families import Loops
+from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod

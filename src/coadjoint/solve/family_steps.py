@@ -227,10 +227,15 @@ class FamilyStepper(FamilyTwin):
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
         has_kinks = self._limits.kinks is not None
-        fields = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
-        self._run_type = _make_structure(tuple(called), fields)
+        parts = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
+        self._run_type = _make_structure(tuple(called), parts)
         has_noise = bool(system.NOISE)
-        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
+        fields: tuple[Any, ...] = (
+            *_ENSEMBLE,
+            *_DRIVEN * is_driven,
+            *_INPUTS * has_inputs,
+            *_NOISE * has_noise,
+        )
         fields = (*fields, *_KINKED * has_kinks)
         self._ensemble_type = _make_structure(tuple(called), fields)
         names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
