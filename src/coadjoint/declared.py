@@ -69,9 +69,10 @@ class Bound:
     """What a row of the function ``domain`` is: positive where a system is defined.
 
     Attributes:
-        name: Of the condition; of the acceleration, or of the reaction, whose pivot it is; of the
-            velocity that a Legendre transform gives.
-        kind: ``condition``, ``acceleration``, ``reaction``, ``transform`` or ``iteration``.
+        name: Of the condition, or of what keeps surfaces apart; of the acceleration, or of the
+            reaction, whose pivot it is; of the velocity that a Legendre transform gives.
+        kind: ``condition``, ``contact``, ``acceleration``, ``reaction``, ``transform`` or
+            ``iteration``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """
@@ -88,7 +89,7 @@ class Bound:
             return f"argument of a root in {self.name}"
         if self.kind == "iteration":
             return f"pivot of {self.name} in d2l/dxi2"
-        return self.name if self.kind == "condition" else f"pivot of {self.name}"
+        return self.name if self.kind in ("condition", "contact") else f"pivot of {self.name}"
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,8 @@ class KernelFunction:
         turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
         below: What follows the rows of the state in its first argument: what is reconstructed,
-            a vector with a row for each of them, or one with a row for each Wiener process.
+            a vector with a row for each of them, one with a row for each Wiener process, or one
+            with a sign for each kink.
         looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
@@ -119,7 +121,7 @@ class KernelFunction:
     turning: str = ""
     turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: Literal["", "reconstructed", "vector", "noise"] = ""
+    below: Literal["", "reconstructed", "vector", "noise", "sides"] = ""
     looped: Literal["", "only", "never"] = ""
 
 

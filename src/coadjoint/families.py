@@ -122,6 +122,8 @@ class Family:
         noise_ends: The same of members that lack a neighbour, as in ``ends``.
         shared_noise: Symbols of the increments of processes that move all members.
         indexed_noise: Symbols of those of member i; its neighbours have others.
+        sides: Symbols of given signs at the kinks of member i, where the rates are those of given
+            signs; its neighbours have others.
     """
 
     index: Index
@@ -147,6 +149,7 @@ class Family:
     noise_ends: Mapping[int, tuple[Tree, ...]] = field(default_factory=dict)
     shared_noise: tuple[Symbol, ...] = ()
     indexed_noise: tuple[Symbol, ...] = ()
+    sides: tuple[Symbol, ...] = ()
 
     @property
     def own(self) -> tuple[Symbol, ...]:

@@ -139,6 +139,25 @@ processes that move all members, then those of members, process by process.""",
         looped="only",
     ),
     KernelFunction(
+        name="sided_rhs",
+        summary="Time derivative of the state with given signs at the kinks",
+        shape="(n, *batch)",
+        doc="""Only systems of equal members have it whose rates have
+[kinks](simulation.md#kinks). Its
+first argument is the state with these signs below it, one for each row of `kinks`. With the signs
+of `kinks` this is `rhs`; solvers keep them for a step.""",
+        below="sides",
+        looped="only",
+    ),
+    KernelFunction(
+        name="kinks",
+        summary="What is zero at the kinks of the rates, rows of each member",
+        shape="(m, *batch)",
+        doc="""Only systems that have `sided_rhs` have it. A member that has no such kink, as at an
+end of an open chain, has 1 in its row.""",
+        looped="only",
+    ),
+    KernelFunction(
         name="constraint_residual",
         summary="Left minus right sides of the constraints",
         turning="How far attitudes are from rotations, products and determinants minus 1",

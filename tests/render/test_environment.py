@@ -35,7 +35,7 @@ def test_every_kernel_template_is_rendered():
     parts |= {"c/methods/lie_poisson.c.j2", "c/methods/isospectral_midpoint.c.j2"}
     parts |= {"c/methods/dop853_tables.c.j2", "c/methods/gauss_tables.c.j2", "c/normals.c.j2"}
     parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2", "c/methods/spheres.c.j2"}
-    parts |= {"c/methods/family_steps.c.j2"}  # of family_solver.c.j2
+    parts |= {"c/methods/family_steps.c.j2", "c/methods/family_kinks.c.j2"}  # of family_solver.c.j2
     parts |= {"c/methods/stopping.c.j2"}  # of both
     assert {name for name in present if not name.startswith("document/")} == rendered | parts
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}

@@ -48,5 +48,12 @@ def test_a_ball_larger_than_the_cylinder_is_no_start():
     """Its curvature is less than that of the cylinder: the surfaces cross."""
     state = START.copy()
     state[3] = 3 - 4
-    with pytest.raises(KernelArgumentError, match=r"rolling_(apart|outside)"):
-        built(BALL_INSIDE).simulate(state, t=(0, 1), parameters={"r": 4.0})
+    ball = built(BALL_INSIDE)
+    with pytest.raises(KernelArgumentError, match=r"rolling_(apart|outside)") as caught:
+        ball.simulate(state, t=(0, 1), parameters={"r": 4.0})
+    text = str(caught.value)
+    assert "the body is too large for the surface at the point of contact" in text
+    assert "a ball whose radius is less than the radii of curvature" in text
+    advised = START.copy()
+    advised[3] = 3 - 2.9  # a radius below that of the cylinder, 3
+    assert ball.simulate(advised, t=(0, 0.1), parameters={"r": 2.9}).status == "OK"

@@ -138,6 +138,11 @@ BAD = [
     ),
     (VORTICES, ("size = 6", "size = 1"), "at least 2 for pairs"),
     (
+        CHAIN,
+        ("p[i]^2/2", "p[i, 2]^2/2"),
+        "'p' is one number for each i, found p[i, 2]; expected p[i], without a component",
+    ),
+    (
         VORTICES,
         ('[poisson.brackets]\n"{x, y}" = "1/c[i]"', '[poisson]\nnambu = ["x[i]"]'),
         "brackets or canonical",

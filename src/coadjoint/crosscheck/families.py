@@ -173,6 +173,8 @@ class _Window:
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
         if function == "noise_vector":
             return self._move_by_noise(inputs, state[len(self.state) :].tolist())
+        if function == "sided_rhs":  # at the signs that are those of the point
+            function = "rhs"
         values = oracle(self.reference, function, inputs)
         if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
@@ -319,6 +321,14 @@ def _check_window(
     parameters = source.uniform(0.5, 2.0, (POINTS, len(window.parameters)))
     times = source.normal(size=POINTS).tolist()
     inputs = source.normal(size=(POINTS, len(window.inputs)))
+    if name == "sided_rhs":  # the rates are known for the signs that are those of the state
+        for n, state in enumerate(states):
+            own = state[: len(window.state)]
+            now = times[n] if window.time else None
+            given = own, parameters[n], inputs[n] if window.inputs else None
+            state[len(own) :] = np.sign(
+                sized.evaluate("kinks", *given, time=now, target=targets[0])
+            )
     points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
     known = {n: v for n, each in enumerate(points) for v in _evaluate(window, loops, each)}
     if not known:
@@ -350,13 +360,16 @@ def _evaluate(window: _Window, loops: Loops, point: _Point) -> list[list[Any]]:
     Their envelopes are those of the equations or of the loops, whichever are larger: they may be
     written in different forms, of which one has cancelled what the other subtracts.
     """
+    arrays = {name: getattr(point, name).tolist() for name in ("state", "parameters", "inputs")}
+    arrays["time"] = [point.time]
+    others = evaluate_loops(loops, arrays, window.size)
+    if loops.name == "kinks":  # rung 2 has read these off from the rates
+        return [] if others is None else [others]
     try:
         rows = window.evaluate(loops.name, point)
     except OutsideDomain:
         return []
-    arrays = {name: getattr(point, name).tolist() for name in ("state", "parameters", "inputs")}
-    arrays["time"] = [point.time]
-    others = evaluate_loops(loops, arrays, window.size) or rows
+    others = others or rows
     return [
         [
             replace(row, envelope=max(row.envelope, other.envelope))

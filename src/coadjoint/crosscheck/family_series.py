@@ -268,7 +268,9 @@ def check_series(
             continue
         exact = np.array([[float(each) for each in series[name]] for name in state])
         for target, stepper in steppers.items():
-            found = stepper._expand(_make_lanes(point, given, lines), ORDER)[:, :, 0]
+            lanes = _make_lanes(point, given, lines)
+            stepper._limits.find_sides(lanes)
+            found = stepper._expand(lanes, ORDER)[:, :, 0]
             near = np.abs(found - exact) <= NEAR * np.abs(exact).max(axis=0, initial=1.0)
             if not near.all():
                 row, order = np.argwhere(~near)[0].tolist()

@@ -105,7 +105,7 @@ def _contact(equations: Equations) -> list[tuple[Bound, Element]]:
         return []
     known = kinematics(equations.setting).decided
     found = [(name, known.value(value)) for name, value in touch.bounds]
-    return [(Bound(name, "condition", True, _inputs(equations, v)), v) for name, v in found]
+    return [(Bound(name, "contact", True, _inputs(equations, v)), v) for name, v in found]
 
 
 def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:

@@ -185,6 +185,14 @@ def noise_vector(equations: Equations) -> None:
     """Of equal members alone, whose noise is read off from `noise` of a few of them."""
 
 
+def sided_rhs(equations: Equations) -> None:
+    """Of equal members alone, whose rates with given signs are those of a Family."""
+
+
+def kinks(equations: Equations) -> None:
+    """Of equal members alone, likewise."""
+
+
 def constraint_residual(equations: Equations) -> Rows | None:
     """What vanishes on the constraints, then what vanishes where attitudes are rotations."""
     residuals = [*equations.exact.residuals, *turning_residuals(equations.setting)]

@@ -91,14 +91,10 @@ def _find_duals(matrices: Sequence[SparseMatrix]) -> tuple[SparseMatrix, ...] | 
     )
 
 
-def _trace(a: SparseMatrix, b: SparseMatrix) -> Fraction:
+def _trace(a: SparseMatrix, b: SparseMatrix) -> Any:
     """``tr(A B)``."""
-    return sum((Fraction(x) * b.get((j, i), 0) for (i, j), x in a.items()), Fraction(0))
-
-
-def _multiply(a: list[list[Any]], b: list[list[Any]]) -> list[list[Any]]:
-    columns = list(zip(*b, strict=True))
-    return [[sum(x * y for x, y in zip(row, c, strict=True)) for c in columns] for row in a]
+    common = ((x, b[j, i]) for (i, j), x in a.items() if (j, i) in b)
+    return sum((x * y for x, y in common), Fraction(0))
 
 
 def _find_products(equations: Equations, matrices: Sequence[SparseMatrix]) -> _Basis | None:
@@ -152,11 +148,6 @@ def _is_multiple(rest: SparseMatrix, of: SparseMatrix) -> bool:
     return not combination([(1, rest), (-Fraction(rest.get(place, 0)) / of[place], of)])
 
 
-def _measure(matrix: list[list[Any]], matrices: Sequence[SparseMatrix]) -> list[Any]:
-    """``tr(M E_k)`` for each k."""
-    return [sum(matrix[j][i] * x for (i, j), x in each.items()) for each in matrices]
-
-
 def _emit(equations: Equations, basis: _Basis) -> Equations:
     """The products, the entries of B W by their names."""
     setting, n = equations.setting, size(basis.matrices)
@@ -166,26 +157,18 @@ def _emit(equations: Equations, basis: _Basis) -> Equations:
         [*state, *vector, *setting.parameters, *(x for row in names for x in row), "_bwz"]
     )
 
-    def write(parts: Sequence[str], matrices: Sequence[SparseMatrix]) -> list[list[Any]]:
-        found = [[field.zero] * n for _ in range(n)]
-        for part, each in zip(parts, matrices, strict=True):
-            for (i, j), x in each.items():
-                found[i][j] = found[i][j] + field[part] * Fraction(x)
-        return found
-
-    W, B = write(state, basis.duals), write(vector, basis.matrices)
-    both = _multiply(B, W)
-    named = [[field[name] for name in row] for row in names]
-    rows = _measure(_multiply(named, B), basis.matrices)
-    definitions = [(names[i][j], both[i][j]) for i in range(n) for j in range(n) if both[i][j] != 0]
+    W = combination(zip(map(field.__getitem__, state), basis.duals, strict=True))
+    B = combination(zip(map(field.__getitem__, vector), basis.matrices, strict=True))
+    both = product(B, W)
+    named = {(i, j): field[names[i][j]] for i, j in both}
+    whole = product(named, B)
+    rows = [_trace(whole, each) for each in basis.matrices]
+    definitions = [(names[i][j], both[i, j]) for i, j in sorted(both)]
     if basis.outside is not None:
-        Z = [[field.zero + basis.outside.get((i, j), 0) for j in range(n)] for i in range(n)]
-        turned = _multiply(B, Z)
-        (along,) = _measure(_multiply(named, B), [basis.outside])
-        (less,) = _measure(_multiply(turned, B), [basis.outside])
-        whole = field.zero + _trace(basis.outside, basis.outside)
-        definitions.append(("_bwz", along / (whole - less)))
-        more = _measure(_multiply(turned, B), basis.matrices)
+        turned = product(product(B, basis.outside), B)
+        rest = _trace(basis.outside, basis.outside) - _trace(turned, basis.outside)
+        definitions.append(("_bwz", _trace(whole, basis.outside) / rest))
+        more = [_trace(turned, each) for each in basis.matrices]
         rows = [a + field["_bwz"] * b for a, b in zip(rows, more, strict=True)]
     own = Exact(
         definitions=tuple(definitions),

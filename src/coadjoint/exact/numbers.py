@@ -37,6 +37,19 @@ _SYMPY = Arithmetic(
 )
 
 
+class NumberError(ValueError):
+    """A number that no field of real algebraic numbers has.
+
+    Args:
+        number: As it is written.
+        problem: What is the matter with it, as a clause about it.
+    """
+
+    def __init__(self, number: str, problem: str) -> None:
+        super().__init__(f"{number} {problem}")
+        self.number = number
+
+
 @dataclass(frozen=True)
 class Written:
     """A number as it is written.
@@ -298,7 +311,7 @@ def _real(written: Written) -> Any:
     """The expression of a real number."""
     expression = written.value(_SYMPY)
     if expression.is_real is not True:
-        raise ValueError(f"{written.text} is not a real number")
+        raise NumberError(written.text, "is not a real number")
     return expression
 
 
@@ -306,7 +319,7 @@ def _degree(written: Written, expression: Any) -> int:
     """The degree of a number over the rationals."""
     for angle in (each.args[0] / sympy.pi for each in expression.atoms(sympy.sin, sympy.cos)):
         if not angle.is_Rational:
-            raise ValueError(f"{written.text} is not known to be an algebraic number")
+            raise NumberError(written.text, "is not known to be an algebraic number")
         if sympy.totient(angle.q) > 2 * ALGEBRAIC_DEGREE:
             raise OverflowError(str(sympy.totient(angle.q)))
     for exponent in (each.exp for each in expression.atoms(sympy.Pow) if each.exp.is_Rational):
@@ -315,7 +328,7 @@ def _degree(written: Written, expression: Any) -> int:
     try:
         polynomial = sympy.minimal_polynomial(expression, sympy.Symbol("x"), polys=True)
     except (NotAlgebraic, NotImplementedError):
-        raise ValueError(f"{written.text} is not known to be an algebraic number") from None
+        raise NumberError(written.text, "is not known to be an algebraic number") from None
     return int(polynomial.degree())
 
 

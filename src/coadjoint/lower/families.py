@@ -29,6 +29,7 @@ from typing import Final
 import sympy
 
 from coadjoint.families import Family, Sum, Symbol, Total, Tree
+from coadjoint.lower.family_kinks import HeldFamily, hold_family
 from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
@@ -141,6 +142,11 @@ class Loops:
         return 0 if self.partners is None else len(self.partners.program.outputs) // 2
 
     @property
+    def components(self) -> int:
+        """How many results each member has."""
+        return 0 if self.member is None else len(self.member.program.outputs)
+
+    @property
     def parts(self) -> tuple[Part, ...]:
         """All parts, in order."""
         listed = [self.partners, self.member, *(part for _, part in self.ends)]
@@ -176,6 +182,10 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.of_members("projection", family.turned))
     if family.noise:
         functions.append(lowering.noise())
+    held = hold_family(family)
+    if held is not None:
+        functions.append(_Lowering(held.family).rates("sided_rhs"))
+        functions.append(_Lowering(held.family).kinks(held))
     return {each.name: each for each in functions}
 
 
@@ -214,7 +224,7 @@ class _Lowering:
         alike, below = len(family.shared_noise), len(family.states)
         rows |= {
             symbol: Read(name="", array="state", rows=alike, blocks=below + n)
-            for n, symbol in enumerate(family.indexed_noise)
+            for n, symbol in enumerate((*family.indexed_noise, *family.sides))
         }
         #: Symbols of member i, and not of its partner or of all.
         self._own = frozenset((*rows, *family.neighbours.values()))
@@ -287,7 +297,7 @@ class _Lowering:
         found = Loops(
             name=name,
             wraps=family.wraps,
-            blocks=len(family.states) * (2 if along else 1),
+            blocks=len(family.states) * (2 if along else 1) + len(family.sides),
             shape=None,
             partners=lower(terms, of_pair=True) if terms else None,
             member=lower(family.rates),
@@ -306,6 +316,23 @@ class _Lowering:
             blocks=len(self.family.states),
             shape=None,
             member=self._part(name, trees, {}),
+        )
+
+    def kinks(self, held: HeldFamily) -> Loops:
+        """What is 0 at the kinks of each member, in the sums that rates read."""
+        family = self.family
+        sums = {each.symbol: f"{SUM}{n}" for n, each in enumerate(family.pair_sums)}
+        terms = [each.term for each in family.pair_sums]
+        if not sums.keys() & {s for tree in held.kinks for s in tree.free_symbols}:
+            sums, terms = {}, []
+        return Loops(
+            name="kinks",
+            wraps=family.wraps,
+            blocks=len(family.states),
+            shape=None,
+            partners=self._part("kinks", terms, sums, of_pair=True) if terms else None,
+            member=self._part("kinks", held.kinks, sums),
+            ends=tuple((end, self._part("kinks", rows, sums)) for end, rows in held.ends.items()),
         )
 
     def noise(self) -> Loops:

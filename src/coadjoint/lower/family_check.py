@@ -9,7 +9,7 @@ Read next: `coadjoint.lower.families`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
 
@@ -38,10 +38,39 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
     symbols = _Symbols(family)
     for loops in functions.values():
         compared = 0
+        if loops.name in ("sided_rhs", "kinks"):
+            continue
         for part, trees, sums in _list_parts(family, loops, symbols):
             compared += len(trees)
             _check_part(loops.name, part, trees, symbols, sums)
         assert compared, loops.name
+    if "kinks" in functions:
+        check_sides(family, functions["sided_rhs"], functions["kinks"])
+
+
+def check_sides(family: Family, rates: Loops, kinks: Loops) -> None:
+    """With the signs of ``kinks`` in their rows, ``sided_rhs`` is the rates.
+
+    Arguments are those that the part of the generic member computes, or of the first end that
+    computes one; where a sign is read, its own member has to compute it.
+
+    Raises:
+        CrossCheckError: It is something else.
+    """
+    sides = _Sides(family, kinks)
+    places = {None: rates.member} | dict(rates.ends)
+    for place, part in places.items():
+        assert part is not None, rates.name
+        wanted = family.rates if place is None else family.ends[place]
+        trees = [sides.take_out(tree) for tree in wanted]
+        _check_part(rates.name, part, trees, sides, [each.symbol for each in family.pair_sums])
+    assert len(places) == 1 + len(family.ends), rates.name
+    assert sides.read, rates.name
+    sides.check_members(rates)
+    terms = [each.term for each in family.pair_sums]
+    for pairs in (rates.partners, kinks.partners):
+        if pairs is not None:
+            _check_part(rates.name, pairs, sides.of_both(terms), sides, ())
 
 
 class _Symbols:
@@ -117,6 +146,122 @@ class _Symbols:
         slopes = (sympy.diff(whole, real[s]) * h for s, h in moving.items() if s in real)
         along = sympy.Add(*slopes).replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
         return along.xreplace(back)
+
+
+class _Sides(_Symbols):
+    """The same where given signs stand below the state."""
+
+    def __init__(self, family: Family, kinks: Loops) -> None:
+        super().__init__(family)
+        sums = [each.symbol for each in family.pair_sums]
+        places = {None: kinks.member} | dict(kinks.ends)
+        #: What the parts of `kinks` compute.
+        self.rows = {
+            place: [sympy.sympify(tree) for tree in self._run(kinks, part, sums)]
+            for place, part in places.items()
+        }
+        self._places = {each: (each, 0) for each in family.own}
+        self._places |= {symbol: key for key, symbol in family.neighbours.items()}
+        self._back = {key: symbol for symbol, key in self._places.items()}
+        #: The argument of each sign, for the member that has it.
+        self.arguments = [
+            next((tree for tree in own if tree != 1), sympy.Integer(1))
+            for own in zip(*self.rows.values(), strict=True)
+        ]
+        #: Which signs are read, row and shift: a symbol of each.
+        self.read = dict[tuple[int, int], Symbol]()
+
+    def _run(self, kinks: Loops, part: Part | None, sums: Sequence[Symbol]) -> Sequence[Any]:
+        assert part is not None, kinks.name
+        values = {read.name: self._find_any(read, kinks.name) for read in part.reads}
+        for each in part.program.state[len(part.reads) :]:
+            values[each] = sums[int(each.removeprefix(SUM))]
+        return run(part.program, values, _number, _call)
+
+    def _find_any(self, read: Read, name: str) -> Symbol:
+        """The symbol of a name, of neighbours that no rate reads as well."""
+        if read.shift and not read.of_partner:
+            own = super().find(replace(read, shift=0), name)
+            return self._family.neighbours.get(
+                (own, read.shift), sympy.Symbol(f"{own} {read.shift}")
+            )
+        return super().find(read, name)
+
+    def find(self, read: Read, function: str) -> Symbol:
+        count = len(self._family.states)
+        if read.array != "state" or read.blocks < count:
+            return super().find(read, function)
+        assert (read.rows, read.of_partner) == (0, False), read
+        assert read.shift is not None, read
+        return self._find_side(read.blocks - count, read.shift)
+
+    def _find_side(self, row: int, shift: int) -> Symbol:
+        return self.read.setdefault((row, shift), sympy.Symbol(f"side {row} {shift}"))
+
+    def take_out(self, tree: Tree) -> Tree:
+        """A tree in which each sign of an argument is the symbol of its row and shift."""
+        given = dict[Tree, Tree]()
+        for each in tree.atoms(sympy.sign, sympy.Abs):
+            (inner,) = each.args
+            found = self._look_up(inner)
+            if found is not None:
+                sign, row, shift = found
+                side = sign * self._find_side(row, shift)
+                given[each] = side * inner if isinstance(each, sympy.Abs) else side
+        return tree.xreplace(given)
+
+    def _look_up(self, inner: Tree) -> tuple[int, int, int] | None:
+        """Of which row and neighbour an argument is, and with which sign."""
+        shifts = {
+            shift
+            for s in inner.free_symbols & self._places.keys()
+            for shift in [self._places[s][1]]
+        }
+        for shift in sorted({0, *shifts}):
+            for row, argument in enumerate(self.arguments):
+                moved = self._move(argument, shift)
+                for sign in (1, -1):
+                    if moved is not None and (moved - sign * inner).expand() == 0:
+                        return sign, row, shift
+        return None
+
+    def _move(self, argument: Tree, shift: int) -> Tree | None:
+        """An argument of a neighbour; None where it names what no rate does."""
+        given = dict[Symbol, Symbol]()
+        for symbol in argument.free_symbols:
+            name, _, own = str(symbol).rpartition(" ")
+            known = self._places.get(symbol)
+            if known is None and name:
+                known = next((c, int(own)) for c in self._family.own if str(c) == name)
+            if known is not None:
+                key = known[0], known[1] + shift
+                if key not in self._back:
+                    return None
+                given[symbol] = self._back[key]
+        return argument.xreplace(given)
+
+    def check_members(self, rates: Loops) -> None:
+        """Where a sign is read, its own member computes what it is the sign of."""
+        count = len(self._family.states)
+        before, after = len(rates.first_ends), len(rates.last_ends)
+        places = {None: rates.member} | dict(rates.ends)
+        for place, part in places.items():
+            assert part is not None, rates.name
+            for read in part.reads:
+                if read.array != "state" or read.blocks < count:
+                    continue
+                row, shift = read.blocks - count, read.shift or 0
+                for base, rows in self.rows.items():
+                    if base is None:
+                        is_read = place is None
+                    elif place is not None:
+                        is_read = (base >= 0) == (place >= 0) and base - shift == place
+                    else:
+                        is_read = base - shift >= before if base >= 0 else base - shift < -after
+                    if is_read and rows[row] != self.arguments[row]:
+                        raise _fail(
+                            "kinks", f"{rows[row]} at {base} in the place of {self.arguments[row]}"
+                        )
 
 
 def _list_parts(

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from coadjoint.lower.families import Loops, Part
+from coadjoint.lower.families import Loops, Part, Read
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.program import Level, Node, Program, Statement, Symbol, walk
 
@@ -37,9 +37,10 @@ def make_family_jets(rates: Loops) -> tuple[PartJets, ...]:
     """The recurrences of the parts of rates, in order.
 
     Args:
-        rates: The function ``rhs`` of a family.
+        rates: The function ``rhs`` of a family, or ``sided_rhs``.
     """
-    return tuple(_make(name, part) for name, part in list_rate_parts(rates))
+    count = rates.components
+    return tuple(_make(name, part, count) for name, part in list_rate_parts(rates))
 
 
 def list_rate_parts(rates: Loops) -> Iterator[tuple[str, Part]]:
@@ -70,15 +71,20 @@ def _list_names(node: Node) -> Iterator[str]:
     return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
-def _make(name: str, part: Part) -> PartJets:
-    program = _separate(part)
+def _make(name: str, part: Part, components: int) -> PartJets:
+    program = _separate(part, components)
     return PartJets(name, part, program, make_jets(program))
 
 
-def _separate(part: Part) -> Program:
+def is_constant(read: Read, components: int) -> bool:
+    """Whether a name is constant in a step: a parameter, or a given sign below the state."""
+    return read.array == "parameters" or (read.array == "state" and read.blocks >= components)
+
+
+def _separate(part: Part, components: int) -> Program:
     """The Program of a part, in which what is constant along a motion is a parameter."""
     program = part.program
-    constant = [read.name for read in part.reads if read.array == "parameters"]
+    constant = [read.name for read in part.reads if is_constant(read, components)]
     known, statements = set(constant), []
     for statement in program.statements:
         read = set(_list_names(statement.value))

@@ -208,13 +208,19 @@ _REWRITE = (
 _FIX = "Correct the claim, or the formulas of the spec that contradict it."
 _FIXES = MappingProxyType(
     {
-        "rolling": "The body slips or leaves what it rolls on: correct the arm in [rolling], the "
-        "profile of the body that it stands for, the surfaces, or the constraints.",
         "conserved": _FIX + " If it holds for some parameters or on a set alone, name what is 0 "
         'there: { claim = "...", where = ["I1 - I2"] }.',
     }
 )
 
+
+#: The same of claims of the engine.
+_OWN_FIXES = MappingProxyType(
+    {
+        "rolling": "The body slips or leaves what it rolls on: correct the arm in [rolling], the "
+        "profile of the body that it stands for, the surfaces, or the constraints.",
+    }
+)
 
 #: What the method adds where not the claimed function but the relations of its set have a rate.
 LEAVES = ": the motion leaves this set"
@@ -231,8 +237,8 @@ def failure_text(claim: Claim) -> str:
     place = f"At {point}" if point else f"By {claim.method}"
     place += LEAVES[1:] + ":" if claim.shown is Shown.RATE_OF_RELATION else ""
     expected = "none below 0" if claim.shown is Shown.EIGENVALUE else "0"
-    declared = claim.accepted is not None or claim.kind == "rolling"
+    fixes = _OWN_FIXES if claim.accepted is None else _FIXES
     return (
         f"refuted: {claim.statement}. {place} {claim.shown} is {claim.defect}; expected "
-        f"{expected}. {_FIXES.get(claim.kind, _FIX) if declared else _FIX}"
+        f"{expected}. {fixes.get(claim.kind, _FIX)}"
     )

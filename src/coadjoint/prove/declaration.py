@@ -23,6 +23,7 @@ from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
 from coadjoint.lower.families import Loops
+from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
@@ -126,6 +127,8 @@ def family_context(
         equations=family_lines(family),
         index=family.index,
         small=family.small,
+        kinks=name_kinks(family),
+        pair_kinks=name_pair_kinks(family),
         state=tuple(map(name_generic, declared.variables)),
         shared=tuple(_quantity(known[name]) for name in declared.shared),
         indexed=tuple(map(name_generic, declared.indexed)),

@@ -304,6 +304,8 @@ class FamilyContext:
         spheres: The components of a member that are a vector on a sphere, by the name of the square
             of its radius.
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
+        kinks: What is zero at the kinks of member i, and of those at the ends by their places.
+        pair_kinks: What is zero at the kinks of the terms of pairs.
     """
 
     name: str
@@ -330,6 +332,13 @@ class FamilyContext:
     methods: tuple[JudgedMethod, ...] = ()
     spheres: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     positions: tuple[int, ...] = ()
+    kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
+    pair_kinks: tuple[str, ...] = ()
+
+    @property
+    def held(self) -> Loops:
+        """The rates as solvers integrate them: with given signs where there are kinks."""
+        return self.loops.get("sided_rhs", self.loops["rhs"])
 
     @property
     def counts(self) -> Counts:
@@ -424,12 +433,18 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
             *(f"{name.lower()}={name}" for name in _declare_driving(context)),
             *(["methods=METHODS"] * bool(context.methods)),
+            *(["kinks=KINKS"] * bool(context.kinks)),
+            *(
+                [f"pair_kinks={tuple_text(map(quote, context.pair_kinks))}"]
+                * bool(context.pair_kinks)
+            ),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
+        "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -440,7 +455,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
     }
     names = names_read(template)
     if "solver" in names:
-        values["solver"] = arrange_family(context.loops["rhs"], context.counts)
+        values["solver"] = arrange_family(context.held, context.counts)
     if "normals" in names:
         values |= {"normals": list_normals(), "sweeps": normals.SWEEPS}
     return render_templates((template,), {name: values[name] for name in names})[template]

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.families import SUM, Loops, Read
-from coadjoint.lower.family_jets import PartJets, make_family_jets
+from coadjoint.lower.family_jets import PartJets, is_constant, make_family_jets
 from coadjoint.lower.program import Call, Symbol, walk
 from coadjoint.render.recurrences import (
     Line,
@@ -100,6 +100,7 @@ class FamilySolverText:
         driving: Rows of what drives all members alike: these inputs, and the time below them.
         shared: Parameters that all members share.
         indexed: Parameters of each member.
+        sides: Signs at the kinks of each member, which stand below these.
         reach: How far the members are apart that a part reads, at the most.
         wraps: Whether the last member is followed by the first where neighbours are read.
         functions: Elementary functions that are called, with their arguments, sqrt left out.
@@ -118,6 +119,7 @@ class FamilySolverText:
     driving: int
     shared: int
     indexed: int
+    sides: int
     reach: int
     wraps: bool
     functions: tuple[tuple[str, str], ...]
@@ -154,10 +156,10 @@ def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
     """The recurrences of rates.
 
     Args:
-        rates: The function ``rhs`` of a family.
+        rates: The function ``rhs`` of a family, or ``sided_rhs``.
         counts: What else it reads.
     """
-    parts = [_arrange_part(each, counts, rates.blocks) for each in make_family_jets(rates)]
+    parts = [_arrange_part(each, counts, rates.components) for each in make_family_jets(rates)]
     by_name = {part.name: part for part in parts}
     lines = [line for part in parts for line in list_lines(part)]
     calls = {n.function for line in lines for n in walk(line.value) if isinstance(n, Call)}
@@ -168,7 +170,8 @@ def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
         ends=tuple((place, by_name[f"end_{n}"]) for n, (place, _) in enumerate(rates.ends)),
         before=len(rates.first_ends),
         after=len(rates.last_ends),
-        components=rates.blocks,
+        components=rates.components,
+        sides=rates.blocks - rates.components,
         inputs=counts.inputs,
         inputs_before=counts.inputs_before,
         driving=counts.inputs_before + counts.time,
@@ -257,10 +260,12 @@ def _find_place(read: Read, counts: Counts, components: int) -> Place:
     if read.shift is None:
         moves = read.array == "inputs"
         return Place(read.name, "driving" if moves else "shared", (read.rows,), moves)
-    moves, function = read.array != "parameters", "partner" if read.of_partner else "own"
+    moves, function = not is_constant(read, components), "partner" if read.of_partner else "own"
     before = {"state": 0, "parameters": counts.shared, "inputs": counts.inputs_before}
     assert read.rows == before[read.array], read
     block = read.blocks + (components if read.array == "inputs" else 0)
+    if read.array == "state" and not moves:  # a given sign, below the parameters
+        block += counts.indexed - components
     arguments: tuple[int, ...] = (block,)
     if read.shift and not read.of_partner:
         function, arguments = "near", (block, read.shift)

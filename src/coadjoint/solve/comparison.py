@@ -16,6 +16,7 @@ from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Record
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
@@ -83,6 +84,8 @@ def count_rows(system: System, choice: Choice) -> int:
 
 def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
     """Arguments at whose zeros the rates of a method have kinks; none without files."""
+    if isinstance(system, FamilySystem):
+        return system.list_kinks()
     if system.stepwise or not system._solvers.has_files(choice.kind):
         return ()
     module = KernelModule(system, choice.kind.files[2])

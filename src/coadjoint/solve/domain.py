@@ -30,6 +30,24 @@ if TYPE_CHECKING:
 RESOLUTION = 1e-12
 #: Values that a message shows.
 SHOWN = 12
+#: What is wrong where surfaces do not touch at one point alone, and what the row is.
+_LARGE = (
+    "the body is too large for the surface at the point of contact, where it bends less than the "
+    "surface does, so that the two cross each other there,"
+)
+_CONTACT = {
+    "rolling_apart": (_LARGE, "the product of the differences of the principal curvatures"),
+    "rolling_outside": (_LARGE, "the sum of the differences of the principal curvatures"),
+    "rolling_facing": (
+        "the body is on the wrong side of the surface, so that the normals at the point of contact "
+        "agree",
+        "how far the normals are opposite",
+    ),
+}
+_SMALLER = (
+    "take a smaller body, as a ball whose radius is less than the radii of curvature of the "
+    "surface there, a wider surface, or a state on the other side of it"
+)
 
 
 @dataclass(frozen=True)
@@ -84,9 +102,10 @@ class Domain:
             return
         bound, value = self.bounds[row], self._value(row)
         expected = "a finite value above 0" if bound.strict else "a finite value, 0 or more"
+        advice = _SMALLER if bound.kind == "contact" else "change one of them"
         raise KernelArgumentError(
             f"{self.system.name}: {self._problem(row)} at the given state: {self._meaning(row)} is "
-            f"{value:.6g}; expected {expected}. {self._values(row, state)}: change one of them.",
+            f"{value:.6g}; expected {expected}. {self._values(row, state)}: {advice}.",
             found=value,
             expected=expected,
             bound=bound.name,
@@ -180,6 +199,8 @@ class Domain:
         if bound.kind == "condition":
             text = self.system.certificate.get("domain", {}).get(bound.name)
             return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
+        if bound.kind == "contact":
+            return _CONTACT[bound.name][0]
         if bound.kind == "transform":
             return f"no {bound.name} has these momenta: the Legendre transform has no solution"
         if bound.kind == "iteration":
@@ -193,6 +214,8 @@ class Domain:
         bound = self.bounds[row]
         if bound.kind == "condition":
             return f"the larger side of {bound.name} minus the other"
+        if bound.kind == "contact":
+            return f"{bound.name}, {_CONTACT[bound.name][1]},"
         if bound.kind in ("transform", "iteration"):
             return f"the {bound.label}"
         return f"the pivot of {bound.name}"

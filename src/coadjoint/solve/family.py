@@ -7,9 +7,10 @@ Read next: `coadjoint.solve.system`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -53,6 +54,8 @@ class FamilySystem(System):
         spheres: Components of a member that are a vector on a sphere, by the name of the square of
             its radius, if a member has nothing else.
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
+        kinks: What is zero at the kinks of member i, and of members at the ends by their places.
+        pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -80,9 +83,12 @@ class FamilySystem(System):
         methods: Sequence[JudgedMethod] = (),
         spheres: Mapping[str, tuple[int, ...]] = MappingProxyType({}),
         positions: tuple[int, ...] = (),
+        kinks: Mapping[int | None, tuple[str, ...]] = MappingProxyType({}),
+        pair_kinks: tuple[str, ...] = (),
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
+        self.kinks, self.pair_kinks = kinks, pair_kinks
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -123,7 +129,29 @@ class FamilySystem(System):
         """What the rows of the first argument of a function are."""
         if KERNEL_FUNCTIONS[function].below == "noise":
             return Quantities(*self.STATE.values(), *self.NOISE.values())
+        if KERNEL_FUNCTIONS[function].below == "sides":
+            count = len(self.kinks.get(None, ()))
+            names = [f"side{n}" for n in range(1, count + 1)]
+            sides = [self._repeat(Quantity(each, (), "1", (each,)), self.size) for each in names]
+            return Quantities(*self.STATE.values(), *sides)
         return super().rows(function)
+
+    def list_kinks(self) -> tuple[str, ...]:
+        """What is zero at each kink of all members, in the rows of the function ``kinks``."""
+        i, size = re.escape(self.index.name), self.size
+        places = {place % size: own for place, own in self.kinks.items() if place is not None}
+
+        def number(found: re.Match[str], member: int) -> str:
+            first = {self.index.name: member, "N": size}.get(found[1], 0)
+            return f"[{(first + int(found[2] or 0)) % size}]"
+
+        own = self.kinks.get(None, ())
+        return tuple(
+            re.sub(rf"\[({i}|N|)([+-]?\d+)?\]", partial(number, member=n), rows[row])
+            for row in range(len(own))
+            for n in range(size)
+            for rows in [places.get(n, own)]
+        )
 
     @property
     def size(self) -> int:
@@ -203,6 +231,8 @@ class FamilySystem(System):
             methods=self.METHODS,
             spheres=self.spheres,
             positions=self.positions,
+            kinks=self.kinks,
+            pair_kinks=self.pair_kinks,
         )
         made.levels = self.levels
         return made

@@ -24,7 +24,7 @@ from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.ensemble import MET, Ensemble, Inputs
 from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.methods.sequence import Maps
@@ -64,6 +64,8 @@ CLOSE: Final = 1e-9
 #: Bytes of series of pairs of one trajectory beyond which ``dop853`` is faster:
 #: docs/decisions/family-kernels.md.
 KEPT_NEAR: Final = 1 << 17
+#: Kinks of which a call can tell: so many steps that meet all of them, and further ones.
+KINK_ROOM, MET_ROOM = 8, 1 << 12
 _SIZE, _PLACE, _DOUBLE = ctypes.c_size_t, ctypes.c_void_p, ctypes.c_double
 
 
@@ -92,6 +94,8 @@ _DRIVEN_RUN: Final = (
     ("slopes", _PLACE),
     ("now", _PLACE),
 )
+#: And where there are kinks.
+_SIDED_RUN: Final = (("joined", _PLACE),)
 #: ``NAME_solver_ensemble``, likewise.
 _ENSEMBLE: Final = (
     ("sizes", _PLACE),
@@ -114,6 +118,10 @@ _ENSEMBLE: Final = (
 _NOISE: Final = (("processes", _SIZE), ("seed", ctypes.c_uint64), ("bound", _DOUBLE))
 #: Likewise, and the lines of inputs.
 _DRIVEN: Final = (("driving_rows", _SIZE),)
+_KINKED: Final = (
+    *((name, _PLACE) for name in ("crossed", "brief", "met")),
+    *((name, _SIZE) for name in ("met_room", "met_count")),
+)
 _INPUTS: Final = (
     *((name, _PLACE) for name in ("knots", "inputs", "input_slopes")),
     ("pieces", _SIZE),
@@ -144,6 +152,11 @@ class FamilyTwin(StepwiseStepper):
         self._members, self._family = system.fixed["sizes"], system
         #: Rows of inputs, and the time below them.
         self.driving_rows = system.INPUTS.size + system.TIME.size
+        #: Which rates are integrated: those of given signs where there are kinks.
+        self._rates_name = "sided_rhs" if "kinks" in system.functions else "rhs"
+        if "kinks" in system.functions:
+            self._sizes |= {n: system.rows(n).size for n in ("kinks", "sided_rhs")}
+            self._limits = replace(self._limits, kinks=partial(self._evaluate, ("kinks",)))
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
@@ -156,6 +169,12 @@ class FamilyTwin(StepwiseStepper):
             "along": partial(self._evaluate, ("noise_vector",)),
             "processes": self._family.NOISE.size,
         }
+
+    def _rates(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The rates, on the sides of the step where there are kinks."""
+        if lanes.sides is not None:
+            state = np.concatenate([state, lanes.sides])
+        return self._evaluate((self._rates_name,), lanes, after, state)
 
     def _method(self, run: Ensemble) -> Method:
         """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
@@ -185,7 +204,7 @@ class FamilyTwin(StepwiseStepper):
     def _expand(self, lanes: Lanes, order: int) -> Array:
         """Coefficients of the motion."""
         driven = (lanes.driving, lanes.slopes) if self.driving_rows else ()
-        given = (lanes.state, lanes.parameters, *driven, self._members)
+        given = (lanes.state, lanes.given, *driven, self._members)
         path: Array = self._series(*given, order)
         return path
 
@@ -202,13 +221,22 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        others = ("projection", "noise_vector")
-        called = {"rates": "rhs"} | {n: n for n in others if n in system.functions}
+        others = ("projection", "noise_vector", "kinks")
+        called = {"rates": self._rates_name}
+        called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
-        self._run_type = _make_structure(tuple(called), (*_RUN, *_DRIVEN_RUN * is_driven))
+        has_kinks = self._limits.kinks is not None
+        parts = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
+        self._run_type = _make_structure(tuple(called), parts)
         has_noise = bool(system.NOISE)
-        fields = (*_ENSEMBLE, *_DRIVEN * is_driven, *_INPUTS * has_inputs, *_NOISE * has_noise)
+        fields: tuple[Any, ...] = (
+            *_ENSEMBLE,
+            *_DRIVEN * is_driven,
+            *_INPUTS * has_inputs,
+            *_NOISE * has_noise,
+        )
+        fields = (*fields, *_KINKED * has_kinks)
         self._ensemble_type = _make_structure(tuple(called), fields)
         names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
@@ -224,7 +252,13 @@ class FamilyStepper(FamilyTwin):
         given = self._describe(ensemble, first, last)
         given.work = work
         given.scratch = self._provide(self._functions["work"](ctypes.byref(given)))
-        return self._functions["advance"](ctypes.byref(given))
+        met = np.empty((ensemble.sides * KINK_ROOM + MET_ROOM * bool(ensemble.sides), MET))
+        if ensemble.sides:
+            given.met, given.met_room = met.ctypes.data, len(met)
+        on = self._functions["advance"](ctypes.byref(given))
+        if ensemble.sides and given.met_count:
+            ensemble.met.append(met[: given.met_count].copy())
+        return int(on)
 
     def _describe(self, run: Ensemble, first: int, last: int) -> Any:
         """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
@@ -257,6 +291,8 @@ class FamilyStepper(FamilyTwin):
             for name, array in (lines | {"input_slopes": run.inputs.slopes}).items():
                 assert array.flags.c_contiguous, name
                 setattr(given, name, array.ctypes.data)
+        if run.kinks is not None and run.brief is not None:
+            given.crossed, given.brief = run.kinks.ctypes.data, run.brief.ctypes.data
         for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
@@ -278,6 +314,9 @@ class FamilyStepper(FamilyTwin):
         if self.driving_rows:
             given.driving_rows = self.driving_rows
             given.driving, given.slopes = lanes.driving.ctypes.data, lanes.slopes.ctypes.data
+        if lanes.sides is not None:
+            lanes.joined = np.concatenate([state, lanes.sides])
+            given.joined = lanes.joined.ctypes.data
         return given
 
     def _provide(self, size: int) -> int:
@@ -387,7 +426,8 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
         for stepper, run in ((fresh, found), (twin, expected)):
             while stepper.advance(run, 0, members, 5):
                 pass
-        for name in (*COMPARED, *(LEFT if structured and exact else ())):
+        kinked = ("kinks", "brief") if system.kinks else ()
+        for name in (*COMPARED, *(LEFT if structured and exact else ()), *kinked):
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
@@ -428,6 +468,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         remembered=choice.count_memory(system.STATE.size, searches=False),
         is_implicit=choice.is_structured,
         has_clock=False,
+        sides=len(system.list_kinks()),
     )
     run.begin(0.0)
     return run
@@ -476,6 +517,13 @@ def find_stepper(
         target: Who computes the rates.
         inputs: A function of Python, which only the twin can call.
     """
+    if system.pair_kinks:
+        say_once(
+            f"steps of {system.name} do not end at the kinks of pairs of members, where "
+            f"{' or '.join(system.pair_kinks)} is 0: they cross them with an error, and with fixed "
+            "steps a method loses its order there. Take tolerances that fit the jump, or a sum "
+            "that is smooth."
+        )
     if inputs is not None:
         return FamilyTwin(system, choice, target, inputs)
     if (choice, target) not in system.steppers:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Roundings of time: a kink in time is met again where the time after it is rounded to before it.
 ROUNDINGS = 2.0**-47
+#: Kinks that are named where all are told of in one line.
+SHOWN = 6
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class Kinks:
         )
 
     def __repr__(self) -> str:
-        return f"<Kinks: {len(self)} of {', '.join(self.names)}>"
+        told = [*self.names[:SHOWN], *(["..."] * (len(self.names) > SHOWN))]
+        return f"<Kinks: {len(self)} of {', '.join(told)}>"
 
 
 def list_kinks_met(run: Ensemble, names: tuple[str, ...], batch: Place) -> Kinks | None:
@@ -95,12 +98,15 @@ def list_kinks_met(run: Ensemble, names: tuple[str, ...], batch: Place) -> Kinks
 
     Args:
         run: At its end. What a member met after an event ended it is left out.
-        names: What is 0 at each kink.
+        names: What is 0 at each kink. Those of one name are one kink, as of equal members that
+            all change with the time.
         batch: The shape of the batch.
     """
     if run.kinks is None:
         return None
-    rows = run.list_met()
+    rows, places = run.list_met(), {name: n for n, name in enumerate(dict.fromkeys(names))}
+    rows[:, 2] = np.array([places[name] for name in names])[rows[:, 2].astype(np.intp)]
+    rows, names = np.unique(rows, axis=0), tuple(places)
     member = rows[:, 0].astype(np.intp)
     rows = rows[rows[:, MET - 1] <= run.time[member]]
     rows = _leave_out_repeated(rows)

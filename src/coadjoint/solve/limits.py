@@ -122,12 +122,11 @@ class Step:
         for begin, end in ((np.zeros(took.shape), half), (half, took)):
             places = (begin, begin + near, end - near, end)
             gaps = [self._look(after, self.accepted, outside) for after in places]
-            for row in range(len(gaps[0])):
-                fall, rise = gaps[0][row] - gaps[1][row], gaps[3][row] - gaps[2][row]
-                place = (gaps[0][row] - gaps[3][row] + rise * (0.5 / NEAR)) / (fall + rise)
-                least = gaps[0][row] - fall * place
-                low = self.accepted & (outside == took) & (fall > 0.0) & (rise > 0.0)
-                low &= least < 0.0
+            fall, rise = gaps[0] - gaps[1], gaps[3] - gaps[2]
+            place = (gaps[0] - gaps[3] + rise * (0.5 / NEAR)) / (fall + rise)
+            near_zero = (fall > 0.0) & (rise > 0.0) & (gaps[0] - fall * place < 0.0)
+            for row in np.flatnonzero((near_zero & self.accepted).any(axis=1)).tolist():
+                low = near_zero[row] & self.accepted & (outside == took)
                 if low.any():
                     self._search(row, (begin, end), low, outside)
         return outside

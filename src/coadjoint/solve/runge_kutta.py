@@ -7,7 +7,7 @@ Read next: `coadjoint.solve.steps`, with what all methods share.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -126,7 +126,7 @@ class DormandPrince8:
         accepted = np.ones(h.shape, bool)
         if not self.size > 0:
             accepted = self._control(lanes, h, most, k, x)
-        start, parts = lanes.state, partial(self._parts, lanes, h, k, x)
+        start, parts = lanes.state, cache(partial(self._parts, lanes, h, k, x))
         return Attempt(
             took=h,
             state=x,

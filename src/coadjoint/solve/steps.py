@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -42,6 +42,7 @@ class Lanes:
         memory: What the steps before left, as `Ensemble` has it, ``(m, N)``; None where nobody
             keeps it.
         sides: The sides of kinks on which they are, -1, 0 or 1, ``(m, N)``; None without kinks.
+        joined: Room for a state with these below it, as parts of steps in C take it.
     """
 
     state: Array
@@ -55,6 +56,7 @@ class Lanes:
     steps: NDArray[np.uint64]
     memory: Array | None = None
     sides: Array | None = None
+    joined: Array | None = None
 
     @property
     def given(self) -> Array:
@@ -121,6 +123,7 @@ class Cubic:
     first: Callable[[], Array]
     last: Callable[[], Array]
 
+    @cached_property
     def _parts(self) -> tuple[Array, Array, Array, Array]:
         first, chord = self.first(), self.end - self.start
         rise = self.h * first - chord
@@ -128,13 +131,13 @@ class Cubic:
 
     def follow(self, after: Array) -> Array:
         """The state some time after the start; after the whole step it is the end to the bit."""
-        part, (_, chord, rise, both) = after / self.h, self._parts()
+        part, (_, chord, rise, both) = after / self.h, self._parts
         within = self.start + part * (chord + (1.0 - part) * (rise - part * both))
         return np.asarray(np.where(after == self.h, self.end, within))
 
     def coefficients(self) -> Array:
         """Those of the path in the time since the start, ``(n, 4, N)``."""
-        h, (first, _, rise, both) = self.h, self._parts()
+        h, (first, _, rise, both) = self.h, self._parts
         return np.stack([self.start, first, -(both + rise) / h / h, both / h / h / h], axis=1)
 
 

@@ -60,16 +60,19 @@ def make_members(
         from_zero=index.from_zero,
         number=index.count,
         taken=frozenset({*parts, *defined, *filter(None, [index.count])}),
-        scalars=frozenset(name for name, part in parts.items() if _is_scalar(file, name, part)),
+        scalars=frozenset(
+            name for name, part in parts.items() if part.index is None and _is_plain(file, part)
+        ),
+        singles=frozenset(
+            name for name, part in parts.items() if part.index is not None and _is_plain(file, part)
+        ),
     )
 
 
-def _is_scalar(file: Any, name: str, part: Any) -> bool:
-    """Whether a quantity has neither an index nor components."""
+def _is_plain(file: Any, part: Any) -> bool:
+    """Whether a quantity has no components."""
     whole = file.variables.get(getattr(part, "of", None) or "", part)
-    role = getattr(whole, "role", "coordinate")
-    plain = part.index is None and not whole.shape and not whole.form
-    return plain and role == "coordinate"
+    return not whole.shape and not whole.form and getattr(whole, "role", "") in ("", "coordinate")
 
 
 def differs(file: Any, part: Any) -> bool:

@@ -115,19 +115,18 @@ class Scalars:
         Raises:
             ExpressionError: It is not real, or neither algebraic nor a rational multiple of pi.
         """
-        from coadjoint.exact.numbers import PI
+        from coadjoint.exact.numbers import PI, NumberError
 
         try:
             number, turns = self._numbers.index(self._places[node])
-        except ValueError as error:
-            shown = str(error).partition(" is not ")[0]  # of all numbers, the first that is none
+        except NumberError as error:
             raise ExpressionError(
                 str(error),
                 node.start,
                 node.end,
                 expected="a real algebraic number or a rational multiple of pi",
-                hint=f'Name a parameter here, with the default "{shown}": laws are proved for all '
-                "values.",
+                hint=f'Name a parameter here, with the default "{error.number}": laws are '
+                "proved for all values.",
             ) from None
         except OverflowError as error:
             problem = f"all numbers together are in a field of degree {error}"

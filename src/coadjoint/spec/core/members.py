@@ -21,7 +21,7 @@ from operator import add, eq, ge, gt, le, lt, mul, ne, sub
 from typing import Any
 
 from coadjoint import limits
-from coadjoint.spec.core.faults import fault_at
+from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.tree import (
     Binary,
@@ -81,6 +81,7 @@ class Members:
         number: What formulas call the number of members; "" for nothing.
         taken: What the spec declares, so that no index has its name.
         scalars: What has neither an index nor components.
+        singles: What has an index and one component of each member.
         from_zero: Whether names count from 0 all the same: these are a few of N members.
     """
 
@@ -93,6 +94,7 @@ class Members:
     number: str = ""
     taken: frozenset[str] = frozenset()
     scalars: frozenset[str] = frozenset()
+    singles: frozenset[str] = frozenset()
     from_zero: bool = False
 
     def place(self, member: int) -> int | None:
@@ -314,6 +316,8 @@ def _find(node: Node, name: str, numbers: tuple[int, ...], members: Members) -> 
 
 def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Members) -> Node:
     """A quantity of the member of a number."""
+    if numbers[1:] and name in members.singles:
+        raise _with_component(node, name, numbers, members)
     at, where = members.place(numbers[0] - members.first), {"start": node.start, "end": node.end}
     if at is None:
         problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
@@ -323,6 +327,19 @@ def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Membe
     if numbers[1:]:
         return Index(name=own, indices=numbers[1:], within=node.within, **where)
     return Name(own, within=node.within, **where)
+
+
+def _with_component(
+    node: Node, name: str, numbers: tuple[int, ...], members: Members
+) -> ExpressionError:
+    """What to say of a component of a quantity that is one number for each member."""
+    first = str(numbers[0])
+    if isinstance(node, Member) and node.index:
+        first = f"{node.index}{f'{node.shift:+d}' if node.shift else ''}"
+    text, own = f"{name}[{', '.join([first, *map(str, numbers[1:])])}]", f"{name}[{first}]"
+    problem = f"{name!r} is one number for each {members.index}, found {text}"
+    hint = f"If members have several of them, add shape = [...] where {name!r} is declared."
+    return fault_at(node, problem, text, f"{own}, without a component", hint)
 
 
 def _work_out(node: Node) -> Node:

@@ -1,0 +1,230 @@
+"""Kinks of equal members: steps end at the earliest of them, and methods keep their order.
+
+Expected values are closed forms between kinks, joined by hand, and systems that are written out.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.crosscheck.families import crosscheck_family
+from coadjoint.errors import CrossCheckError
+from coadjoint.lower import families, family_kinks
+from coadjoint.lower.families import lower_family
+from coadjoint.lower.family_check import check_loops
+from coadjoint.solve import kernels
+from coadjoint.solve.folders import load_texts
+from coadjoint.spec.reader import read_spec_text
+from tests.families import family_of, read
+from tests.kernels import COMPILER
+
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
+HEAD = """
+title = "Particles with forces that jump"
+routes = ["canonical"]
+[index]
+i = { size = 6 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+k = { index = "i", default = 1, positive = true }
+[hamiltonian]
+"""
+#: Each is pulled to 0 by the constant force k[i].
+FREE = f'{HEAD}h = "sum(i, p[i]^2/2 + k[i]*abs(q[i]))"\n'
+#: Each is pulled by a spring as well.
+ARCS = f'{HEAD}h = "sum(i, p[i]^2/2 + q[i]^2/2 + k[i]*abs(q[i]))"\n'
+#: Springs that only push, stops that only hold, and a force that begins with time, of a chain.
+LINKED = f"""{HEAD}
+h = \"\"\"sum(i, p[i]^2/2 + k[i]*q[i]^2/2) + sum(i, max(q[i+1] - q[i], 0)^2)
+  + sum(i, abs(q[i-1] - q[i+1] - 1))
+  + max(t - 1, 0)*sum(i, q[i])\"\"\"
+[time]
+name = "t"
+"""
+PAIRS = f'{HEAD}h = "sum(i, p[i]^2/2 + q[i]^2/2) + sum(i, j, i < j, abs(q[i] - q[j]))"\n'
+METHODS = ("taylor", "dop853", "rk4")
+
+
+def load(text):
+    """A family by its text."""
+    return load_texts(pipeline.render(read_spec_text(text, "kinked.toml")).texts)
+
+
+@pytest.fixture(scope="module")
+def free():
+    """Particles that move on parabolas."""
+    with load(FREE) as system:
+        yield system
+
+
+def swing(t, amplitude, pull):
+    """The motion of ``x'' = -k sign(x)`` from rest: parabolas, with the period 4 sqrt(2 a/k)."""
+    quarter = np.sqrt(2 * amplitude / pull)
+    parts = np.asarray(t) % (4 * quarter) / quarter
+    folded = np.where(parts < 2, parts, 4 - parts)
+    return amplitude * np.where(folded < 1, 1 - folded**2, (2 - folded) ** 2 - 1)
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize("method", METHODS)
+def test_parabolas_of_all_members_are_followed(free, method, target):
+    """Every kink of every member is met, at its time and by its name."""
+    system, n = free.resize({"i": 5}), 5
+    amplitudes, pulls = np.linspace(0.5, 1.1, n), np.linspace(1.0, 1.7, n)
+    times = np.linspace(0, 30, 31)
+    step = {"step": 0.1} if method == "rk4" else {"rtol": 1e-12, "atol": 1e-12}
+    given = {"q": amplitudes, "p": np.zeros(n)}
+    run = {"parameters": {"k": pulls}, "method": method, "target": target}
+    found = system.simulate(given, times, **run, **step)
+    expected = swing(times, amplitudes[:, None], pulls[:, None])
+    assert np.abs(found["q"] - expected).max() < 1e-9
+    quarters = np.sqrt(2 * amplitudes / pulls)
+    met = {f"q[{i}]": np.arange(quarters[i], 30, 2 * quarters[i]) for i in range(n)}
+    assert len(found.kinks) == sum(map(len, met.values()))
+    for place, name in enumerate(found.kinks.names):
+        own = found.kinks.time[found.kinks.kink == place]
+        np.testing.assert_allclose(own, met[name], rtol=0, atol=1e-9)
+
+
+def test_trajectories_of_a_batch_meet_kinks_of_their_own(free):
+    """A batch has the bits of its trajectories."""
+    system = free.resize({"i": 3})
+    state = np.concatenate([np.random.default_rng(3).uniform(0.5, 1.5, (3, 4)), np.zeros((3, 4))])
+    both = system.simulate(state, (0, 9), samples=4, method="dop853", target="numpy")
+    assert both.kinks.counts.min() > 6
+    for n in range(4):
+        one = system.simulate(state[:, n].copy(), (0, 9), samples=4, method="dop853")
+        assert np.array_equal(one.state, both.state[:, n])
+        assert one.kinks.counts == both.kinks.counts[n]
+
+
+def arc(t):
+    """The motion of ``x'' = -x - sign(x)`` from 1 at rest: arcs about -1 and 1."""
+    quarter = math.acos(0.5)
+    speed, phase = math.sin(quarter) * 2.0, t % (4 * quarter)
+    if phase < quarter:
+        return 2 * math.cos(phase) - 1
+    if phase < 3 * quarter:
+        return 1 - math.cos(phase - quarter) - speed * math.sin(phase - quarter)
+    return math.cos(phase - 3 * quarter) + speed * math.sin(phase - 3 * quarter) - 1
+
+
+@pytest.mark.parametrize("held", [True, False], ids=["held", "control"])
+def test_methods_keep_their_order_across_kinks(monkeypatch, held):
+    """The error of a fixed step falls as that of a smooth motion does; else as the step does."""
+    if not held:
+        for module in (families, family_kinks):
+            monkeypatch.setattr(module, "hold_family", lambda _: None)
+    late = np.array([0.0, 0.3])  # the second particle is ahead of the first one
+    with load(ARCS) as system:
+        pair = system.resize({"i": 2})
+        start = [arc(t) for t in late]
+        assert all(x > 0 for x in start)
+        speeds = [-2 * math.sin(t) for t in late]
+        for method, steps, order in (("rk4", (0.4, 0.1, 0.025), 4), ("dop853", (0.8, 0.4, 0.2), 8)):
+            errors = []
+            for step in steps:
+                run = {"samples": 61, "method": method, "step": step}
+                found = pair.simulate({"q": start, "p": speeds}, (0, 30), **run)
+                exact = [[arc(t + shift) for t in found.time] for shift in late]
+                errors.append(np.abs(found["q"] - exact).max())
+            slope = math.log(errors[0] / errors[-1]) / math.log(steps[0] / steps[-1])
+            assert slope > order - 0.5 if held else slope < 1.6, errors
+            assert (found.kinks is None) is not held
+
+
+def test_members_of_a_chain_move_as_those_that_are_written_out():
+    """Kinks between neighbours, at the ends of the chain and in time, in both targets."""
+    texts = {f"q_{n}": f'q_{n} = {{ role = "coordinate" }}' for n in range(4)}
+    texts |= {f"p_{n}": f'p_{n} = {{ role = "momentum", of = "q_{n}" }}' for n in range(4)}
+    energy = [f"p_{n}^2/2 + q_{n}^2/2 + max(t - 1, 0)*q_{n}" for n in range(4)]
+    energy += [f"max(q_{n + 1} - q_{n}, 0)^2" for n in range(3)]
+    energy += [f"abs(q_{n} - q_{n + 2} - 1)" for n in range(2)]
+    written = f"""
+title = "The same, written out"
+routes = ["canonical"]
+[variables]
+{chr(10).join(texts.values())}
+[hamiltonian]
+h = "{" + ".join(energy)}"
+[time]
+name = "t"
+"""
+    start = np.array([0.3, -0.4, 0.9, -1.2, 0.0, 0.8, 0.0, -0.5])
+    run = {"rtol": 1e-11, "atol": 1e-11}
+    with load(written) as single, load(LINKED) as chain:
+        names = dict(zip(texts, start.tolist(), strict=True))
+        expected = single.simulate(names, (0, 12), **run)
+        assert len(expected.kinks) > 15
+        four = chain.resize({"i": 4})
+        for target in ("c", "numpy"):
+            found = four.simulate(start, (0, 12), target=target, **run)
+            np.testing.assert_allclose(found.state[:4, -1], expected.state[:4, -1], atol=1e-8)
+            np.testing.assert_allclose(found.kinks.time, expected.kinks.time, atol=1e-8)
+        met = {found.kinks.names[n] for n in found.kinks.kink}
+        assert {"t - 1"} < met <= {"t - 1", *four.list_kinks()}
+
+
+def test_a_kink_between_neighbours_belongs_to_one_of_them():
+    """Both read its sign; the last member of a chain has none."""
+    held = family_kinks.hold_family(family_of(read(LINKED)))
+    assert held is not None
+    assert len(held.kinks) == 3
+    names = family_kinks.name_kinks(family_of(read(LINKED)))
+    assert [name.count("[i]") for name in names[None]].count(1) == 2
+    assert [row.count("1") for row in (names[-1], names[-2])] == [2, 1]
+
+
+@pytest.mark.parametrize("place", [None, -1])
+def test_a_wrong_kink_is_seen(place):
+    """Where an argument is another one, or missing at an end at which it is read."""
+    family = family_of(read(LINKED))
+    loops = lower_family(family)
+    check_loops(family, loops)
+    kinks = loops["kinks"]
+    first, *others = kinks.member.program.outputs
+    turned = replace(kinks.member.program, outputs=(*others, first))
+    if place is None:
+        wrong = replace(kinks, member=replace(kinks.member, program=turned))
+    else:
+        last = dict(kinks.ends)[-1]
+        wrong = replace(kinks, ends=((-1, last), (-2, last)))
+    with pytest.raises(CrossCheckError, match=r"rung 2: (kinks|sided_rhs)"):
+        check_loops(family, {**loops, "kinks": wrong})
+
+
+def test_wrong_rates_of_a_side_are_seen():
+    """Two results change places, or a sign is read at another member."""
+    family = family_of(read(FREE))
+    loops = lower_family(family)
+    rates = loops["sided_rhs"]
+    turned = replace(rates.member.program, outputs=rates.member.program.outputs[::-1])
+    wrong = replace(rates, member=replace(rates.member, program=turned))
+    with pytest.raises(CrossCheckError, match="rung 2: sided_rhs"):
+        check_loops(family, {**loops, "sided_rhs": wrong})
+
+
+@pytest.mark.parametrize("targets", [("numpy",), pytest.param(None, marks=pytest.mark.campaign)])
+def test_the_ladder_is_climbed(targets):
+    """Rungs 3 to 5 of rates with given signs, and of what these are the signs of."""
+    rendered = pipeline.render(read_spec_text(LINKED, "linked.toml"))
+    own = rendered.family
+    with load_texts(rendered.texts) as system:
+        given = (own.windows, own.declared, own.family, own.context)
+        report = crosscheck_family(*given, rendered.texts, own.printed, system, targets)
+    for name in ("sided_rhs", "kinks"):
+        assert report.lines[name] > 0
+        assert all(figures.points > 20 for figures in report.figures[name].values())
+
+
+def test_kinks_of_pairs_are_told_of():
+    """Steps cross them, which is not silent; those of members are met all the same."""
+    kernels._said.clear()
+    with load(PAIRS) as system, pytest.warns(UserWarning, match=r"where q\[i\] - q\[j\] is 0"):
+        found = system.simulate(np.linspace(0.1, 1, 12), (0, 0.1), method="rk4", step=0.01)
+    assert found.kinks is None
