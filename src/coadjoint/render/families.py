@@ -480,7 +480,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         },
         "positions": [int(n in context.positions) for n in range(count)],
         "sweeps": normals.SWEEPS,
-        "stopping": STOPPING,
+        "stopping": {**STOPPING, "has_newton": False},
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
     }
