@@ -1,11 +1,14 @@
 """Newton's method for the equations of implicit steps: stiff motions, bits, refusals."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import STRUCTURED
-from coadjoint.solve.methods import newton
+from coadjoint.solve import generated
+from coadjoint.solve.methods import krylov, newton
 from coadjoint.solve.methods.lie_poisson import LiePoisson
 from coadjoint.systems import (
     heavy_top,
@@ -32,14 +35,15 @@ def run(system, state, end, method, step, **options):
 
 
 def solve_both(system, state, end, method, step):
-    """The same run by sweeps alone, and by Newton's method."""
-    return [run(system, state, end, method, step, newton=each) for each in (False, True)]
+    """The same run by sweeps alone, and by Newton's method, in NumPy: what is compiled takes long."""
+    given = {"target": "numpy"}
+    return [run(system, state, end, method, step, newton=each, **given) for each in (False, True)]
 
 
 @pytest.mark.parametrize("method", ["midpoint", "gauss4", "discrete_gradient"])
 def test_stiff_friction_is_followed_where_sweeps_diverge(method):
     """It comes to where DOP853 comes with steps that are short enough for its stability."""
-    given = {"parameters": HONEY}
+    given = {"parameters": HONEY, "target": "numpy"}
     expected = heavy_top_damped.simulate(
         LEANING, (0, 5), HONEY, method="dop853", rtol=1e-10, atol=1e-12, samples=1
     )
@@ -73,7 +77,16 @@ def test_the_equations_are_those_of_sweeps_and_take_fewer(system, state, method,
     assert other.sweeps < one.sweeps
 
 
-@pytest.mark.parametrize("method", ["midpoint", "gauss4", "spherical_midpoint", "coadjoint_mean"])
+@pytest.mark.parametrize(
+    "method",
+    [
+        "gauss4",
+        "spherical_midpoint",
+        pytest.param("midpoint", marks=pytest.mark.campaign),
+        pytest.param("coadjoint_mean", marks=pytest.mark.campaign),
+        pytest.param("discrete_gradient", marks=pytest.mark.campaign),
+    ],
+)
 def test_c_and_numpy_have_the_same_bits(method):
     """In members with other pivots and other counts of sweeps, one of which is not solved."""
     states = TURNING[:, np.newaxis] * np.array([1.0, 1.2, 40.0, 0.5, 3.0])
@@ -88,8 +101,6 @@ def test_c_and_numpy_have_the_same_bits(method):
 
 def test_slopes_are_the_derivatives_of_sweeps():
     """Against differences, where they are exact: on spheres with tangents, and of stages."""
-    from types import SimpleNamespace
-
     from coadjoint.methods import Sphere
     from coadjoint.solve.methods.gauss import Gauss
     from coadjoint.solve.methods.lie_poisson import Arc
@@ -153,10 +164,11 @@ def test_wrong_slopes_are_seen(monkeypatch):
 def test_a_failure_is_a_status_that_says_what_helps():
     """Where sweeps fail Newton's method is named; where it fails as well, shorter steps are."""
     fast = 200 * TURNING
-    failed = run(rigid_body, fast, 1, "spherical_midpoint", 0.5)
+    given = {"target": "numpy"}
+    failed = run(rigid_body, fast, 1, "spherical_midpoint", 0.5, **given)
     assert failed.status == "NOT_SOLVED"
     assert failed.message.endswith("take shorter steps, or newton=True, which solves stiff ones")
-    again = run(rigid_body, fast, 1, "spherical_midpoint", 0.5, newton=True)
+    again = run(rigid_body, fast, 1, "spherical_midpoint", 0.5, newton=True, **given)
     assert again.status == "NOT_SOLVED"
     assert again.message.endswith("take shorter steps")
 
@@ -174,12 +186,6 @@ def test_a_failure_is_a_status_that_says_what_helps():
             "'yes'; expected True",
         ),
         (stochastic_rigid_body, TURNING, {"step": 0.1, "seed": 1}, "with noise are solved by"),
-        (
-            heisenberg_lattice,
-            None,
-            {"method": "midpoint", "step": 0.1},
-            "no Jacobian in closed form",
-        ),
     ],
 )
 def test_where_there_is_nothing_to_solve_it_is_refused(system, state, options, said):
@@ -194,3 +200,72 @@ def test_every_implicit_method_takes_it():
     assert len(names) >= 12
     for name in names:
         assert run(rigid_body, TURNING, 0.4, name, 0.2, newton=True, target="numpy").status == "OK"
+
+
+# -- systems of equal members ---------------------------------------------------------------------
+
+
+def make_wave(n):
+    """Spins of a wave that is long against their distance: it is slow, and neighbours are not."""
+    phase = 4 * np.pi * np.arange(n) / n
+    tilt = 0.9 + 0.2 * np.cos(phase)
+    return np.concatenate(
+        [np.sin(tilt) * np.cos(phase), np.sin(tilt) * np.sin(phase), np.cos(tilt)]
+    )
+
+
+@pytest.mark.parametrize("method", ["midpoint", "spherical_midpoint"])
+def test_stiff_neighbours_are_followed_by_krylov_spaces(method):
+    """A wave by steps eight times longer than sweeps converge with, against DOP853."""
+    ring = heisenberg_lattice.system.resize({"i": 400})
+    wave = make_wave(400)
+    assert run(ring, wave, 4, method, 2.0).status == "NOT_SOLVED"
+    found = run(ring, wave, 4, method, 2.0, newton=True)
+    expected = ring.simulate(wave, (0, 4), method="dop853", rtol=1e-10, atol=1e-12, samples=1)
+    assert found.status == "OK"
+    assert np.abs(expected.state[:, 0] - wave).max() > 1e-3
+    assert np.abs(found.state - expected.state).max() < 1e-6
+    assert found.drift["M"] < 1e-14
+
+
+@pytest.mark.parametrize("method", ["midpoint", "spherical_midpoint"])
+@pytest.mark.parametrize("members", [1, 3, 11])
+def test_members_in_any_company_have_the_bits_of_numpy(method, members):
+    """By one lane, by some of a vector, and by more than one: with counts of sweeps."""
+    ring = heisenberg_lattice.system.resize({"i": 21})
+    spins = np.random.default_rng(1).normal(size=(3, 21, members))
+    spins = (spins / np.linalg.norm(spins, axis=0)).reshape(63, members)
+    one, other = (
+        run(ring, spins, 0.8, method, 0.4, newton=True, target=each) for each in ("numpy", "c")
+    )
+    assert np.array_equal(one.state, other.state)
+    assert np.array_equal(one.sweeps, other.sweeps)
+    alone = run(ring, spins[:, 0], 0.8, method, 0.4, newton=True)
+    assert np.array_equal(alone.state[..., -1], one.state[:, 0, -1])
+
+
+def test_krylov_spaces_solve_linear_equations():
+    """Against LAPACK, with lanes that need different numbers of vectors; one needs none."""
+    rng = np.random.default_rng(5)
+    slopes = rng.normal(size=(12, 12, 3)) / 6
+    slopes[..., 1] *= 0.01
+    middle, following = rng.normal(size=(2, 12, 3))
+    following[:, 2] = middle[:, 2]
+
+    def apply(vector):
+        return np.einsum("ijn,jn->in", slopes, vector)
+
+    with np.errstate(invalid="ignore"):
+        found = krylov.improve(middle, following, apply)
+    for n in range(3):
+        rest = following[:, n] - middle[:, n]
+        exact = middle[:, n] + np.linalg.solve(np.eye(12) - slopes[..., n], rest)
+        assert np.abs(found[:, n] - exact).max() <= 1e-3 * np.abs(rest).max()
+    assert np.array_equal(found[:, 2], middle[:, 2])
+
+
+def test_a_system_without_a_jacobian_says_so():
+    """Rates that loop over a table of coefficients have none that is written out."""
+    table = SimpleNamespace(name="so9_body", functions=("rhs",), NOISE=())
+    with pytest.raises(KernelArgumentError, match="so9_body has no Jacobian in closed form; expec"):
+        generated.check_newton_applies(table, False)

@@ -252,7 +252,6 @@ def _restrict(structured: Mapping[str, Any], method: StructuredMethod) -> dict[s
         "tableaus": {key: value for key, value in structured["tableaus"].items() if key == macro},
         "has_bracket": structured["has_bracket"] and "bracket_vector" in method.needs,
         "has_newton": False,
-        "stopping": {**structured["stopping"], "has_newton": False},
     }
 
 

@@ -348,7 +348,7 @@ def describe_structured(
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"
             },
             "sweeps": normals.SWEEPS,
-            "stopping": {**STOPPING, "has_newton": has_newton},
+            "stopping": STOPPING,
             "has_newton": has_newton,
             "slopes": len(programs[JACOBIAN].state) if has_newton else 0,
             "terms": TERMS,

@@ -142,6 +142,9 @@ def find_newton_obstacle(system: System, reconstruct: Any) -> str:
     """
     if has_noise(system):
         return "the equations of steps with noise are solved by sweeps alone"
+    if isinstance(system, FamilySystem):
+        has_it = system.series.has("NEWTON")
+        return "" if has_it else "its folder was generated without it: run `coadjoint regenerate`"
     if "jacobian" not in system.functions:
         return f"{system.name} has no Jacobian in closed form"
     if not KernelModule(system, find_kind(reconstruct).files[2]).has("NEWTON"):

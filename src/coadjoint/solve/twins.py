@@ -62,6 +62,7 @@ class NumpyStepper:
             "noise",
             "noise_vector",
             JACOBIAN,
+            "jacobian_vector",
             *ASKED,
         )
         self._sizes = {name: system.rows(name).size for name in functions}

@@ -6,9 +6,9 @@ symmetric coefficients have order 4 and 6.
 
 The search for the middle begins where those of the last steps ended, continued as a parabola in the
 number of the step. Newton's method takes the place of sweeps alone where it is asked for
-(`coadjoint.solve.methods.newton`). What a step leaves for the next one stands in its memory: rows of
-what rounding took of the state, and for each search the last offset of the middle from the state
-with its first and second difference.
+(`coadjoint.solve.methods.newton`, and `coadjoint.solve.methods.krylov` for equal members). What a
+step leaves for the next one stands in its memory: rows of what rounding took of the state, and for
+each search the last offset of the middle from the state with its first and second difference.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.methods.coadjoint_mean`.
 """
@@ -25,7 +25,7 @@ import numpy as np
 from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS
-from coadjoint.solve.methods.newton import improve
+from coadjoint.solve.methods import krylov, newton
 from coadjoint.solve.steps import Lanes, add_low
 
 if TYPE_CHECKING:
@@ -162,11 +162,13 @@ class LiePoisson:
         order: 2, or that of a composition: 4 or 6.
 
     Attributes:
-        jacobian: The derivatives of the rates by the state, row by row, some time after lanes; None
-            for sweeps alone, without Newton's method.
+        jacobian: The derivatives of the rates by the state, row by row, some time after lanes, for
+            Newton's method; None without it.
+        along: In its place, of equal members, the derivative of the rates along a vector.
     """
 
     jacobian: Callable[[Lanes, Array, Array], Array] | None = None
+    along: Bracket | None = None
 
     def __init__(
         self, *, gradient: Gradient, bracket: Bracket, size: float, order: int = 2
@@ -217,18 +219,29 @@ class LiePoisson:
 
     def _try_search(self, arc: Arc, middle: Array, done: Mask) -> tuple[Search, Mask]:
         """A search from some middle on in lanes that are not done, and where it is solved."""
-        exact = EXACT if self.jacobian is None else FREE
+        has_newton = self.jacobian is not None or self.along is not None
+        exact = FREE if has_newton else EXACT
         search, kept = Search(middle, len(arc.state), exact), self.prepare(arc, middle)
         search.done = done
         for number in range(SWEEPS):
             if search.done.all():
                 break
             found = self.sweep(arc, search.middle, kept)
-            if self.jacobian is not None:
-                slopes = self.linearise(arc, search.middle, found.middle, kept)
-                found.middle = improve(search.middle, found.middle, slopes)
+            if has_newton:
+                found.middle = self._improve(arc, search.middle, found.middle, kept)
             search.take(number, found)
         return search, search.solved & self.confirm(kept)
+
+    def _improve(self, arc: Arc, middle: Array, following: Array, kept: Any) -> Array:
+        """Where Newton's method leads from a middle, which a sweep leads to what follows."""
+        if self.along is None:
+            slopes = self.linearise(arc, middle, following, kept)
+            return newton.improve(middle, following, slopes)
+
+        def apply(vector: Array) -> Array:
+            return self.apply_slopes(arc, middle, following, kept, vector)
+
+        return krylov.improve(middle, following, apply)
 
     def prepare(self, arc: Arc, middle: Array) -> Any:
         """What sweeps of a step share from some middle on, and may change."""
@@ -248,6 +261,13 @@ class LiePoisson:
         Exact of the midpoint; of others they are those of the first order in the step.
         """
         return self.find_slopes(arc, arc.middle, 0.5 * arc.length, middle)
+
+    def apply_slopes(
+        self, arc: Arc, middle: Array, following: Array, kept: Any, vector: Array
+    ) -> Array:
+        """What `linearise` has times a vector, of equal members, whose matrix is not formed."""
+        assert self.along is not None, "asked for by Newton's method alone"
+        return 0.5 * arc.length * self.along(arc.lanes, arc.middle, middle, vector)
 
     def find_slopes(self, arc: Arc, after: Array, length: Array, state: Array) -> Array:
         """A length times the Jacobian; rows that are reconstructed have none, and are swept."""

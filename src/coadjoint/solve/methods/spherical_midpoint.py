@@ -95,6 +95,15 @@ class SphericalMidpoint(LiePoisson):
                 each.turn(following, column)
         return slopes
 
+    def apply_slopes(
+        self, arc: Arc, middle: Array, following: Array, kept: list[Scale], vector: Array
+    ) -> Array:
+        """As `LiePoisson.apply_slopes`."""
+        change = super().apply_slopes(arc, middle, following, kept, vector)
+        for each in kept:
+            each.turn(following, change)
+        return change
+
 
 class Scale:
     """The quotient of the lengths of a vector and of the half of a sum, on its way to be solved.

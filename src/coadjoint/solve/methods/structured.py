@@ -35,7 +35,7 @@ class Structured:
         functions: ``rates`` and what the method needs, by their names: of lanes, some time after
             where these are, at a state, and what else they take.
         branches: Whether the rates have branch points: they have to be finite after each step.
-        newton: Whether Newton's method solves the equations of steps, with ``jacobian``.
+        newton: Whether Newton's method solves the equations, with ``jacobian`` or ``along``.
     """
 
     tries_again = halves = False
@@ -54,7 +54,8 @@ class Structured:
         self.rates, self.size, self.branches = functions["rates"], size, branches
         self.method: LiePoisson = make(functions, size, own.order)
         if newton:
-            self.method.jacobian = functions["jacobian"]
+            self.method.jacobian = functions.get("jacobian")
+            self.method.along = functions.get("along")
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
