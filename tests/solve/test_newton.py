@@ -35,7 +35,7 @@ def run(system, state, end, method, step, **options):
 
 
 def solve_both(system, state, end, method, step):
-    """The same run by sweeps alone, and by Newton's method, in NumPy: what is compiled takes long."""
+    """The same run by sweeps alone, and by Newton's method, in NumPy, which compiles nothing."""
     given = {"target": "numpy"}
     return [run(system, state, end, method, step, newton=each, **given) for each in (False, True)]
 
