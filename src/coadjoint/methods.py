@@ -127,6 +127,8 @@ BALANCE: Final = (*ACTION, "energy")
 DISTINGUISHED: Final = ("distinguished", "distinguished_gradient")
 #: All that methods ask of a kernel beyond its rates.
 ASKED: Final = (*BALANCE, "sandwich", *DISTINGUISHED)
+#: The derivatives of the rates, by which Newton's method solves the equations of steps.
+JACOBIAN: Final = "jacobian"
 #: Those of a motion that stays on coadjoint orbits, on which the bracket acts.
 _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (

@@ -98,6 +98,11 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     "part of the distance of samples, 1000 steps or more.",
 )
 @click.option(
+    "--newton",
+    is_flag=True,
+    help="Solve the equations of implicit steps by Newton's method, for stiff forces.",
+)
+@click.option(
     "--threads",
     type=click.IntRange(1),
     help="How many threads share the members, at the most. Default: one for each processor.",

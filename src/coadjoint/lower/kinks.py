@@ -22,7 +22,7 @@ from coadjoint.lower.program import (
     walk,
     with_children,
 )
-from coadjoint.methods import ASKED
+from coadjoint.methods import ASKED, JACOBIAN
 
 #: What a side is called: no name of a spec begins with an underscore.
 SIDE = "_side"
@@ -49,7 +49,7 @@ def hold_sides(programs: Mapping[str, Program]) -> dict[str, Program]:
         if not set(find_kinks(form)) <= sides.keys():
             return dict(programs)  # recurrences are made of other arguments
         held = replace(held, factored=_hold(form, sides))
-    bounds = {name: each for name, each in programs.items() if name not in ASKED}
+    bounds = {name: each for name, each in programs.items() if name not in (*ASKED, JACOBIAN)}
     return {**bounds, "rates": held, "kinks": _make_kinks(rates, kinks)}
 
 

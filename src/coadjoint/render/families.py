@@ -36,7 +36,7 @@ from coadjoint.render.kernels import (
 )
 from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
-from coadjoint.solve.methods import spherical_midpoint
+from coadjoint.solve.methods import krylov, spherical_midpoint
 from coadjoint.solve.methods.lie_poisson import STOPPING
 
 
@@ -496,6 +496,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "positions": [int(n in context.positions) for n in range(count)],
         "sweeps": normals.SWEEPS,
         "stopping": STOPPING,
+        "krylov": {name: getattr(krylov, name) for name in ("MOST", "LEAST", "SUMS")},
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
     }

@@ -251,6 +251,7 @@ def _restrict(structured: Mapping[str, Any], method: StructuredMethod) -> dict[s
         },
         "tableaus": {key: value for key, value in structured["tableaus"].items() if key == macro},
         "has_bracket": structured["has_bracket"] and "bracket_vector" in method.needs,
+        "has_newton": False,
     }
 
 

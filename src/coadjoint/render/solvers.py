@@ -31,7 +31,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, TERMS, Sphere, list_structured
+from coadjoint.methods import ACTION, ASKED, JACOBIAN, TERMS, Sphere, list_structured
 from coadjoint.render.recurrences import (
     Line,
     Stage,
@@ -251,6 +251,7 @@ def select_programs(
     rates = reduce(join, (known[name] for name in kind.rates))
     others = ("domain", "projection", "noise")
     bounds = {name: known[name] for name in others if name in known}
+    slopes = {JACOBIAN: known[JACOBIAN]} if JACOBIAN in known and "noise" not in known else {}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
     action = [name for name in ASKED if name in known] if has_action else []
     return {
@@ -259,6 +260,7 @@ def select_programs(
             name: widen(program, rates.state, moves=name == "projection")
             for name, program in bounds.items()
         },
+        **slopes,
         **{name: _with_own_names(known[name]) for name in action},
         **{each.name: _with_own_names(each) for each in maps if kind == SOLVER},
     }
@@ -320,6 +322,7 @@ def describe_structured(
     }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
     state = () if bracket is None else bracket.state
+    has_newton = bool(methods) and JACOBIAN in programs
     composed = [each for each in methods if each.file != "gauss"]
     orders = sorted({each.order for each in composed})
     return {
@@ -346,6 +349,8 @@ def describe_structured(
             },
             "sweeps": normals.SWEEPS,
             "stopping": STOPPING,
+            "has_newton": has_newton,
+            "slopes": len(programs[JACOBIAN].state) if has_newton else 0,
             "terms": TERMS,
         }
     }

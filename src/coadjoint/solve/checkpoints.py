@@ -227,7 +227,7 @@ def _describe(
     return {
         "system": system.name,
         "id": system.id,
-        "method": choice.name,
+        "method": str(choice),
         "order": choice.order,
         "target": request.target,
         "rtol": request.rtol,

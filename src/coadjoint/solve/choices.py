@@ -27,6 +27,7 @@ class Choice:
         few: Whether it is for members that fill no more than half of the longest vectors.
         kind: What it integrates.
         is_noisy: Whether Wiener processes move the state.
+        newton: Whether Newton's method solves the equations of its steps.
     """
 
     name: str
@@ -34,12 +35,14 @@ class Choice:
     few: bool = False
     kind: SolverKind = SOLVER
     is_noisy: bool = False
+    newton: bool = False
 
     @property
     def source(self) -> Source:
         """What its object is compiled from, with what chooses it there."""
         chosen = f"-DORDER={self.order}" if self.name == "taylor" else f"-D{self.name.upper()}"
-        defines = (chosen, "-DFEW") if self.few else (chosen,)
+        marks = {"-DFEW": self.few, "-DNEWTON": self.newton}
+        defines = (chosen, *(mark for mark, is_set in marks.items() if is_set))
         return Source(self.kind.stem, defines, is_loops=False)
 
     @property
@@ -73,4 +76,4 @@ class Choice:
         return self.name in STRUCTURED and not self.is_noisy
 
     def __str__(self) -> str:
-        return self.name
+        return f"{self.name} with Newton's method" if self.newton else self.name

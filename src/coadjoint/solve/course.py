@@ -64,6 +64,7 @@ class Course:
             update; empty without noise.
         projection: Onto what states are moved, and when; empty where they are not.
         chosen: Why the method was taken, where it was left to us and steps are fixed.
+        newton: Whether Newton's method solved the equations of steps.
         start: Where the trajectories began, if no sample has it.
         kinks: The kinks that they met; None where the rates have none, or from SciPy.
     """
@@ -87,6 +88,7 @@ class Course:
     projection: str = ""
     chosen: str = ""
     start: Start | None = None
+    newton: bool = False
     kinks: Kinks | None = None
 
     def tell_stepwise(self) -> str:

@@ -21,7 +21,7 @@ from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.tableau import STAGES
-from coadjoint.methods import MAPPED
+from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import MET, Ensemble, Inputs
@@ -182,7 +182,13 @@ class FamilyTwin(StepwiseStepper):
         if choice.is_structured:
             spheres = [(tuple(family.rows_of(rows)),) for rows in family.spheres.values()]
             functions = {"rates": self._rates, "field": self._rates, "spheres": spheres}
-            return Structured(choice.name, run.size, functions, branches=self._branches)
+            return Structured(
+                choice.name,
+                run.size,
+                {**functions, "along": self._along},
+                branches=self._branches,
+                newton=choice.newton,
+            )
         if choice.name in MAPPED:
             count = len(family.STATE.components) // family.size
             moving = set(family.positions), set(range(count)).difference(family.positions)
@@ -194,6 +200,10 @@ class FamilyTwin(StepwiseStepper):
             ]
             return Maps(steps, self._rates, run.size, is_compensated=False, branches=self._branches)
         return super()._method(run)
+
+    def _along(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
+        """The derivative of the rates along a vector."""
+        return self._evaluate(("jacobian_vector",), lanes, after, np.concatenate([state, vector]))
 
     def _shift(self, state: Array, parameters: Array, after: Array) -> Array:
         """What a flow adds to the rows that it moves, by their rates, which the others decide."""
@@ -225,18 +235,21 @@ class FamilyStepper(FamilyTwin):
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
+        self._vector = system._kernels.find(target, "jacobian_vector") if choice.newton else None
         is_driven, has_inputs = bool(self.driving_rows), bool(system.INPUTS)
         has_kinks = self._limits.kinks is not None
         parts = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
         self._run_type = _make_structure(tuple(called), parts)
         has_noise = bool(system.NOISE)
+        is_implicit = any(each.name in STRUCTURED for each in system.METHODS)
         fields: tuple[Any, ...] = (
             *_ENSEMBLE,
             *_DRIVEN * is_driven,
             *_INPUTS * has_inputs,
             *_NOISE * has_noise,
+            *_KINKED * has_kinks,
         )
-        fields = (*fields, *_KINKED * has_kinks)
+        fields += (("along", _PLACE),) * is_implicit
         self._ensemble_type = _make_structure(tuple(called), fields)
         names = ("advance", "work", *FUNCTIONS.get(choice.name, ()))
         self._functions = {name: library.take(f"solver_{name}") for name in names}
@@ -279,6 +292,8 @@ class FamilyStepper(FamilyTwin):
             size=run.size,
             max_steps=run.max_steps,
         )
+        if self._vector is not None:
+            given.along = self._vector
         if self.driving_rows:
             given.driving_rows = self.driving_rows
         if self._family.NOISE:

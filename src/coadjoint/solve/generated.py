@@ -28,9 +28,10 @@ from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
 from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
-from coadjoint.solve.noisy import KEEPS, check_knots
+from coadjoint.solve.noisy import KEEPS, check_knots, has_noise
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
+from coadjoint.solve.request import find_kind
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.starts import check_starts
 from coadjoint.solve.stochastic import find_bound
@@ -132,6 +133,37 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
     }
 
 
+def find_newton_obstacle(system: System, reconstruct: Any) -> str:
+    """Why Newton's method does not solve the equations of steps, as a clause; "" where it does.
+
+    Args:
+        system: The System.
+        reconstruct: As `System.simulate` takes it.
+    """
+    if has_noise(system):
+        return "the equations of steps with noise are solved by sweeps alone"
+    if isinstance(system, FamilySystem):
+        has_it = system.series.has("NEWTON")
+        return "" if has_it else "its folder was generated without it: run `coadjoint regenerate`"
+    if "jacobian" not in system.functions:
+        return f"{system.name} has no Jacobian in closed form"
+    if not KernelModule(system, find_kind(reconstruct).files[2]).has("NEWTON"):
+        return "its folder was generated without it: run `coadjoint regenerate`"
+    return ""
+
+
+def check_newton_applies(system: System, reconstruct: Any) -> None:
+    """Newton's method solves the equations of steps.
+
+    Raises:
+        KernelArgumentError: It does not; with the reason.
+    """
+    if obstacle := find_newton_obstacle(system, reconstruct):
+        raise KernelArgumentError(
+            f"newton is True, and {obstacle}; expected newton=False.", found="True", reason=obstacle
+        )
+
+
 def find_noisy_obstacle(system: System, name: str) -> str:
     """Why a method does not follow the noise of a system, as a clause; "" where it does.
 
@@ -220,6 +252,7 @@ def _make_course(
         codes=run.status.reshape(batch),
         steps=run.steps.reshape(batch),
         rejected=run.rejected.reshape(batch),
+        newton=request.newton,
         sweeps=None if run.sweeps is None else run.sweeps.reshape(batch),
         reached=run.time.reshape(batch),
         last=run.state[:n].reshape(-1, *batch),
@@ -506,9 +539,15 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
         if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
-        f"{place}; take shorter steps",
+        f"{place}; take shorter steps{_advise_newton(system, request)}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
+
+
+def _advise_newton(system: System, request: Request) -> str:
+    """What else may solve the equations of steps; "" for nothing."""
+    has_it = not (request.newton or find_newton_obstacle(system, request.reconstruct))
+    return ", or newton=True, which solves stiff ones" if has_it else ""
 
 
 def _explain_batch(run: Ensemble) -> str:

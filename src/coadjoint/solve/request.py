@@ -71,6 +71,7 @@ class Request:
         stepwise: Why a generated method makes its steps in Python; empty where it does not.
         chosen: Why the method was taken, where it was left to us and keeps structure or could.
         seed: Of the noise; None where there is none.
+        newton: Whether Newton's method solves the equations of implicit steps.
     """
 
     state: Array
@@ -94,13 +95,20 @@ class Request:
     stepwise: str
     seed: int | None = None
     chosen: str = ""
+    newton: bool = False
 
     @cached_property
     def choice(self) -> Choice:
         """The generated method."""
         order = _ORDER.get(self.method) or choose_order(self.rtol)
         kind = find_kind(self.reconstruct)
-        return Choice(name=self.method, order=order, kind=kind, is_noisy=self.seed is not None)
+        return Choice(
+            name=self.method,
+            order=order,
+            kind=kind,
+            is_noisy=self.seed is not None,
+            newton=self.newton,
+        )
 
 
 def check_state(system: System, state: Any) -> Array:
@@ -287,6 +295,30 @@ def check_dense(dense: Any) -> bool:
             f"dense is {str(dense)[:80]!r}; expected True or False.", found=str(dense)[:80]
         )
     return bool(dense)
+
+
+def check_newton(newton: Any, name: str) -> bool:
+    """Whether Newton's method is to solve the equations of steps.
+
+    Args:
+        newton: As given.
+        name: The method.
+
+    Raises:
+        KernelArgumentError: It is neither True nor False, or steps have no equations.
+    """
+    if not isinstance(newton, bool | np.bool_):
+        raise KernelArgumentError(
+            f"newton is {str(newton)[:80]!r}; expected True or False.", found=str(newton)[:80]
+        )
+    if newton and name not in STRUCTURED:
+        raise KernelArgumentError(
+            f"newton is True, and the steps of method {name!r} have no equation that Newton's "
+            "method could solve; expected an implicit method such as 'midpoint' or 'gauss4', with "
+            "step=.",
+            found=name,
+        )
+    return bool(newton)
 
 
 def find_kind(reconstruct: Any) -> SolverKind:

@@ -37,6 +37,7 @@ from coadjoint.solve.request import (
     Request,
     check_count,
     check_dense,
+    check_newton,
     check_positive,
     check_progress,
     check_state,
@@ -85,6 +86,7 @@ def simulate(
     events: Any,
     dense: Any,
     seed: Any = None,
+    newton: Any = False,
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
     initial = check_state(system, state)
@@ -132,6 +134,8 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
+    if check_newton(newton, name):
+        generated.check_newton_applies(system, reconstruct)
     if np.size(t) == 2 and (name in {*STRUCTURED, *MAPPED} or has_noise(system)):
         assert step is not None, "methods that keep structure, and noise, have steps of one length"
         times = take_ends_of_steps(start, times, float(step))
@@ -157,6 +161,7 @@ def simulate(
         stepwise=stepwise,
         seed=None if seed is None else int(seed),
         chosen=chosen,
+        newton=bool(newton),
     )
     check_steps(request)
     if has_noise(system):

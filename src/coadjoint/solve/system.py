@@ -234,6 +234,7 @@ class System(Functions):
         events: str | Event | Sequence[str | Event] | None = None,
         dense: bool = False,
         seed: int | None = None,
+        newton: bool = False,
     ) -> Solution:
         """Integrate one trajectory, or many at a time.
 
@@ -291,6 +292,11 @@ class System(Functions):
                 ``"heun"``, ``"spherical_midpoint"`` on spheres, and ``"midpoint"``, which
                 ``"auto"`` is, with ``step``; samples lie at
                 the ends of steps.
+            newton: Whether Newton's method solves the equations of implicit steps, with the
+                generated Jacobian, in the place of sweeps alone: for stiff forces, where these ask
+                for much shorter steps. A sweep then takes a linear solution of as many unknowns as
+                are searched for. The equations are the same, and so is what a method keeps.
+                ``Solution.course.sweeps`` counts them.
 
         Returns:
             The labelled trajectory or trajectories, with observables and the drift of what is
@@ -328,6 +334,7 @@ class System(Functions):
             events=events,
             dense=dense,
             seed=seed,
+            newton=newton,
         )
 
     def ode(

@@ -14,7 +14,7 @@ import numpy as np
 
 from coadjoint.build.compiler import compiler_version
 from coadjoint.build.library import tell_processor
-from coadjoint.methods import ASKED, MAPPED, Sphere
+from coadjoint.methods import ASKED, JACOBIAN, MAPPED, Sphere
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.render.targets.numpy.loader import NumpyKernel
 from coadjoint.render.targets.protocol import Call
@@ -55,7 +55,16 @@ class NumpyStepper:
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
         self._kernel = NumpyKernel(system, "kernel.py")
-        functions = (*choice.kind.rates, "domain", "projection", "noise", "noise_vector", *ASKED)
+        functions = (
+            *choice.kind.rates,
+            "domain",
+            "projection",
+            "noise",
+            "noise_vector",
+            JACOBIAN,
+            "jacobian_vector",
+            *ASKED,
+        )
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
         spheres: tuple[Any, ...] = ()
@@ -126,7 +135,14 @@ class NumpyStepper:
             functions["values"] = partial(self._evaluate, ("energy", "distinguished"))
             slopes = ("energy_gradient", "distinguished_gradient")
             functions["gradients"] = partial(self._evaluate, slopes)
-            return Structured(self._choice.name, run.size, functions, branches=self._branches)
+            functions["jacobian"] = self._slopes
+            return Structured(
+                self._choice.name,
+                run.size,
+                functions,
+                branches=self._branches,
+                newton=self._choice.newton,
+            )
         return METHODS[self._choice.name](
             rates=self._rates,
             **self._noise,
@@ -163,6 +179,10 @@ class NumpyStepper:
     def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The product of matrices of a state and of a vector."""
         return self._evaluate(("sandwich",), lanes, after, np.concatenate([state, vector]))
+
+    def _slopes(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The derivatives of the rates by the state, without what is reconstructed."""
+        return self._evaluate((JACOBIAN,), lanes, after, state)
 
     def _find_kinks(
         self, find: Callable[..., Array], lanes: Lanes, after: Array, state: Array

@@ -268,10 +268,10 @@ def test_c_has_the_bits_of_numpy(method: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("method", "found", "put"),
     [
-        ("average_gradient", "nodes[k][1] * (near[i]", "nodes[k][0] * (near[i]"),
+        ("average_gradient", "nodes[k][1] * (near[r]", "nodes[k][0] * (near[r]"),
         ("average_gradient", "0.5 * rise[i]", "0.25 * rise[i]"),
-        ("average_gradient", "- 2.0 * slope[i]", "- 1.0 * slope[i]"),
-        ("discrete_gradient", "(last[0] - first[0]) - along", "(last[0] - first[0]) + along"),
+        ("average_gradient", "- 2.0 * slope[r]", "- 1.0 * slope[r]"),
+        ("discrete_gradient", "(last - first) - along", "(last - first) + along"),
         ("discrete_gradient4", "arc->low[i] + 0.5", "0.0 * arc->low[i] + 0.5"),
     ],
 )
@@ -287,7 +287,7 @@ def test_spoiled_text_is_caught(
 
 def test_a_spoiled_correction_is_caught(tmp_path: Path) -> None:
     """It matters in long steps alone, longer than those that are tried when an object is loaded."""
-    wrong = ("kept->factor * chord[i]", "0.5 * kept->factor * chord[i]")
+    wrong = ("factor * chord[i]", "0.5 * factor * chord[i]")
     given = {"method": "discrete_gradient", "step": 0.2, "samples": 9}
     states = 1.5 * draw_states()
     for name, spoil, same in (("right", None, True), ("wrong", wrong, False)):

@@ -55,6 +55,19 @@ class CoadjointMean(LiePoisson):
         kept[0] = np.where(more, 2.0 * parts, parts)
         return Sweep(mean, chord, more)
 
+    def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Array]) -> Array:
+        """As `LiePoisson.linearise`; the middle enters a sweep through xi alone.
+
+        So the part of the rates with xi in its place is left out.
+        """
+        half = 0.5 * arc.length
+        slopes = self.find_slopes(arc, arc.middle, half, middle)
+        xi = self.gradient(arc.lanes, arc.middle, middle)
+        for k, unit in enumerate(np.eye(len(middle))):
+            every = np.repeat(unit[:, np.newaxis], middle.shape[1], axis=1)
+            slopes[:, k] -= half * self.bracket(arc.lanes, arc.middle, every, xi)
+        return slopes
+
     def _follow(self, arc: Arc, xi: Array, parts: Array) -> tuple[Array, Array, Mask]:
         """The mean of the arc of an element from a state on, its chord, and where terms grew."""
         start, length = arc.state, arc.length / parts

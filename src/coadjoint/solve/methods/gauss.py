@@ -160,6 +160,17 @@ class Gauss(LiePoisson):
             better.append(arc.state + total)
         return Sweep(np.concatenate(better), _add_symmetric(rises))
 
+    def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Array]) -> Array:
+        """As `LiePoisson.linearise`, exact: of each stage by each."""
+        size, columns = len(arc.state), []
+        stages = np.split(middle, len(kept))
+        shares = np.array(self.table.shares)
+        for j, (node, length, stage) in enumerate(zip(self.table.nodes, kept, stages, strict=True)):
+            rows = self.find_slopes(arc, node * arc.length, length, stage)
+            own = shares[:, j, np.newaxis, np.newaxis, np.newaxis] * rows
+            columns.append(own.reshape(len(kept) * size, size, -1))
+        return np.concatenate(columns, axis=1)
+
     def _split(self, h: Array) -> list[Array]:
         """The parts of a step that belong to its stages."""
         stages, outer = len(self.table.nodes), [b * h for b in self.table.lengths]

@@ -5,9 +5,10 @@ energy's gradient at some middle of the step. Each is its own adjoint, so that c
 symmetric coefficients have order 4 and 6.
 
 The search for the middle begins where those of the last steps ended, continued as a parabola in the
-number of the step. What a step leaves for the next one stands in its memory: rows of what rounding
-took of the state, and for each search the last offset of the middle from the state with its first
-and second difference.
+number of the step. Newton's method takes the place of sweeps alone where it is asked for
+(`coadjoint.solve.methods.newton`, and `coadjoint.solve.methods.krylov` for equal members). What a
+step leaves for the next one stands in its memory: rows of what rounding took of the state, and for
+each search the last offset of the middle from the state with its first and second difference.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.methods.coadjoint_mean`.
 """
@@ -24,6 +25,7 @@ import numpy as np
 from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS
+from coadjoint.solve.methods import krylov, newton
 from coadjoint.solve.steps import Lanes, add_low
 
 if TYPE_CHECKING:
@@ -93,6 +95,11 @@ class Search:
     0.1 of a free body 1e-10 of its Casimir in 2e6 steps where it is at a given size of the change,
     and 2e-21 a step where it is by one.
 
+    Args:
+        middle: Where it begins, ``(n, N)``.
+        rows: Those of the state.
+        exact: `EXACT`, or `FREE` of Newton's method, which has no such errors.
+
     Attributes:
         middle: What was found, ``(n, N)``.
         rise: What the step adds to a state.
@@ -101,8 +108,8 @@ class Search:
         made: How many sweeps there were, ``(N,)``.
     """
 
-    def __init__(self, middle: Array, rows: int) -> None:
-        count = middle.shape[1]
+    def __init__(self, middle: Array, rows: int, exact: int = EXACT) -> None:
+        count, self.exact = middle.shape[1], exact
         self.middle, self.rise = middle, np.zeros((rows, count))
         self.done, self.turned = np.zeros(count, bool), np.zeros(count, bool)
         self.last, self.made = np.full(count, np.inf), np.zeros(count, np.uint64)
@@ -115,7 +122,7 @@ class Search:
     def take(self, number: int, sweep: Sweep) -> None:
         """Go on to what a sweep finds, in lanes that have not ended; sweeps are counted from 0."""
         ends = ~np.asarray(sweep.goes_on)
-        if number >= EXACT:
+        if number >= self.exact:
             ends = ends & self._may_end(sweep.middle)
         elif number >= FREE:
             ends = ends & (sweep.middle == self.middle).all(axis=0)
@@ -153,7 +160,15 @@ class LiePoisson:
         bracket: The Poisson tensor times a vector; it is linear in the state.
         size: The step.
         order: 2, or that of a composition: 4 or 6.
+
+    Attributes:
+        jacobian: The derivatives of the rates by the state, row by row, some time after lanes, for
+            Newton's method; None without it.
+        along: In its place, of equal members, the derivative of the rates along a vector.
     """
+
+    jacobian: Callable[[Lanes, Array, Array], Array] | None = None
+    along: Bracket | None = None
 
     def __init__(
         self, *, gradient: Gradient, bracket: Bracket, size: float, order: int = 2
@@ -204,13 +219,29 @@ class LiePoisson:
 
     def _try_search(self, arc: Arc, middle: Array, done: Mask) -> tuple[Search, Mask]:
         """A search from some middle on in lanes that are not done, and where it is solved."""
-        search, kept = Search(middle, len(arc.state)), self.prepare(arc, middle)
+        has_newton = self.jacobian is not None or self.along is not None
+        exact = FREE if has_newton else EXACT
+        search, kept = Search(middle, len(arc.state), exact), self.prepare(arc, middle)
         search.done = done
         for number in range(SWEEPS):
             if search.done.all():
                 break
-            search.take(number, self.sweep(arc, search.middle, kept))
+            found = self.sweep(arc, search.middle, kept)
+            if has_newton:
+                found.middle = self._improve(arc, search.middle, found.middle, kept)
+            search.take(number, found)
         return search, search.solved & self.confirm(kept)
+
+    def _improve(self, arc: Arc, middle: Array, following: Array, kept: Any) -> Array:
+        """Where Newton's method leads from a middle, which a sweep leads to what follows."""
+        if self.along is None:
+            slopes = self.linearise(arc, middle, following, kept)
+            return newton.improve(middle, following, slopes)
+
+        def apply(vector: Array) -> Array:
+            return self.apply_slopes(arc, middle, following, kept, vector)
+
+        return krylov.improve(middle, following, apply)
 
     def prepare(self, arc: Arc, middle: Array) -> Any:
         """What sweeps of a step share from some middle on, and may change."""
@@ -223,6 +254,29 @@ class LiePoisson:
     def sweep(self, arc: Arc, middle: Array, kept: Any) -> Sweep:
         """A better middle of a step."""
         raise NotImplementedError
+
+    def linearise(self, arc: Arc, middle: Array, following: Array, kept: Any) -> Array:
+        """The slopes of a sweep that led from a middle to what follows, ``(n, n, N)``.
+
+        Exact of the midpoint; of others they are those of the first order in the step.
+        """
+        return self.find_slopes(arc, arc.middle, 0.5 * arc.length, middle)
+
+    def apply_slopes(
+        self, arc: Arc, middle: Array, following: Array, kept: Any, vector: Array
+    ) -> Array:
+        """What `linearise` has times a vector, of equal members, whose matrix is not formed."""
+        assert self.along is not None, "asked for by Newton's method alone"
+        return 0.5 * arc.length * self.along(arc.lanes, arc.middle, middle, vector)
+
+    def find_slopes(self, arc: Arc, after: Array, length: Array, state: Array) -> Array:
+        """A length times the Jacobian; rows that are reconstructed have none, and are swept."""
+        assert self.jacobian is not None, "asked for by Newton's method alone"
+        size, count = state.shape
+        rows = self.jacobian(arc.lanes, after, state)
+        slopes, known = np.zeros((size, size, count)), len(rows)
+        slopes[:known, :known] = length * rows
+        return slopes
 
 
 def split_memory(memory: Array, rows: int) -> list[Array]:

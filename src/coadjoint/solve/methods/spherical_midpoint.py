@@ -87,6 +87,23 @@ class SphericalMidpoint(LiePoisson):
             each.apply(following)
         return Sweep(following, arc.length * rates)
 
+    def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Scale]) -> Array:
+        """As `LiePoisson.linearise`, exact."""
+        slopes = self.find_slopes(arc, arc.middle, 0.5 * arc.length, middle)
+        for column in slopes.swapaxes(0, 1):
+            for each in kept:
+                each.turn(following, column)
+        return slopes
+
+    def apply_slopes(
+        self, arc: Arc, middle: Array, following: Array, kept: list[Scale], vector: Array
+    ) -> Array:
+        """As `LiePoisson.apply_slopes`."""
+        change = super().apply_slopes(arc, middle, following, kept, vector)
+        for each in kept:
+            each.turn(following, change)
+        return change
+
 
 class Scale:
     """The quotient of the lengths of a vector and of the half of a sum, on its way to be solved.
@@ -136,6 +153,34 @@ class Scale:
             state[tangent] = self.scale * state[tangent] + self.slope * state[row]
         for row in self.sphere.rows:
             state[row] = self.scale * state[row]
+
+    def turn(self, found: Array, change: Array) -> None:
+        """How rows that were multiplied change with what was multiplied, in the place of that.
+
+        With ``m = s c`` and ``s^2 |c|^2 = |w|^2`` it is ``dm = s (dc - m (m.dc)/|w|^2)``, of dual
+        numbers too.
+        """
+        rows, tangent, twice = self.sphere.rows, self.sphere.tangent, 2.0 * self.half
+        along = _multiply(found, rows, change, rows)
+        if tangent:
+            beside = _multiply(found, rows, change, tangent)
+            beside = beside + _multiply(found, tangent, change, rows)
+            beside = twice * beside + 2.0 * self.slant * along
+        along = twice * along
+        for row, other in self.sphere.pairs:
+            change[other] = change[other] - found[other] * along - found[row] * beside
+        for row in rows:
+            change[row] = change[row] - found[row] * along
+        for row, other in self.sphere.pairs:
+            change[other] = self.scale * change[other] + self.slope * change[row]
+        for row in rows:
+            change[row] = self.scale * change[row]
+
+
+def _multiply(one: Array, rows: Any, other: Array, columns: Any) -> Array:
+    """The product of two vectors, each by its rows."""
+    a, b, c = (one[row] * other[column] for row, column in zip(rows, columns, strict=True))
+    return np.asarray(a + b + c)
 
 
 def _measure(state: Array, sphere: Sphere) -> tuple[Array, Array]:

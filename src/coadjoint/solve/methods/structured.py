@@ -35,17 +35,27 @@ class Structured:
         functions: ``rates`` and what the method needs, by their names: of lanes, some time after
             where these are, at a state, and what else they take.
         branches: Whether the rates have branch points: they have to be finite after each step.
+        newton: Whether Newton's method solves the equations, with ``jacobian`` or ``along``.
     """
 
     tries_again = halves = False
 
     def __init__(
-        self, name: str, size: float, functions: Mapping[str, Any], *, branches: bool = False
+        self,
+        name: str,
+        size: float,
+        functions: Mapping[str, Any],
+        *,
+        branches: bool = False,
+        newton: bool = False,
     ) -> None:
         own = STRUCTURED[name]
         make = import_module(f"coadjoint.solve.methods.{own.file}").make
         self.rates, self.size, self.branches = functions["rates"], size, branches
         self.method: LiePoisson = make(functions, size, own.order)
+        if newton:
+            self.method.jacobian = functions.get("jacobian")
+            self.method.along = functions.get("along")
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""

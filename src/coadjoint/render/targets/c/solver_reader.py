@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 
 from coadjoint.lower.program import Node
-from coadjoint.methods import ASKED
+from coadjoint.methods import ASKED, JACOBIAN
 from coadjoint.render.targets.body import Line, Loop, SolverBody, failure, read_loop
 from coadjoint.render.targets.c.reader import Reader
 
@@ -24,7 +24,7 @@ _FUNCTIONS = {
         "const V *restrict _state, V *restrict _rows)"
         for name, kind in {
             "rates": "LINKAGE",
-            **dict.fromkeys(("domain", "projection", "noise", "kinks"), "static"),
+            **dict.fromkeys(("domain", "projection", "noise", "kinks", JACOBIAN), "static"),
             **dict.fromkeys(ASKED, "SPARED"),
             **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan", "exact_body"), "INLINE"),
         }.items()

@@ -151,7 +151,15 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Import(names=[ast.alias(name="numpy", asname="np")]):
             return True
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()):
-            return name in ("ID", "BRANCHES", "PRODUCTS", "OPERATIONS", "MEMBERS", "EXACT")
+            return name in (
+                "ID",
+                "BRANCHES",
+                "PRODUCTS",
+                "OPERATIONS",
+                "MEMBERS",
+                "EXACT",
+                "NEWTON",
+            )
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
             return name in ("REFUSALS", "SCHEDULES", "MOVED")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
