@@ -25,13 +25,13 @@ from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
+from coadjoint.spec.model import Input, Jet, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
 
 Built = TypeVar("Built")
 #: What has a name in formulas.
-Declared = Variable | Parameter | Input | Time
+Declared = Variable | Parameter | Input | Time | Jet
 #: The time that a flow takes, a symbol of the fields in which flows are derived. The flow is one of
 #: the member: `coadjoint.derive.flows`.
 STEP = "_h"
@@ -342,6 +342,7 @@ def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Sett
         room: How many functions are to be called beyond those of the formulas.
     """
     quantities: list[Declared] = [*spec.state, *spec.defined, *spec.parameters, *spec.driving]
+    quantities += spec.jets
     names = [*list_components(quantities)]
     names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
@@ -403,7 +404,8 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     names = list_components(spec.having_role(role))
     field = Field(names, count_calls(spec))
     values: dict[str, Value] = {name: field[name] for name in names}
-    quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
+    quantities: tuple[Declared, ...]
+    quantities = (*spec.variables, *spec.parameters, *spec.driving, *spec.jets)
     for quantity in quantities:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))

@@ -87,7 +87,8 @@ class Table(Generic[Record]):
         always: Whether it is read even where it has no entries.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
-        quantities: Whether formulas of other tables may name the record, or the records in it.
+        quantities: Whether formulas of other tables may name the record, or the records in it; or
+            what of it they may name.
         names: The names that the record declares, from the key and the record.
         routed: Whether it is there for routes alone, so that one of them must use it.
         acts: Whether it acts on the motion, so that every route must know it.
@@ -106,7 +107,7 @@ class Table(Generic[Record]):
     absent: Any = None
     always: bool = False
     attribute: str | None = ""
-    quantities: bool = False
+    quantities: bool | Callable[[Record], Sequence[Declared]] = False
     names: Callable[[str, Record], Iterable[Naming]] = name_none
     routed: bool = False
     acts: bool = False
@@ -145,6 +146,8 @@ class Table(Generic[Record]):
     def quantities_of(self, reading: Reading) -> tuple[Declared, ...]:
         """What formulas of other tables may name; tables without quantities are not read for it."""
         record: Any = self.of(reading) if self.quantities else ()
+        if callable(self.quantities):
+            record = tuple(self.quantities(record))
         return record if isinstance(record, tuple) else tuple(filter(None, (record,)))
 
 
