@@ -91,7 +91,7 @@ _ROUTES = (
     _chart("kaluza-klein"),
     Route(name="complexification", kinds=_ALGEBRA, energies=_HAMILTONIAN),
     _lax("manakov", _ALGEBRA),
-    _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
+    _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False, moves_fields=True),
     Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS_ON_MOMENTA),
     Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS_ON_MOMENTA),
     Route(

@@ -83,7 +83,8 @@ class Table(Generic[Record]):
         least: How many entries it has at least, if it is there.
         pattern: What the names of its entries look like.
         field: The annotation and the pydantic field of its key, where they are not the usual ones.
-        absent: The record of a table that is left out; of named entries, of none.
+        absent: The record of a table that is left out; by default (), or None, of named entries
+            and of others.
         always: Whether it is read even where it has no entries.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
@@ -104,7 +105,7 @@ class Table(Generic[Record]):
     least: int = 0
     pattern: str = NAME_PATTERN
     field: tuple[Any, Any] | None = None
-    absent: Any = None
+    absent: Any = ...
     always: bool = False
     attribute: str | None = ""
     quantities: bool | Callable[[Record], Sequence[Declared]] = False
@@ -114,8 +115,8 @@ class Table(Generic[Record]):
     example: str = ""
 
     def __post_init__(self) -> None:
-        if self.many and self.absent is None:
-            object.__setattr__(self, "absent", ())
+        if self.absent is ...:
+            object.__setattr__(self, "absent", () if self.many else None)
 
     def of(self, reading: Reading) -> Record:
         """The record of this table."""

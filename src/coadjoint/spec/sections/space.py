@@ -185,6 +185,15 @@ def _check_tables(reading: Reading) -> None:
         if table not in (*TABLES, *_HEAD) and getattr(file, table) not in (None, {}):
             problem, expected = f"there are tables [space] and [{table}]", "one of them"
             raise source.fault((table,), problem, table, expected, f"Remove [{table}].")
+    for place, claim in enumerate(file.claims.conserved):
+        if claim.where:
+            problem, expected = "a density is claimed to be conserved on a level set", "everywhere"
+            key = ("claims", "conserved", place, "where")
+            raise source.fault(key, problem, claim.where[0], expected, "Remove where.")
+    strains = [name for name, part in file.variables.items() if part.role == "strain"]
+    if len(strains) > 1:
+        problem, expected = f"there are {len(strains)} strains", "one, along the whole algebra"
+        raise source.fault(("variables", strains[1], "role"), problem, strains[1], expected)
     for name, part in file.variables.items():
         if part.role not in _ROLES:
             problem = f"the {part.role} {name!r} is a field"
@@ -224,13 +233,7 @@ SPACE = Table[Space | None](
     'the coordinate along which variables are fields, as s = { length = "L" }',
     read_space,
     many=True,
-    field=(
-        dict[str, SpacePart],
-        Field(
-            {},
-            description='the coordinate along which variables are fields, as s = { length = "L" }',
-        ),
-    ),
+    absent=None,
     quantities=lambda space: () if space is None else space.jets,
     names=_name_all,
     example='s = { length = "L" }',

@@ -66,7 +66,7 @@ _KEYS_OF = {
     "attitude": ("block", "default"),
     "quaternion": ("block", "default"),
     "pose": ("block", "default"),
-    "strain": ("block", "form", "default"),
+    "strain": ("form", "default"),
     "contact": ("default",),
 }
 
