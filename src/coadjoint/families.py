@@ -122,6 +122,7 @@ class Family:
         noise_ends: The same of members that lack a neighbour, as in ``ends``.
         shared_noise: Symbols of the increments of processes that move all members.
         indexed_noise: Symbols of those of member i; its neighbours have others.
+        count: The symbol of N, if the equations name it.
     """
 
     index: Index
@@ -147,6 +148,7 @@ class Family:
     noise_ends: Mapping[int, tuple[Tree, ...]] = field(default_factory=dict)
     shared_noise: tuple[Symbol, ...] = ()
     indexed_noise: tuple[Symbol, ...] = ()
+    count: tuple[Symbol, ...] = ()
 
     @property
     def own(self) -> tuple[Symbol, ...]:

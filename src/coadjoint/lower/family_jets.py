@@ -78,7 +78,7 @@ def _make(name: str, part: Part) -> PartJets:
 def _separate(part: Part) -> Program:
     """The Program of a part, in which what is constant along a motion is a parameter."""
     program = part.program
-    constant = [read.name for read in part.reads if read.array == "parameters"]
+    constant = [read.name for read in part.reads if read.array in ("parameters", "sizes")]
     known, statements = set(constant), []
     for statement in program.statements:
         read = set(_list_names(statement.value))

@@ -21,12 +21,14 @@ from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
 from coadjoint.derive.fields.operators import Operator, Term, apply, order_of, skew_defects
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.fields.symbol import find_growth
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
 from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 from coadjoint.spec.sections.space import jet_name
@@ -46,6 +48,7 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from _about_densities(first)
     for equations in routes:
         yield from _about_pair(first, routes, equations)
+    yield from about_grid(make_grid(first))
 
 
 # -- the bracket ------------------------------------------------------------------------------
