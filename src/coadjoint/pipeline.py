@@ -148,7 +148,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)
     if grid is not None:
-        context = replace(context, **tell_fields(grid))
+        context = tell_fields(context, grid)
     record = certificate_json(spec, certificate, facts.as_record(), methods)
     texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member

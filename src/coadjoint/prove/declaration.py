@@ -157,8 +157,8 @@ def family_context(
     )
 
 
-def tell_fields(grid: Grid) -> dict[str, tuple[str, ...]]:
-    """What the files of fields say of their derivation, by attributes of the context."""
+def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
+    """The context of fields at the points of a grid, with how they were derived."""
     first = grid.equations
     spec, space = first.spec, first.spec.space
     assert space is not None, spec.name
@@ -167,8 +167,8 @@ def tell_fields(grid: Grid) -> dict[str, tuple[str, ...]]:
         f"Route {first.route} of fields along {space.name}, {own}.",
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
     ]
-    lines = ["fields:", *equation_lines(first), "point i:", *family_lines(grid.family)]
-    return {"routes": tuple(routes), "equations": tuple(lines)}
+    lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
+    return replace(context, routes=tuple(routes), equations=tuple(lines))
 
 
 def _name_process(name: str) -> Quantity:

@@ -11,9 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import TypeVar
 
 from coadjoint.derive import Equations
-from coadjoint.derive.fields.grid import Grid, name_at
+from coadjoint.derive.fields.grid import Grid
+from coadjoint.derive.fields.lattice import name_at
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.records import Kept
 from coadjoint.exact import Element
@@ -64,9 +67,7 @@ def _differences(grid: Grid, ring: Equations) -> list[Element]:
         (c, k): name
         for v in grid.equations.spec.state
         for k in range(size)
-        for c, name in zip(
-            v.components, known[member_name(v.name, k)].components, strict=True
-        )
+        for c, name in zip(v.components, known[member_name(v.name, k)].components, strict=True)
     }
     values = {name: field[name] for name in ring.setting.parameters}
     values[grid.count] = field.number(size)
@@ -116,14 +117,22 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
         if kept[each.name] is Kept.ALWAYS:
             method = "the variation of its rate over the points of an endless grid is 0"
             decision = Decision(Verdict.PROVED, method)
-            yield f"{each.name} is conserved, {where}", "conserved", lambda d=decision: d
+            yield f"{each.name} is conserved, {where}", "conserved", partial(_give, decision)
             continue
         found = Discovery("the variation of its rate over the points is not 0", "on the grid")
         yield (
             f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N",
             "conserved",
-            lambda f=found: f,
+            partial(_give, found),
         )
+
+
+Found = TypeVar("Found")
+
+
+def _give(found: Found) -> Found:
+    """What is known already."""
+    return found
 
 
 def _about_jacobi(grid: Grid, where: str) -> Examined:
@@ -145,7 +154,7 @@ def _about_jacobi(grid: Grid, where: str) -> Examined:
         discovery = Discovery(method, f"for {size} points")
         return "the bracket satisfies the Jacobi identity", "jacobi", lambda: discovery
     a, b, c = (ring.setting.state[n] for n in next(iter(defects)))
-    method = f"by Leibniz' rule, which differences do not obey: in the triple {a}, {b}, {c} and others"
+    method = f"differences do not obey Leibniz' rule: of the triple {a}, {b}, {c} and others"
     discovery = Discovery(method, f"for {size} points")
     return (
         f"the Jacobi identity of the bracket fails at N points by O(h^{_order(grid)})",

@@ -56,9 +56,7 @@ def euler_poincare(setting: Setting, route: str) -> Equations:
             "Momentum",
             "m = dl/du",
             r"m = \partial l / \partial u",
-            write_slopes(
-                "l", setting.spec.having_role("velocity")[0].components, [_slope(setting)]
-            ),
+            write_slopes("l", [_name(setting)], [_slope(setting)]),
         ),
         write_step(
             "Variation: delta u = eta_t + u eta_s - u_s eta, integrated by parts",

@@ -13,9 +13,11 @@ from coadjoint.derive.emitted import declared_observables, emitted_energy
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Operator
+from coadjoint.derive.fields.symbol import look_at_symbol
 from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.records import Exact, Step
 from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 
 
@@ -36,7 +38,12 @@ def emit_fields(
         steps: The derivation.
         energy: The density of the energy, if the route or the spec knows one.
         operator: The bracket by which the route goes, if it does.
+
+    Raises:
+        DerivationError: Short waves grow the faster the shorter they are.
     """
+    if route == setting.spec.routes[0]:
+        _check_posed(setting, rates)
     own = () if energy is None else (emitted_energy(setting, energy),)
     exact = Exact(
         definitions=(),
@@ -48,6 +55,28 @@ def emit_fields(
     return Equations(
         setting=setting, route=route, exact=exact, steps=tuple(steps), operator=operator
     )
+
+
+def _check_posed(setting: Setting, rates: Sequence[Element]) -> None:
+    """The motion depends on its beginning continuously.
+
+    Raises:
+        DerivationError: It does not, at the defaults of the parameters.
+    """
+    growth = look_at_symbol(setting, jets_of(setting), rates).growth
+    if growth is None:
+        return
+    spec = setting.spec
+    formula = spec.lagrangian or spec.hamiltonian
+    where = ", ".join(f"{name} = {value}" for name, value in growth.point.items())
+    message = (
+        f"the equations of the fields are ill posed: {growth.told}, at {where}; expected a "
+        "principal symbol with real roots. Change the sign of the energy of the strains or "
+        "derivatives."
+    )
+    if formula is None:  # a Lax pair alone
+        raise DerivationError(f"{spec.path}: {message}", found=growth.point)
+    raise fault(setting, formula, message, formula.text)
 
 
 @once

@@ -8,21 +8,21 @@ differences. The bracket is that of the fields with a difference :math:`D_k` for
     \frac{\delta e}{\delta u} = \sum_k (-1)^k D_k \frac{\partial e}{\partial u_k}.
 
 The second formula is the gradient of H over h, since :math:`D_k^T = (-1)^k D_k` on a circle, and
-:math:`P_D` is antisymmetric if the terms of P are those of minus its adjoint: then H is kept exactly
-by the motion in continuous time. Products of two derivatives with a constant factor are summed by
-parts first, :math:`u_j v_k \to (-1)^j u v_{j+k}`, since one difference of order j + k reads fewer
-points than two.
+:math:`P_D` is antisymmetric if the terms of P are those of minus its adjoint: then H is kept
+exactly by the motion in continuous time. Products of two derivatives with a constant factor are
+summed by parts first, :math:`u_j v_k \to (-1)^j u v_{j+k}`, since one difference of order j + k
+reads fewer points than two.
 
 The motion is derived twice. That of the generic point, from which kernels are made, applies
-differences to expressions. Rings of a few points have a matrix for the bracket and the gradient of H
-by all points, and are the ordinary systems with which kernels are compared.
+differences to expressions. Rings of a few points have a matrix for the bracket and the gradient of
+H by all points, and are the ordinary systems with which kernels are compared.
 Comes in: Equations of fields. Goes out: a `Grid`.
 Read next: `coadjoint.prove.grids`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -33,21 +33,18 @@ import sympy
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.jets import Jets, jets_of
+from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
 from coadjoint.derive.fields.operators import Operator
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.structure import field_operator
-from coadjoint.derive.records import Emitted, Exact, Kept
+from coadjoint.derive.records import Exact, Kept
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element, Field
 from coadjoint.families import Family, Sum, Total
 from coadjoint.spec import Spec
-from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Poisson, Variable, Windows
-
-#: A function of the points of a grid, in whatever arithmetic.
-Lattice = Callable[[int], Any]
 
 
 def narrow(jets: Jets, density: Element) -> Element:
@@ -83,71 +80,6 @@ def _read_pair(field: Field, term: Element, named: Sequence[str]) -> tuple[str, 
 
 
 @dataclass(frozen=True)
-class _Calculus:
-    """Differences in an arithmetic.
-
-    Attributes:
-        order: Of the differences.
-        inverse: One over the spacing, ``N/L``.
-        number: How the arithmetic makes numbers.
-        tidy: What becomes of differences of two values.
-    """
-
-    order: int
-    inverse: Any
-    number: Callable[[Fraction], Any]
-    tidy: Callable[[Any], Any] = lambda value: value
-
-    def differentiate(self, f: Lattice, derivative: int) -> Lattice:
-        """``D_k f``."""
-        if not derivative:
-            return f
-        known = stencil(derivative, self.order)
-        scale, sign = self.inverse**derivative, -1 if derivative % 2 else 1
-
-        def at(i: int) -> Any:
-            total = self.number(known[0]) * scale * f(i) if 0 in known else self.number(Fraction(0))
-            for r, c in known.items():
-                if r > 0:
-                    total += self.number(c) * scale * self.tidy(f(i + r) + f(i - r) * sign)
-            return total
-
-        return at
-
-    def compose(
-        self, operator: Sequence[Sequence[Iterable[tuple[Lattice, int, Lattice]]]], slopes: Sequence[Lattice]
-    ) -> list[Lattice]:
-        """What an operator makes of slopes, each term ``left * D_k(right * slope)``."""
-
-        def row(entries: Sequence[Iterable[tuple[Lattice, int, Lattice]]]) -> Lattice:
-            parts = [
-                (left, self.differentiate(_multiply(right, slope), order))
-                for entry, slope in zip(entries, slopes, strict=True)
-                for left, order, right in entry
-            ]
-            zero = self.number(Fraction(0))
-            return lambda i: sum((left(i) * moved(i) for left, moved in parts), zero)
-
-        return [row(entries) for entries in operator]
-
-    def vary(self, slopes: Sequence[Lattice]) -> Lattice:
-        """``sum (-1)^k D_k`` of the derivatives of a density by a field and its derivatives."""
-        parts = [
-            self.differentiate(f, k) if k % 2 == 0 else _negate(self.differentiate(f, k))
-            for k, f in enumerate(slopes)
-        ]
-        return lambda i: sum((f(i) for f in parts), self.number(Fraction(0)))
-
-
-def _multiply(f: Lattice, g: Lattice) -> Lattice:
-    return lambda i: f(i) * g(i)
-
-
-def _negate(f: Lattice) -> Lattice:
-    return lambda i: -f(i)
-
-
-@dataclass(frozen=True)
 class Grid:
     """Fields at the points of a grid.
 
@@ -173,62 +105,6 @@ class Grid:
     brackets: Mapping[tuple[str, str, int], Element]
 
 
-@dataclass(frozen=True)
-class LatticeField:
-    """An exact field with symbols for a point and its neighbours.
-
-    Attributes:
-        field: The field.
-        components: Of the fields.
-        reach: How far neighbours have symbols.
-    """
-
-    field: Field
-    components: tuple[str, ...]
-    reach: int
-
-    def symbol(self, component: str, place: int) -> str:
-        """The name of a component so many points away."""
-        return name_at(component, place)
-
-    def shift(self, element: Element, places: int) -> Element:
-        """What an expression is so many points further."""
-        reached = self.field.reach(element)
-        new = {
-            name_at(c, r): self.field[name_at(c, r + places)]
-            for c in self.components
-            for r in range(-self.reach, self.reach + 1)
-            if name_at(c, r) in reached
-        }
-        return self.field.substitute(element, new)
-
-    def vary(self, element: Element) -> dict[str, Element]:
-        """Derivatives of the sum of an expression over all points of an endless grid.
-
-        They vanish if and only if the expression is a difference ``(E - 1) g`` and a constant, E
-        being the shift, so that its sum over a circle is N times the constant (Kupershmidt 1985,
-        Discrete Lax Equations and Differential-Difference Calculus).
-        """
-        found = dict[str, Element]()
-        for c in self.components:
-            parts = [
-                self.shift(self.field.derivative(element, name_at(c, r)), -r)
-                for r in range(-self.reach, self.reach + 1)
-                if name_at(c, r) in self.field.reach(element)
-            ]
-            found[c] = self.field.sum(parts)
-        return found
-
-
-def name_at(component: str, place: int) -> str:
-    """What a component is called so many points away.
-
-    >>> name_at("Pi1", 0), name_at("Pi1", -2), name_at("Pi1", 1)
-    ('Pi1', 'Pi1[-2]', 'Pi1[+1]')
-    """
-    return f"{component}[{place:+d}]" if place else component
-
-
 @once
 def make_grid(equations: Equations) -> Grid:
     """The motion of fields at the points of a grid."""
@@ -252,10 +128,7 @@ class _Maker:
     @cached_property
     def densities(self) -> dict[str, Element]:
         """The energy and the observables, by component."""
-        return {
-            name: narrow(self.jets, value)
-            for name, value in self.equations.exact.observables
-        }
+        return {name: narrow(self.jets, value) for name, value in self.equations.exact.observables}
 
     @cached_property
     def slopes(self) -> list[list[Element]]:
@@ -273,9 +146,7 @@ class _Maker:
 
     # -- at points, in any arithmetic -------------------------------------------------------
 
-    def motion(
-        self, calculus: _Calculus, place: Callable[[Element], Lattice]
-    ) -> list[Lattice]:
+    def motion(self, calculus: Calculus, place: Callable[[Element], Lattice]) -> list[Lattice]:
         """The rates of the fields at points."""
         slopes = [calculus.vary([place(x) for x in own]) for own in self.slopes]
         entries = [
@@ -286,7 +157,7 @@ class _Maker:
 
     def placer(
         self,
-        calculus: _Calculus,
+        calculus: Calculus,
         value: Callable[[str, int], Any],
         convert: Callable[[Element, Mapping[str, Any]], Any],
     ) -> Callable[[Element], Lattice]:
@@ -326,7 +197,7 @@ class _Maker:
         """Rates and densities of the generic point as expressions that are not multiplied out."""
         field = self.setting.field
         inverse = sympy.Symbol(self.count) / sympy.Symbol(self.space.length)
-        calculus = _Calculus(self.order, inverse, _rational, sympy.factor_terms)
+        calculus = Calculus(self.order, inverse, _rational, sympy.factor_terms)
 
         def convert(element: Element, values: Mapping[str, Any]) -> Any:
             new = {sympy.Symbol(name): value for name, value in values.items()}
@@ -347,16 +218,14 @@ class _Maker:
     def lattice(self) -> LatticeField:
         """An exact field for what is proved of the generic point."""
         reach = 4 * self.reach
-        symbols = [
-            name_at(c, r) for c in self.setting.state for r in range(-reach, reach + 1)
-        ]
+        symbols = [name_at(c, r) for c in self.setting.state for r in range(-reach, reach + 1)]
         rest = [*self.setting.parameters, self.count]
         slots = len(self.setting.field.adjoined)
         positive = [*(self.setting.field.positive & {*rest}), self.count]
         return LatticeField(Field([*symbols, *rest], slots, positive), self.setting.state, reach)
 
-    def _calculus_in(self, field: Field, inverse: Element) -> _Calculus:
-        return _Calculus(self.order, inverse, field.number)
+    def _calculus_in(self, field: Field, inverse: Element) -> Calculus:
+        return Calculus(self.order, inverse, field.number)
 
     def converter(self, field: Field) -> Callable[[Element, Mapping[str, Any]], Any]:
         """Expressions in jets as elements of another field."""
@@ -368,7 +237,7 @@ class _Maker:
 
         return convert
 
-    def _place_exactly(self) -> tuple[_Calculus, Callable[[Element], Lattice]]:
+    def _place_exactly(self) -> tuple[Calculus, Callable[[Element], Lattice]]:
         """Differences and expressions in the exact field of the lattice."""
         field = self.lattice.field
         calculus = self._calculus_in(field, field[self.count] / field[self.space.length])
@@ -479,7 +348,7 @@ class _Maker:
     def _tensor(
         self,
         setting: Setting,
-        calculus: _Calculus,
+        calculus: Calculus,
         place: Callable[[Element], Lattice],
         names: Mapping[tuple[str, int], str],
         size: int,
@@ -493,7 +362,9 @@ class _Maker:
                     left, right = place(term.left), place(term.right)
                     for i in range(size):
                         for j, weight in self._matrix_row(term.order, i, size):
-                            part = left(i) * right(j) * weight * calculus.inverse ** (term.order + 1)
+                            part = (
+                                left(i) * right(j) * weight * calculus.inverse ** (term.order + 1)
+                            )
                             rows.setdefault((names[a, i], names[b, j]), []).append(part)
         known = {pair: field.sum(parts) for pair, parts in rows.items()}
         return tuple(
@@ -570,9 +441,7 @@ class _Maker:
         """Whether the sum of an observable over the points is kept exactly."""
         (each,) = (x for x in self.equations.exact.emitted if x.name == name)
         field = self.lattice.field
-        return all(
-            field.is_zero(x) for c in each.components for x in self.change(c).values()
-        )
+        return all(field.is_zero(x) for c in each.components for x in self.change(c).values())
 
     def change(self, component: str) -> dict[str, Element]:
         """The variation of the rate of the sum of a density; zeros if the sum is kept."""
@@ -619,9 +488,7 @@ def sample_profiles(
     spec, space = equations.spec, equations.spec.space
     if size is None or space is None:
         return {}
-    return {
-        name: tuple(zip(*_sample(spec, name, size), strict=True)) for name in spec.profiles
-    }
+    return {name: tuple(zip(*_sample(spec, name, size), strict=True)) for name in spec.profiles}
 
 
 def _sample(spec: Spec, name: str, size: int) -> Iterator[tuple[Fraction, ...]]:

@@ -24,6 +24,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 
 from coadjoint.derive.setting import Setting, list_components, once
 from coadjoint.exact import Element, Field
@@ -75,7 +76,7 @@ class Jets:
     @cached_property
     def _next(self) -> dict[str, str]:
         """The derivative of each symbol."""
-        pairs = (zip(each, each[1:], strict=False) for each in self.towers.values())
+        pairs = map(pairwise, self.towers.values())
         return {a: b for pair in pairs for a, b in pair}
 
     def total(self, element: Element, order: int = 1) -> Element:

@@ -1,8 +1,9 @@
 r"""Operators: matrices of differential operators in space, such as the bracket of fields.
 
-An entry is a sum of terms :math:`f\, \partial^k\, g`, each of which multiplies by g, differentiates
-k times and multiplies by f. So the order in which things are done is kept: on a grid, where Leibniz'
-rule fails, :math:`m \partial + \partial m` is antisymmetric and :math:`2 m \partial + m_s` is not.
+An entry is a sum of terms :math:`f\, \partial^k\, g`, each of which multiplies by g,
+differentiates k times and multiplies by f. So the order in which things are done is kept: on a
+grid, where Leibniz' rule fails, :math:`m \partial + \partial m` is antisymmetric and
+:math:`2 m \partial + m_s` is not.
 The adjoint of a term is :math:`(-1)^k g\, \partial^k f`. Comes in: terms. Goes out: what they do,
 exactly. Read next: `coadjoint.derive.fields.structure`.
 """

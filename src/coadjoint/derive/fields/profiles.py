@@ -60,4 +60,5 @@ def evaluate_profile(spec: Spec, name: str, part: Fraction) -> tuple[Fraction, .
             values[each.name] = assemble(each, values)
         values[space.name] = numbers.number(part) * values[space.length]
         value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
-        return tuple(Fraction(float(x)) for x in entries(value))
+        numbers_of: Any = entries(value)
+        return tuple(Fraction(float(x)) for x in numbers_of)

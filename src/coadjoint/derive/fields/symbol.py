@@ -53,19 +53,35 @@ class Growth:
         rate = f"{self.speed * SHOWN**self.order:.3g}"
         power = f"k^{self.order}" if self.order > 1 else "k"
         return (
-            f"the principal symbol has complex roots: a wave of wave number k grows like "
-            f"exp({self.speed:.3g}*{power}*t), with k = {SHOWN} by the factor e^{rate} in a unit "
-            "of time"
+            "the principal symbol has complex roots, so that a wave of wave number k grows like "
+            f"exp({self.speed:.3g}*{power}*t), with k = {SHOWN} like exp({rate}*t)"
         )
 
 
-def find_growth(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Growth | None:
-    """A short wave that grows without bound as it gets shorter; None where none is seen."""
-    order = max((_order(jets, rate) for rate in rates), default=0)
+@dataclass(frozen=True)
+class Seen:
+    """What was seen of the principal symbol.
+
+    Attributes:
+        order: The highest derivative in the rates.
+        points: At how many points its roots were counted.
+        growth: A short wave that grows, if there is one.
+    """
+
+    order: int
+    points: int
+    growth: Growth | None = None
+
+
+def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
+    """The roots of the principal symbol at some points; none where it calls functions."""
+    order, points = max((_order(jets, rate) for rate in rates), default=0), 0
     if not order:
-        return None
+        return Seen(order, points)
     field = setting.field
-    matrix = [field.gradient(rate, [tower[order] for tower in jets.towers.values()]) for rate in rates]
+    matrix = [
+        field.gradient(rate, [tower[order] for tower in jets.towers.values()]) for rate in rates
+    ]
     for values in _list_points(setting, matrix):
         numbers = sympy.Matrix(
             [
@@ -81,8 +97,9 @@ def find_growth(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Growt
             speed = max(abs(x.imag if order % 2 else x.real) for x in parts)
             reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
             point = {name: str(values[name]) for name in field.names if name in reached}
-            return Growth(order, speed, point)
-    return None
+            return Seen(order, points + 1, Growth(order, speed, point))
+        points += 1
+    return Seen(order, points)
 
 
 def _order(jets: Jets, rate: Element) -> int:
@@ -90,9 +107,11 @@ def _order(jets: Jets, rate: Element) -> int:
     return max((len(jets.slopes(rate, name)) - 1 for name in jets.towers), default=0)
 
 
-def _list_points(setting: Setting, matrix: Sequence[Sequence[Element]]) -> Iterator[dict[str, Fraction]]:
+def _list_points(
+    setting: Setting, matrix: Sequence[Sequence[Element]]
+) -> Iterator[dict[str, Fraction]]:
     """Defaults of parameters, and fields that are rational numbers."""
-    field, source = setting.field, Random(0)
+    field, source = setting.field, Random(0)  # noqa: S311 - not a secret
     reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
     if any(field.functions_in(x) for row in matrix for x in row):
         return
@@ -110,7 +129,9 @@ def _count_bad(polynomial: sympy.Poly, *, odd: bool) -> int:
     """How many roots are neither real, for an odd order, nor imaginary, for an even one."""
     degree = int(polynomial.degree())
     if not odd:  # real y with p(i y) = 0 are the common roots of its real and imaginary parts
-        real, imaginary = _split(sympy.Poly(polynomial.as_expr().subs(_ROOT, sympy.I * _ROOT), _ROOT))
+        real, imaginary = _split(
+            sympy.Poly(polynomial.as_expr().subs(_ROOT, sympy.I * _ROOT), _ROOT)
+        )
         polynomial = sympy.Poly(sympy.gcd(real, imaginary), _ROOT, domain="QQ")
     return degree - _count_real(polynomial)
 
@@ -127,6 +148,4 @@ def _split(polynomial: sympy.Poly) -> tuple[sympy.Expr, sympy.Expr]:
 
 def _count_real(polynomial: sympy.Poly) -> int:
     """Real roots with their multiplicities, by Sturm's theorem."""
-    return sum(
-        factor.count_roots() * power for factor, power in polynomial.sqf_list()[1]
-    )
+    return sum(factor.count_roots() * power for factor, power in polynomial.sqf_list()[1])

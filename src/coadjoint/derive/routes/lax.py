@@ -4,7 +4,8 @@ Theorem (Lax 1968; Holm 2011, section 2.4.4): if :math:`\dot L = [L, M]` for eve
 :math:`\lambda`, the motion of L is isospectral, :math:`L(t) = g^{-1} L(0)\, g` with :math:`\dot g =
 g M`. Fields have a pair of zero curvature, :math:`L_t - M_s = [L, M]`, which says that
 :math:`\psi_s = \psi L` and :math:`\psi_t = \psi M` are compatible: the conjugacy class of the
-monodromy of L around the circle stays what it is (Zakharov and Mikhailov 1978). Each entry of each power of :math:`\lambda` is one linear equation in the rates of the state.
+monodromy of L around the circle stays what it is (Zakharov and Mikhailov 1978). Each entry of each
+power of :math:`\lambda` is one linear equation in the rates of the state.
 Comes in: a Setting with the table [lax], and an energy that gives the velocities if M names any.
 Goes out: Equations by the pair. Read next: `coadjoint.prove.lax`, where all of its equations must
 hold.

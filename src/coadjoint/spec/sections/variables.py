@@ -90,9 +90,9 @@ class VariablePart(Part):
     ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
         "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
-        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'strain' for "
-        "the field g^-1 dg/ds of a strand in [space]; 'contact' "
-        "for a point at which [rolling] has a body touch a surface"
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'strain' "
+        "for the field g^-1 dg/ds of a strand in [space]; 'contact' for a point at which "
+        "[rolling] has a body touch a surface"
     )
     block: Block | None = Field(
         None,
