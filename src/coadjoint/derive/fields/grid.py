@@ -111,6 +111,11 @@ def make_grid(equations: Equations) -> Grid:
     return _Maker(equations).grid
 
 
+def generic_point(equations: Equations) -> Family:
+    """The motion of fields at one point of a grid, by that of its neighbours."""
+    return _Maker(equations).family
+
+
 class _Maker:
     """The making of a grid from Equations of fields."""
 
