@@ -208,7 +208,7 @@ def _check_length(reading: Reading, name: str, part: SpacePart) -> None:
     if part.length not in known:
         problem = f"there is no parameter {part.length!a}"
         hint = did_you_mean(part.length, known) or (
-            f"Write [parameters] and below it {name.upper()} = {{ positive = true, default = 1 }}."
+            f"Write [parameters] and below it {part.length} = {{ positive = true, default = 1 }}."
         )
         raise reading.fault(key, problem, part.length, "a parameter of one component", hint)
     if known[part.length].shape or not known[part.length].positive:
