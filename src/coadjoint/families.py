@@ -124,6 +124,7 @@ class Family:
         indexed_noise: Symbols of those of member i; its neighbours have others.
         sides: Symbols of given signs at the kinks of member i, where the rates are those of given
             signs; its neighbours have others.
+        count: The symbol of N, if the equations name it.
     """
 
     index: Index
@@ -150,6 +151,7 @@ class Family:
     shared_noise: tuple[Symbol, ...] = ()
     indexed_noise: tuple[Symbol, ...] = ()
     sides: tuple[Symbol, ...] = ()
+    count: tuple[Symbol, ...] = ()
 
     @property
     def own(self) -> tuple[Symbol, ...]:

@@ -21,6 +21,7 @@ from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.ladder import LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.reference import Reference
 from coadjoint.families import Family
@@ -32,7 +33,7 @@ from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove import Certificate, Verdict, prove
-from coadjoint.prove.declaration import family_context, kernel_context
+from coadjoint.prove.declaration import family_context, kernel_context, tell_fields
 from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
@@ -99,7 +100,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     setting = make_setting(spec)
     routes = [derive(spec, route, setting=setting) for route in spec.routes]
     first = routes[0]
-    if spec.family is not None:
+    if spec.family is not None or spec.space is not None:
         return _render_family(spec, routes, progress)
     progress("lower")
     programs = lower(first)
@@ -130,11 +131,18 @@ def prepare() -> None:
 
 
 def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) -> Rendered:
-    """The same for a system of equal members, whose functions are loops over them."""
-    declared, first = spec.family, routes[0]
-    assert declared is not None, spec.name
-    windows = tuple(derive(each, spec.routes[0]) for each in declared.windows)
-    family = derive_family(first)
+    """The same for a system of equal members, whose functions are loops over them.
+
+    So are fields, at the points of a grid.
+    """
+    first, grid = routes[0], None
+    if spec.space is not None:
+        grid = make_grid(first)
+        windows, declared, family = grid.windows, grid.declared, grid.family
+    else:
+        assert spec.family is not None, spec.name
+        declared, family = spec.family, derive_family(first)
+        windows = tuple(derive(each, spec.routes[0]) for each in declared.windows)
     progress("lower")
     loops = lower_family(family)
     progress("prove")
@@ -143,7 +151,10 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     progress("render")
     facts, methods = judge_family(windows, declared, family, loops, certificate)
     supported = certificate.count(Verdict.SUPPORTED)
-    context = family_context(first, family, loops, supported, facts, methods)
+    own = first if grid is None else windows[-1]
+    context = family_context(own, family, loops, supported, facts, methods)
+    if grid is not None:
+        context = tell_fields(context, grid)
     record = certificate_json(spec, certificate, facts.as_record(), methods)
     texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member

@@ -97,6 +97,7 @@ def evaluate_loops(
     with localcontext(CONTEXT):
         try:
             known = {name: [exact(value) for value in rows] for name, rows in arrays.items()}
+            known["sizes"] = [exact(float(size))]
             members = _Members(known, size, exact, call)
             if loops.member is None:
                 return members.find_totals(loops)

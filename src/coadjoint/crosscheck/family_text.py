@@ -38,7 +38,8 @@ _C_STRIDES = {
     "parameters": ("row", " * _run.own"),
     "inputs": ("inputs_row", " * _run.driven"),
 }
-_C_TIME = "_run.time + _run.n * _run.timed"
+#: Places that have no row.
+_C_FIXED = {"_run.time + _run.n * _run.timed": "time", "_run.sizes": "sizes"}
 
 #: Lines of a tile that add terms to sums, and say where sums are.
 _C_ADDS = re.compile(r"_parts|_term\d+\[_l\] \+=|double \*const _term\d+ =")
@@ -176,7 +177,7 @@ def _check_place(read: Read, found: _Text, wraps: bool, file: str, name: str) ->
                 row += read.single % size
             if array != read.array or _evaluate(text, {"i": i, "j": j, "size": size}) != row:
                 raise failure(f"{file}: {name} reads {read.name} at {array}[{text}]", name)
-    step = "_run.timed" if read.array == "time" else ""
+    step = {"time": "_run.timed", "sizes": "0"}.get(read.array, "")
     alike = read.shift is None or read.of_partner
     if read.array == "parameters":
         alike = (read.shift is None and read.single is None) or read.of_partner
@@ -259,8 +260,8 @@ def _read_c_lane(line: str, read: _Text, part: str, name: str) -> bool:
 def _read_c_line(line: str, read: _Text, part: str, name: str) -> None:
     """One statement of C: a place, a value, a statement or a result; others belong to the loop."""
     if place := re.fullmatch(r"const double \*const _at_(\w+) = (.*)", line):
-        if place[2] == _C_TIME:
-            read.places[place[1]] = ("time", "0")
+        if place[2] in _C_FIXED:
+            read.places[place[1]] = (_C_FIXED[place[2]], "0")
             return
         where = _C_PLACE.fullmatch(place[2])
         if not where or (where[3], where[4]) != _C_STRIDES[where[1]]:
@@ -314,6 +315,8 @@ def _read_python_part(
     *lines, last = found[0].body
     for line in lines:
         match line:
+            case ast.Assign([ast.Name(to)], ast.Call(ast.Name("float"), [ast.Name("size")])):
+                read.places[to] = ("sizes", "0")
             case ast.Assign([ast.Name(to)], ast.Subscript(ast.Name(array), row)) if array != "sums":
                 read.places[to] = (array, ast.unparse(row))
             case ast.Assign(

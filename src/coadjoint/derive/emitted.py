@@ -41,7 +41,7 @@ def list_emitted(
         *(() if energy is None else (emitted_energy(setting, energy),)),
         *_list_first(setting),
         *_along_distribution(setting, dict(momenta)),
-        *_declared_observables(setting),
+        *declared_observables(setting),
         *_momentum_maps(setting, energy),
         *_list_last(setting),
     )
@@ -112,7 +112,7 @@ def _along_distribution(setting: Setting, values: dict[str, Element]) -> Iterato
 
 
 @once
-def _declared_observables(setting: Setting) -> tuple[Emitted, ...]:
+def declared_observables(setting: Setting) -> tuple[Emitted, ...]:
     """The observables of the spec."""
     return tuple(
         _emit(each, each.unit, in_parts(setting, each.formula), _find_claim(setting, each.name))

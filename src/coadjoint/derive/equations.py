@@ -17,6 +17,7 @@ from typing import Any
 import sympy
 
 from coadjoint.derive.closed import ClosedForms, LinearEquations, closed_forms
+from coadjoint.derive.fields.operators import Operator
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.followed import rates_followed
@@ -43,6 +44,7 @@ class Equations:
             the route moves.
         pair: The Lax pair by which the route goes, if it is one of those.
         distribution: What the constraints allow; None for motions that are free.
+        operator: The bracket of fields by which the route goes, if it does.
         built: What functions under `coadjoint.derive.setting.once` have built of them.
     """
 
@@ -53,6 +55,7 @@ class Equations:
     chart: Chart | None = None
     pair: LaxPair | None = None
     distribution: Distribution | None = None
+    operator: Operator | None = None
     built: dict[Any, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property

@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.refusals import refusal
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.submanifold import put_on_section
 from coadjoint.exact import Element
-from coadjoint.exact.dense import Matrix, commutator
+from coadjoint.exact.dense import Matrix, combine, commutator
 from coadjoint.exact.linear import Span
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.faults import list_names
@@ -48,7 +49,7 @@ class LaxEquation:
         entry: Row and column, from 1.
         power: Power of the spectral parameter.
         slopes: Coefficients of the rates, by component of the state.
-        right: The entry of ``[L, M]`` at that power.
+        right: The entry of ``[L, M]`` at that power, and of ``dM/ds`` of fields.
     """
 
     entry: tuple[int, int]
@@ -90,9 +91,16 @@ def _read_matrix(setting: Setting, formula: Formula, named: Mapping[str, Value])
 
 
 def lax_equations(setting: Setting, pair: LaxPair) -> Iterator[LaxEquation]:
-    """Every equation that ``dL/dt = [L, M]`` stands for, the powers ascending in each entry."""
+    """Every equation that ``dL/dt = [L, M]`` stands for, the powers ascending in each entry.
+
+    Of fields it is that of zero curvature, ``dL/dt - dM/ds = [L, M]``.
+    """
     field = setting.field
     turned = commutator(pair.L, pair.M)
+    if setting.spec.space is not None:  # of fields it is dL/dt - dM/ds = [L, M]
+        jets = jets_of(setting)
+        moved = tuple(tuple(map(jets.total, row)) for row in pair.M)
+        turned = combine((1, turned), (1, moved))
     for i, row in enumerate(pair.L):
         for j, entry in enumerate(row):
             moving = [name for name in setting.state if name in field.reach(entry)]

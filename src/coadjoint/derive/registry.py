@@ -14,6 +14,7 @@ from typing import cast
 from coadjoint.derive import charts, frame_names, pairs, times_vector
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields import circle, jets
 from coadjoint.derive.mechanics import external, kinematics, legendre
 from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec
@@ -27,6 +28,8 @@ _ALWAYS = (
     pairs.symbols,
     frame_names.symbols,
     times_vector.symbols,
+    jets.symbols,
+    circle.symbols,
 )
 _FOLDER = "coadjoint.derive.routes"
 

@@ -25,13 +25,15 @@ from coadjoint.exact import Condition, Element, Field, Region, dense
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
-from coadjoint.spec.model import Input, Parameter, Shape, Time, Variable, unpack
+from coadjoint.spec.model import Input, Jet, Parameter, Shape, Time, Variable, unpack
 from coadjoint.spec.sections.domain import Condition as Inequality
 from coadjoint.spec.sections.poisson import pairing_weights
 
 Built = TypeVar("Built")
 #: What has a name in formulas.
 Declared = Variable | Parameter | Input | Time
+#: The same, and derivatives of fields along space.
+Named = Declared | Jet
 #: The time that a flow takes, a symbol of the fields in which flows are derived. The flow is one of
 #: the member: `coadjoint.derive.flows`.
 STEP = "_h"
@@ -295,7 +297,7 @@ def fault(
     )
 
 
-def list_components(quantities: Iterable[Declared]) -> tuple[str, ...]:
+def list_components(quantities: Iterable[Named]) -> tuple[str, ...]:
     """Names of the components of some quantities, in order."""
     return tuple(name for each in quantities for name in each.components)
 
@@ -341,7 +343,8 @@ def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Sett
         symbols: Names that the routes need beyond those of the spec.
         room: How many functions are to be called beyond those of the formulas.
     """
-    quantities: list[Declared] = [*spec.state, *spec.defined, *spec.parameters, *spec.driving]
+    quantities: list[Named] = [*spec.state, *spec.defined, *spec.parameters, *spec.driving]
+    quantities += spec.jets
     names = [*list_components(quantities)]
     names += [name for each in spec.reconstruction for name in each.components]
     positive = [name for p in spec.parameters if p.positive for name in p.components]
@@ -386,7 +389,7 @@ def _conditions(setting: Setting) -> tuple[Condition, ...]:
     return tuple(conditions)
 
 
-def _defaults(quantities: Sequence[Declared]) -> dict[str, Fraction]:
+def _defaults(quantities: Sequence[Named]) -> dict[str, Fraction]:
     """The default of each component that has one."""
     return {
         name: value
@@ -403,7 +406,8 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     names = list_components(spec.having_role(role))
     field = Field(names, count_calls(spec))
     values: dict[str, Value] = {name: field[name] for name in names}
-    quantities: tuple[Declared, ...] = (*spec.variables, *spec.parameters, *spec.driving)
+    quantities: tuple[Named, ...]
+    quantities = (*spec.variables, *spec.parameters, *spec.driving, *spec.jets)
     for quantity in quantities:
         for name in quantity.components:
             number = Fraction(source.randint(1, 999), source.randint(1, 999))
@@ -412,7 +416,7 @@ def sampled_setting(spec: Spec, role: str, source: Random) -> Setting:
     return Setting(spec, field, values)
 
 
-def assemble(quantity: Declared, values: Mapping[str, Value]) -> Value:
+def assemble(quantity: Named, values: Mapping[str, Value]) -> Value:
     """The components of a quantity as an element, a vector or a matrix."""
     parts = tuple(values[name] for name in quantity.components)
     if isinstance(quantity, Variable) and quantity.elements:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import count
 
 from coadjoint.spec import Parameter, Spec, Variable
-from coadjoint.spec.model import Input, Time
+from coadjoint.spec.model import Input, Jet, Time
 
 
 def choose_names(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
@@ -22,10 +22,11 @@ def choose_names(spec: Spec, names: Sequence[str]) -> tuple[str, ...]:
     >>> choose_names(spec, ["Q1", "Q2"]), choose_names(spec, ["I0", "I1"])
     (('Q1', 'Q2'), ('I0_0', 'I1_0'))
     """
-    quantities: list[Variable | Parameter | Input | Time] = [
+    quantities: list[Variable | Parameter | Input | Time | Jet] = [
         *spec.variables,
         *spec.parameters,
         *spec.driving,
+        *spec.jets,
     ]
     taken = {name for each in quantities for name in (each.name, *each.components)}
     if not taken & set(names):

@@ -53,7 +53,7 @@ class Read:
 
     Attributes:
         name: In texts.
-        array: ``state``, ``parameters``, ``inputs`` or ``time``.
+        array: ``state``, ``parameters``, ``inputs``, ``time``, or ``sizes``, which is N.
         rows: Rows before it that do not depend on N.
         blocks: Rows before it for each member.
         shift: How far behind member i the member is that it belongs to; None if all members share
@@ -245,6 +245,9 @@ class _Lowering:
         for symbol in family.time:
             name = naming.find(symbol.name)
             self._reads[symbol] = Read(name=name, array="time", rows=0, blocks=0, shift=None)
+        for symbol in family.count:
+            name = naming.find(symbol.name)
+            self._reads[symbol] = Read(name=name, array="sizes", rows=0, blocks=0, shift=None)
         for (component, shift), symbol in family.neighbours.items():
             name = naming.find(f"{component.name}_{'p' if shift > 0 else 'm'}{abs(shift)}")
             self._reads[symbol] = replace(rows[component], name=name, shift=shift)
@@ -393,7 +396,8 @@ class _Lowering:
             of_pair: Whether both members of a pair have them: those of member j follow.
         """
         family = self.family
-        own, shared = family.states, (*family.shared, *family.shared_inputs, *family.time)
+        shared = (*family.shared, *family.shared_inputs, *family.time, *family.count)
+        own = family.states
         is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
         ways = (leave,) if is_long else (factor_whole, factor, leave)
         forms = ([form(tree, own, shared) for tree in trees] for form in ways)

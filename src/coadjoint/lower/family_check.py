@@ -97,8 +97,8 @@ class _Symbols:
                 return family.shared_noise[read.rows]
             assert (read.array, read.rows) == ("state", len(family.shared_noise)), read
             return self._place(family.indexed_noise[read.blocks - count], read)
-        if read.array == "time":
-            return family.time[read.rows]
+        if read.array in ("time", "sizes"):
+            return {"time": family.time, "sizes": family.count}[read.array][read.rows]
         if read.array != "state":
             inputs = family.shared_inputs, family.indexed_inputs
             found = {"inputs": inputs, "parameters": (family.shared, family.indexed)}

@@ -47,7 +47,7 @@ class Claim:
         kind: ``algebra``, ``jacobi``, ``legendre``, ``equivalence``, ``reduction``, ``casimir``,
             ``conserved``, ``constraint``, ``integrability``, ``momentum``, ``integrals``,
             ``measure``, ``rolling``, ``lax``, ``galilean``, ``symmetry``, ``bracket``,
-            ``noise`` or ``transformation``.
+            ``noise``, ``posed`` or ``transformation``.
         verdict: Proved, refuted or numerically supported.
         method: How it was decided.
         seconds: How long that took.

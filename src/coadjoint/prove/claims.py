@@ -33,6 +33,7 @@ from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
 from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
 from coadjoint.prove.equivalence import LegendreMap
+from coadjoint.prove.fields import about_fields
 from coadjoint.prove.first_order import about_form, about_stationarity
 from coadjoint.prove.galilean import about_galilean
 from coadjoint.prove.integrability import about_integrability
@@ -270,6 +271,10 @@ def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = T
 
 def _claims(routes: Sequence[Equations], *, searched: bool) -> Iterator[Examined]:
     """All statements in the order of the certificate, those of searches included or not."""
+    if routes[0].spec.space is not None:
+        yield from about_algebra(motion_of(routes[0]))
+        yield from about_fields(routes)
+        return
     motion = motion_of(routes[0])
     for part in EXAMINATIONS:
         if part.applies(motion) and (searched or not part.kind):
@@ -301,6 +306,8 @@ def _examine(
 
 def _region(first: Equations) -> Region:
     """Where claims are looked at: the domain of the spec."""
+    if first.spec.space is not None:
+        return first.setting.field.region
     momenta = LegendreMap(first).momenta if LegendreMap.applies(first) else {}
     return region(first, momenta)
 

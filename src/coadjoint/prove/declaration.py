@@ -19,6 +19,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
+from coadjoint.derive.fields.grid import Grid
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.families import Family
@@ -157,6 +158,20 @@ def family_context(
         spheres={} if facts is None else {facts.radii[s.rows[0]]: s.rows for s in facts.spheres},
         positions=() if facts is None else facts.positions,
     )
+
+
+def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
+    """The context of fields at the points of a grid, with how they were derived."""
+    first = grid.equations
+    spec, space = first.spec, first.spec.space
+    assert space is not None, spec.name
+    own = f"at N points of the circle, by differences of order {space.order}"
+    routes = [
+        f"Route {first.route} of fields along {space.name}, {own}.",
+        *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
+    ]
+    lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
+    return replace(context, routes=tuple(routes), equations=tuple(lines))
 
 
 def _name_process(name: str) -> Quantity:

@@ -149,6 +149,8 @@ def _fixed_row(read: Read) -> str:
 
 def _python_place(read: Read, wraps: bool) -> str:
     """Where Python and NumPy read."""
+    if read.array == "sizes":
+        return "float(size)"
     if read.shift is None:
         return f"{read.array}[{_fixed_row(read)}]"
     member = "j" if read.of_partner else "i"
@@ -170,6 +172,8 @@ def _c_place(read: Read, wraps: bool) -> str:
             if wraps:
                 member = f"{word}(_run.i, {abs(read.shift)}, _run.size)"
         row = _row(read, member).replace("size", "_run.size").replace("_run._run.", "_run.")
+    if read.array == "sizes":
+        return "_run.sizes"
     if read.array == "time":
         return "_run.time + _run.n * _run.timed"
     if read.array == "state":
@@ -181,6 +185,8 @@ def _c_place(read: Read, wraps: bool) -> str:
 
 def _c_step(read: Read) -> str:
     """What says in C whether lanes have values of their own."""
+    if read.array == "sizes":
+        return "0"
     if read.array == "time":
         return "_run.timed"
     if read.array == "state":
@@ -383,7 +389,8 @@ def render_family(context: FamilyContext) -> dict[str, str]:
 
 def _render_file(context: FamilyContext, template: str, target: str, identity: str) -> str:
     """One file, given the id."""
-    programs = [part.program for loops in context.loops.values() for part in loops.parts]
+    parts = [part for loops in context.loops.values() for part in loops.parts]
+    programs = [part.program for part in parts]
     shared, table = rows_of(context.shared), dop853()
     indexed = rows_of(context.indexed, len(shared))
     shared_inputs = rows_of(context.shared_inputs)
@@ -401,6 +408,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "time": time,
         "driving": inputs + time,
         "noise": bool(context.shared_noise or context.indexed_noise),
+        "counted": any(r.array == "sizes" for p in parts for r in p.reads),
         "input_rows": shared_inputs,
         "indexed_input_rows": rows_of(context.indexed_inputs, len(shared_inputs)),
         "routes": wrap([*context.routes, *note_unproved(context.supported)]),

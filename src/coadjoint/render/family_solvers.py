@@ -255,6 +255,8 @@ def _list_places(part: PartJets, counts: Counts, components: int) -> Iterator[Pl
 
 def _find_place(read: Read, counts: Counts, components: int) -> Place:
     """Where one name is read."""
+    if read.array == "sizes":
+        return Place(read.name, "counted", (read.rows,), moves=False)
     if read.array == "time":
         return Place(read.name, "driving", (counts.inputs_before,), moves=True)
     if read.shift is None:

@@ -40,6 +40,7 @@ _KINDS = {
     "nambu": "nambu functions in [poisson]",
     "canonical": "canonical pairs in [poisson]",
     "configuration": "coordinates with velocities or momenta",
+    "diffeomorphisms": "[diffeomorphisms]",
 }
 
 
@@ -50,7 +51,11 @@ def check_tables(source: Source, file: Any) -> None:
         SpecError: Both, or neither and no coordinates; a table or route that goes with the other.
     """
     coordinates = any(part.role == "coordinate" for part in file.variables.values())
-    if file.algebra is None and file.poisson is None and not coordinates:
+    if file.algebra is not None and file.diffeomorphisms is not None:
+        problem, expected = "there are both [algebra] and [diffeomorphisms]", "one of them"
+        raise source.fault(("diffeomorphisms",), problem, "diffeomorphisms", expected)
+    nowhere = file.algebra is None and file.poisson is None and file.diffeomorphisms is None
+    if nowhere and not coordinates:
         raise source.fault(
             (),
             "the table 'algebra' is missing",
@@ -115,6 +120,8 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
         yield _Obstacle(f"has no table [{start.table}]", (start.table,))
     if not start.takes_driving and (file.inputs or file.time):
         yield _Obstacle("does not accept inputs or time")
+    if file.space and not start.moves_fields:
+        yield _Obstacle("moves no fields", cure="remove [space]")
     energies = energies_of(route, kinds)
     if not start.needs_energy:
         if not _is_bare(file) and kinds == ("configuration",):

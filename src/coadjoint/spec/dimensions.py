@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from coadjoint.errors import CoadjointError
@@ -111,6 +112,8 @@ class Units:
         self.names: dict[str, Measured] = {"energy": Measured((), (self.energy,))}
         for key, each in _list_quantities(spec):
             self.declare(each, self._read_declared(key, each))
+        for jet in spec.jets:
+            self.declare(jet, [unit / self.along_space**jet.order for unit in self.of(jet.of)])
         for each in spec.constraints:
             reactions = [self.blank(name) for name in each.reactions]
             self.declare(_Reaction(each.reaction, each.shape, each.reactions), reactions)
@@ -150,6 +153,14 @@ class Units:
             at = self.source.within(key, start + error.start, start + error.end)
             expected = "a unit such as 'kg m^2/s', or 1"
             raise self.source.fault(key, error.problem, text, expected, error.hint, at=at) from None
+
+    @cached_property
+    def along_space(self) -> Unit:
+        """The unit of the coordinate of space."""
+        space = self.spec.space
+        if space is None or not space.unit:
+            return self.blank("space")
+        return self._read(("space", space.name, "unit"), space.unit, 0)
 
     @property
     def action(self) -> Unit:

@@ -59,11 +59,13 @@ def kinds_of(file: Any) -> tuple[str, ...]:
     """The kinds that a spec is of: ``algebra``, ``configuration``, or ``poisson`` and its way.
 
     >>> from coadjoint.spec.schema import SpecFile
-    >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None))
+    >>> kinds_of(SpecFile.model_construct(algebra=None, poisson=None, diffeomorphisms=None))
     ('configuration',)
     """
     if file.algebra is not None:
         return ("algebra",)
+    if file.diffeomorphisms is not None:
+        return ("diffeomorphisms",)
     if file.poisson is None:
         return ("configuration",)
     ways = ("nambu", "brackets", "canonical")

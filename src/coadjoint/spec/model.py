@@ -31,6 +31,7 @@ from coadjoint.spec.core.dimensions import KnownUnits
 from coadjoint.spec.core.formulas import Formula
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
 from coadjoint.spec.sections.constraints import Constraint
+from coadjoint.spec.sections.diffeomorphisms import Diffeomorphisms
 from coadjoint.spec.sections.domain import Condition
 from coadjoint.spec.sections.inputs import Input
 from coadjoint.spec.sections.lax import Lax
@@ -44,6 +45,7 @@ from coadjoint.spec.sections.reconstruction import Reconstructed
 from coadjoint.spec.sections.reduction import Submanifold
 from coadjoint.spec.sections.relaxation import Relaxation
 from coadjoint.spec.sections.rolling import Rolling
+from coadjoint.spec.sections.space import Jet, Space
 from coadjoint.spec.sections.state import Variable, find_defined, state_of
 from coadjoint.spec.sections.symmetries import Symmetry
 from coadjoint.spec.sections.time import Time
@@ -59,6 +61,7 @@ __all__ = [
     "Formula",
     "Input",
     "Integral",
+    "Jet",
     "Lax",
     "Noise",
     "Observable",
@@ -70,6 +73,7 @@ __all__ = [
     "Rolling",
     "Section",
     "Shape",
+    "Space",
     "Spec",
     "Symmetry",
     "Time",
@@ -224,6 +228,9 @@ class Spec:
         time: The time, if formulas name it.
         records: What tables gave that have no attribute here, by their keys.
         index: The index that counts equal members, in a spec with one.
+        space: The coordinate along which variables are fields, or None.
+        diffeomorphisms: The group of motions of the circle itself, or None.
+        profiles: The fields at the beginning, by the names of variables.
         family: What is known of the other members, where a few stand for all of them.
         written: Why all members are written out, in a spec with an index; else "".
         units: The units of all names, as far as the spec tells them.
@@ -271,6 +278,9 @@ class Spec:
     time: Time | None = None
     records: Mapping[str, Any] = field(default_factory=dict)
     index: tuple[Index, ...] = ()
+    space: Space | None = None
+    diffeomorphisms: Diffeomorphisms | None = None
+    profiles: Mapping[str, Formula] = field(default_factory=dict)
     family: Windows | None = field(default=None, repr=False)
     written: str = ""
     units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
@@ -287,6 +297,11 @@ class Spec:
         part of the state. Under constraints, those velocities are that no constraint gives.
         """
         return state_of(self.variables)
+
+    @property
+    def jets(self) -> tuple[Jet, ...]:
+        """The derivatives of fields along space that formulas may name."""
+        return () if self.space is None else self.space.jets
 
     @property
     def driving(self) -> tuple[Input | Time, ...]:
@@ -342,9 +357,14 @@ class Spec:
 
     @property
     def kind(self) -> str:
-        """``algebra``, ``poisson`` or ``configuration``: what the motion is declared on."""
+        """What the motion is declared on: an algebra, a bracket, coordinates, or the circle.
+
+        ``algebra``, ``poisson``, ``configuration`` or ``diffeomorphisms``.
+        """
         if self.algebra is not None:
             return "algebra"
+        if self.diffeomorphisms is not None:
+            return "diffeomorphisms"
         return "poisson" if self.poisson is not None else "configuration"
 
     def restricted_to(self, submanifold: Submanifold) -> Spec:

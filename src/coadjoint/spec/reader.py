@@ -112,8 +112,29 @@ def read_spec_text(
     if file.index:
         read_indices(Reading(source, file, name, TABLES), file.index)
         return read_windows(source, file, read, sizes)
+    if file.space and sizes:
+        file = _choose_points(source, file, sizes)
+        sizes = {}
     _refuse_indices(source, file, sizes)
     return read(source, file)
+
+
+def _choose_points(source: Source, file: Any, sizes: Mapping[str, int]) -> Any:
+    """The file with so many points of space.
+
+    Raises:
+        SpecError: The coordinate is another one, or the size is no number of points.
+    """
+    name, part = next(iter(file.space.items()))
+    for other, size in sizes.items():
+        if other != name:
+            problem = f"a size is chosen for {other!a}, which is no coordinate of space"
+            raise source.at_key(("space", name), problem, other, f"the coordinate {name!r}")
+        if isinstance(size, bool) or not isinstance(size, int) or size < 1:
+            problem = f"the size {size!r} is chosen for {name!r}"
+            raise source.at_key(("space", name), problem, str(size), "an integer of 1 or more")
+    chosen = part.model_copy(update={"size": sizes.get(name, part.size)})
+    return file.model_copy(update={"space": {**file.space, name: chosen}})
 
 
 def _refuse_indices(source: Source, file: Any, sizes: Mapping[str, int]) -> None:

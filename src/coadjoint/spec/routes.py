@@ -34,6 +34,7 @@ class Route:
             first order.
         is_hamiltonian: Whether it starts from a Hamiltonian, which constraints that are imposed
             before the variation give.
+        moves_fields: Whether it moves fields along [space], too.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Route:
     needs_energy: bool = True
     is_first_order: bool = False
     is_hamiltonian: bool = False
+    moves_fields: bool = False
 
     @property
     def module(self) -> str:
@@ -57,6 +59,8 @@ class Route:
 _LAGRANGIAN, _HAMILTONIAN = ("lagrangian",), ("hamiltonian",)
 _EITHER = ("hamiltonian", "lagrangian")
 _ALGEBRA = ("algebra",)
+#: What has a group, of matrices or of diffeomorphisms.
+_GROUPS = ("algebra", "diffeomorphisms")
 _SPACE = ("configuration", "poisson")
 #: What acts in addition to the energy, on routes where a rate of momenta is known.
 _ACTS = ("forces", "dissipation", "double_bracket", "metriplectic")
@@ -74,9 +78,11 @@ _in_frame = partial(
 _lax = partial(Route, energies=_EITHER, takes_driving=False)
 
 _ROUTES = (
-    _on_algebra("euler-poincare"),
-    _on_algebra("lie-poisson", energies=_EITHER, is_hamiltonian=True),
-    _on_algebra("hamilton-pontryagin"),
+    _on_algebra("euler-poincare", kinds=_GROUPS, moves_fields=True),
+    _on_algebra(
+        "lie-poisson", kinds=_GROUPS, energies=_EITHER, is_hamiltonian=True, moves_fields=True
+    ),
+    _on_algebra("hamilton-pontryagin", moves_fields=True),
     _chart("clebsch", options=("clebsch",)),
     _on_algebra("poincare"),
     _on_algebra("matrix-euler-poincare"),
@@ -85,7 +91,7 @@ _ROUTES = (
     _chart("kaluza-klein"),
     Route(name="complexification", kinds=_ALGEBRA, energies=_HAMILTONIAN),
     _lax("manakov", _ALGEBRA),
-    _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False),
+    _lax("lax", ("algebra", *_SPACE), table="lax", needs_energy=False, moves_fields=True),
     Route(name="nambu", kinds=("algebra", "nambu"), energies=_EITHER, options=_ACTS_ON_MOMENTA),
     Route(name="poisson", kinds=("poisson",), energies=_HAMILTONIAN, options=_ACTS_ON_MOMENTA),
     Route(

@@ -21,6 +21,7 @@ from coadjoint.spec.sections.charts import CHARTS
 from coadjoint.spec.sections.claims import CLAIMS
 from coadjoint.spec.sections.constraints import CONSTRAINTS
 from coadjoint.spec.sections.definitions import DEFINITIONS
+from coadjoint.spec.sections.diffeomorphisms import DIFFEOMORPHISMS
 from coadjoint.spec.sections.domain import DOMAIN
 from coadjoint.spec.sections.energies import HAMILTONIAN, LAGRANGIAN
 from coadjoint.spec.sections.forces import DISSIPATION, FORCES
@@ -38,6 +39,7 @@ from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.sections.relaxation import DOUBLE_BRACKET, METRIPLECTIC
 from coadjoint.spec.sections.representations import CLEBSCH, REPRESENTATIONS
 from coadjoint.spec.sections.rolling import ROLLING
+from coadjoint.spec.sections.space import PROFILES, SPACE
 from coadjoint.spec.sections.symmetries import SYMMETRIES
 from coadjoint.spec.sections.time import TIME
 from coadjoint.spec.sections.transformations import TRANSFORMATIONS
@@ -47,11 +49,14 @@ TABLES: tuple[Table[Any], ...] = (
     INDEX,
     ALGEBRA,
     POISSON,
+    SPACE,
+    DIFFEOMORPHISMS,
     REPRESENTATIONS,
     VARIABLES,
     PARAMETERS,
     INPUTS,
     TIME,
+    PROFILES,
     DEFINITIONS,
     LAGRANGIAN,
     HAMILTONIAN,

@@ -192,6 +192,8 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     """
     if spec.lagrangian is None or spec.in_frame or not spec.having_role("momentum"):
         return ()
+    if spec.diffeomorphisms is not None:
+        return ()
     try:
         known = sampled_mechanics(spec)
     except DerivationError:  # the route will say so

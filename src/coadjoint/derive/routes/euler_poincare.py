@@ -11,6 +11,11 @@ a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
 and a right-invariant one the same with the opposite sign of the right-hand sides. Coordinates q
 next to the algebra move by :math:`\dot p = \partial l/\partial q`, p being the slope of l by their
 velocities.
+
+On a strand g(s, t) the strain :math:`\Xi = g^{-1} g_s` is a field in addition, with
+:math:`\delta\Xi = \eta_s + [\Xi, \eta]`: it is advected by the adjoint representation, and
+moved by :math:`\partial_s \xi`; its momentum adds :math:`-\partial_s (\partial l/\partial\Xi)`
+to the rate of mu (Holm, Ivanov and Percival 2012, arXiv:1109.4421).
 Comes in: a Setting with a Lagrangian. Goes out: Equations in the momenta :math:`\mu = \partial
 l/\partial\xi`, with the velocities as definitions. Read next:
 `coadjoint.derive.routes.lie_poisson`, the same motion from a Hamiltonian.
@@ -19,7 +24,10 @@ l/\partial\xi`, with the velocities as definitions. Read next:
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields import circle
+from coadjoint.derive.fields.emission import close, emit_fields, strand_terms
 from coadjoint.derive.mechanics.emission import emit_in_momenta, show_momenta, show_velocities
+from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.records import Step, sign_text, write_rates, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.exact import Element
@@ -31,8 +39,36 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: The Lagrangian has no invertible Legendre transform.
     """
+    if setting.spec.diffeomorphisms is not None:
+        return circle.euler_poincare(setting, "euler-poincare")
     rates = _rates(setting)
+    if setting.spec.space is not None:
+        return _derive_fields(setting, rates)
     return emit_in_momenta(setting, "euler-poincare", rates, _steps(setting, rates))
+
+
+def _derive_fields(setting: Setting, rates: tuple[Element, ...]) -> Equations:
+    """The same with what derivatives along space add."""
+    added = strand_terms(setting)
+    whole = [
+        close(setting, rate) + added.get(name, setting.field.zero)
+        for name, rate in zip(setting.state, rates, strict=True)
+    ]
+    *steps, _ = _steps(setting, rates)
+    turn = "+" if setting.sign == 1 else "-"
+    steps.append(
+        write_step(
+            "Euler-Poincare equations of a strand, and compatibility of g_st = g_ts",
+            f"dmu/dt = {turn}(ad*_xi mu + ad*_Xi nu + dl/da <> a) - d nu/ds,  nu = dl/dXi,  "
+            f"dXi/dt = dxi/ds {turn} [Xi, xi]",
+            rf"\dot\mu = {turn}(\mathrm{{ad}}^*_\xi \mu + \mathrm{{ad}}^*_\Xi \nu + "
+            r"(\partial l / \partial a) \diamond a) - \partial_s \nu, \qquad "
+            rf"\dot\Xi = \partial_s \xi {turn} [\Xi, \xi]",
+            write_rates(setting.state, whole),
+        )
+    )
+    energy = close(setting, legendre(setting).energy)
+    return emit_fields(setting, "euler-poincare", whole, steps, energy)
 
 
 def _rates(setting: Setting) -> tuple[Element, ...]:

@@ -2,7 +2,10 @@ r"""The Lax route: from a declared pair of matrices with a spectral parameter.
 
 Theorem (Lax 1968; Holm 2011, section 2.4.4): if :math:`\dot L = [L, M]` for every value of
 :math:`\lambda`, the motion of L is isospectral, :math:`L(t) = g^{-1} L(0)\, g` with :math:`\dot g =
-g M`. Each entry of each power of :math:`\lambda` is one linear equation in the rates of the state.
+g M`. Fields have a pair of zero curvature, :math:`L_t - M_s = [L, M]`, which says that
+:math:`\psi_s = \psi L` and :math:`\psi_t = \psi M` are compatible: the conjugacy class of the
+monodromy of L around the circle stays what it is (Zakharov and Mikhailov 1978). Each entry of each
+power of :math:`\lambda` is one linear equation in the rates of the state.
 Comes in: a Setting with the table [lax], and an energy that gives the velocities if M names any.
 Goes out: Equations by the pair. Read next: `coadjoint.prove.lax`, where all of its equations must
 hold.
@@ -13,6 +16,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields.emission import emit_fields
+from coadjoint.derive.fields.hamiltonian import density
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.legendre import hamiltonian
@@ -50,8 +55,27 @@ def equations_of_pair(
     h, solves = hamiltonian(setting) if setting.has_energy else (None, ())
     definitions = () if h is None else velocities_of(setting, h, solves)
     rates = rates_of(setting, pair, route)
+    if setting.spec.space is not None:
+        return _derive_fields(setting, route, pair, rates)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(emit(setting, route, rates, steps, h, definitions, solves), pair=pair)
+
+
+def _derive_fields(
+    setting: Setting, route: str, pair: LaxPair, rates: tuple[Element, ...]
+) -> Equations:
+    """The equations of fields, whose pair is a connection of zero curvature."""
+    steps = (
+        write_step("Lax pair", "L, M", "L(\\lambda), M(\\lambda)", _entries(pair)),
+        write_step(
+            "Zero curvature, power by power",
+            f"dL/dt - dM/ds = L M - M L for every {pair.spectral}",
+            r"\partial_t L - \partial_s M = L M - M L",
+            write_rates(setting.state, rates),
+        ),
+    )
+    energy = density(setting) if setting.has_energy else None
+    return replace(emit_fields(setting, route, rates, steps, energy), pair=pair)
 
 
 def _steps(

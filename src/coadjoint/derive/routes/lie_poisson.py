@@ -16,6 +16,7 @@ the spec names them. Read next: `coadjoint.prove.equivalence`.
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields.hamiltonian import field_equations
 from coadjoint.derive.mechanics.legendre import hamiltonian
 from coadjoint.derive.routes.poisson import hamiltonian_equations
 from coadjoint.derive.setting import Setting
@@ -28,6 +29,8 @@ def derive(setting: Setting) -> Equations:
     Raises:
         DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
     """
+    if setting.spec.space is not None:
+        return field_equations(setting, "lie-poisson")
     sign = "-" if setting.sign == 1 else ""
     law = (
         f"Lie-Poisson bracket on the dual of {momentum_algebra(setting).name}",

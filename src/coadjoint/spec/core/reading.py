@@ -83,11 +83,13 @@ class Table(Generic[Record]):
         least: How many entries it has at least, if it is there.
         pattern: What the names of its entries look like.
         field: The annotation and the pydantic field of its key, where they are not the usual ones.
-        absent: The record of a table that is left out; of named entries, of none.
+        absent: The record of a table that is left out; by default (), or None, of named entries
+            and of others.
         always: Whether it is read even where it has no entries.
         attribute: The attribute of a `Spec` that is the record; by default the key. With None, the
             fields of the record are attributes themselves.
-        quantities: Whether formulas of other tables may name the record, or the records in it.
+        quantities: Whether formulas of other tables may name the record, or the records in it; or
+            what of it they may name.
         names: The names that the record declares, from the key and the record.
         routed: Whether it is there for routes alone, so that one of them must use it.
         acts: Whether it acts on the motion, so that every route must know it.
@@ -103,18 +105,18 @@ class Table(Generic[Record]):
     least: int = 0
     pattern: str = NAME_PATTERN
     field: tuple[Any, Any] | None = None
-    absent: Any = None
+    absent: Any = ...
     always: bool = False
     attribute: str | None = ""
-    quantities: bool = False
+    quantities: bool | Callable[[Record], Sequence[Declared]] = False
     names: Callable[[str, Record], Iterable[Naming]] = name_none
     routed: bool = False
     acts: bool = False
     example: str = ""
 
     def __post_init__(self) -> None:
-        if self.many and self.absent is None:
-            object.__setattr__(self, "absent", ())
+        if self.absent is ...:
+            object.__setattr__(self, "absent", () if self.many else None)
 
     def of(self, reading: Reading) -> Record:
         """The record of this table."""
@@ -145,6 +147,8 @@ class Table(Generic[Record]):
     def quantities_of(self, reading: Reading) -> tuple[Declared, ...]:
         """What formulas of other tables may name; tables without quantities are not read for it."""
         record: Any = self.of(reading) if self.quantities else ()
+        if callable(self.quantities):
+            record = tuple(self.quantities(record))
         return record if isinstance(record, tuple) else tuple(filter(None, (record,)))
 
 

@@ -38,6 +38,8 @@ class Variable(Components):
         given: The components that constraints give one by one; the others are state by themselves.
         follows: Whether a singular Lagrangian gives it in the state, or those of its components
             that are given: a velocity, or what is declared to follow.
+        strain: Whether it is ``g^-1 dg/ds`` of a strand: advected by the adjoint representation,
+            and moved by the derivative of the velocity along space.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Variable(Components):
     turning: str = ""
     given: tuple[str, ...] = ()
     follows: bool = False
+    strain: bool = False
 
     @property
     def parts(self) -> tuple[Variable, ...]:

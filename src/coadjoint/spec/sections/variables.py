@@ -66,6 +66,7 @@ _KEYS_OF = {
     "attitude": ("block", "default"),
     "quaternion": ("block", "default"),
     "pose": ("block", "default"),
+    "strain": ("form", "default"),
     "contact": ("default",),
 }
 
@@ -84,12 +85,14 @@ class VariablePart(Part):
         "attitude",
         "quaternion",
         "pose",
+        "strain",
         "contact",
     ] = Field(
         description="'velocity', 'momentum', 'advected' over an algebra; 'coordinate' without one, "
         "with a 'velocity' or 'momentum' of it; 'attitude' for a rotation matrix R, 'quaternion' "
-        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'contact' "
-        "for a point at which [rolling] has a body touch a surface"
+        "for a unit quaternion, 'pose' for the matrix [R, x] of attitude and position; 'strain' "
+        "for the field g^-1 dg/ds of a strand in [space]; 'contact' for a point at which "
+        "[rolling] has a body touch a surface"
     )
     block: Block | None = Field(
         None,
@@ -176,6 +179,10 @@ def _read_variable(
     turning = part.role if part.role in TURNING else ""
     if turning and algebra is not None:
         part = advect(part, algebra)
+    strain = part.role == "strain"
+    if strain:
+        _check_strain(source, key, part, reading.file)
+        part = part.model_copy(update={"role": "advected", "representation": "adjoint"})
     block: tuple[int, ...] = ()
     given: Shape = ()
     representation = None
@@ -187,6 +194,8 @@ def _read_variable(
     if part.role == "contact":
         _check_rolling(reading, key)
         count, flat = SPACE, True
+    elif reading.file.diffeomorphisms is not None:
+        count, flat = 1, False
     elif part.role == "coordinate" or algebra is None or (paired and belongs):
         if not paired or part.role in ("advected", *TURNING):
             _check_role(source, key, part, algebra)
@@ -239,10 +248,20 @@ def _read_variable(
         default=read_start(source, (*key, "default"), part.default, shape),
         turning=turning,
         follows=follows,
+        strain=strain,
     )
     if isinstance(part.follows, list):
         return let_follow(reading, variable, part.follows)
     return variable if part.role != "velocity" else bind_velocity(reading, variable, solved)
+
+
+def _check_strain(source: Source, key: KeyPath, part: VariablePart, file: Any) -> None:
+    """A strain is along a strand: an algebra and a coordinate of space are there."""
+    for table, example in (("space", 's = { length = "L" }'), ("algebra", 'name = "so(3)"')):
+        if not getattr(file, table):
+            problem = f"the strain {key[-1]!r} stands without [{table}]"
+            hint = f"Write [{table}] and below it {example}."
+            raise source.fault((*key, "role"), problem, part.role, f"a table [{table}]", hint)
 
 
 def _check_rolling(reading: Reading, key: KeyPath) -> None:

@@ -1,0 +1,130 @@
+"""Emission: the Equations of fields, in their jets alone.
+
+Comes in: rates of the fields, and the density of the energy. Goes out: Equations with densities in
+the place of observables; what kernels give of these is their integral over the circle.
+Read next: `coadjoint.derive.fields.grid`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from coadjoint.derive.emitted import declared_observables, emitted_energy
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.operators import Operator
+from coadjoint.derive.fields.symbol import look_at_symbol
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.records import Exact, Step
+from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+
+
+def emit_fields(
+    setting: Setting,
+    route: str,
+    rates: Sequence[Element],
+    steps: Sequence[Step],
+    energy: Element | None,
+    operator: Operator | None = None,
+) -> Equations:
+    """The Equations of a route that moves fields.
+
+    Args:
+        setting: The spec and its field.
+        route: Name of the route.
+        rates: In the order of the state, in jets.
+        steps: The derivation.
+        energy: The density of the energy, if the route or the spec knows one.
+        operator: The bracket by which the route goes, if it does.
+
+    Raises:
+        DerivationError: Short waves grow the faster the shorter they are.
+    """
+    if route == setting.spec.routes[0]:
+        _check_posed(setting, rates)
+    own = () if energy is None else (emitted_energy(setting, energy),)
+    exact = Exact(
+        definitions=(),
+        rates=tuple(rates),
+        energy=energy,
+        emitted=(*own, *declared_observables(setting)),
+        poisson_tensor=None,
+    )
+    return Equations(
+        setting=setting, route=route, exact=exact, steps=tuple(steps), operator=operator
+    )
+
+
+def _check_posed(setting: Setting, rates: Sequence[Element]) -> None:
+    """The motion depends on its beginning continuously.
+
+    Raises:
+        DerivationError: It does not, at the defaults of the parameters.
+    """
+    growth = look_at_symbol(setting, jets_of(setting), rates).growth
+    if growth is None:
+        return
+    spec = setting.spec
+    formula = spec.lagrangian or spec.hamiltonian
+    where = ", ".join(f"{name} = {value}" for name, value in growth.point.items())
+    message = (
+        f"the equations of the fields are ill posed: {growth.told}, at {where}; expected a "
+        "principal symbol with real roots. Change the sign of the energy of the strains or "
+        "derivatives."
+    )
+    if formula is None:  # a Lax pair alone
+        raise DerivationError(f"{spec.path}: {message}", found=growth.point)
+    raise fault(setting, formula, message, formula.text)
+
+
+@once
+def velocities(setting: Setting) -> Mapping[str, Element]:
+    """The velocities in momenta and strains, by name.
+
+    Raises:
+        DerivationError: A derivative stands in the Lagrangian, or velocities have no closed form.
+    """
+    formula, field = setting.spec.lagrangian, setting.field
+    assert formula is not None, "the reader asks for a Lagrangian on this route"
+    named = {name for each in setting.spec.jets for name in each.components}
+    found = sorted(field.reach(setting.lagrangian) & named)
+    if found:
+        message = (
+            f"the Lagrangian names the derivative {found[0]}; expected velocities, strains and "
+            "advected quantities alone. Give [hamiltonian] and the route lie-poisson instead."
+        )
+        raise fault(setting, formula, message, found[0])
+    transform = legendre(setting)
+    names = [xi for xi, _, _ in setting.conjugates]
+    closed = dict(zip(names, transform.velocities, strict=True))
+    unsolved = [name for name, value in closed.items() if field.reach(value) & closed.keys()]
+    if transform.solves or unsolved:
+        message = (
+            f"the velocities {', '.join(unsolved or names)} have no closed form; expected a "
+            "Lagrangian that is quadratic in them and couples at most three. Give [hamiltonian] "
+            "and the route lie-poisson instead."
+        )
+        raise fault(setting, formula, message, formula.text)
+    return closed
+
+
+def close(setting: Setting, element: Element) -> Element:
+    """An element with the velocities substituted: in jets and parameters alone."""
+    return setting.field.substitute(element, velocities(setting))
+
+
+def strand_terms(setting: Setting) -> dict[str, Element]:
+    """What derivatives along space add to the rates of a strand, by the names of fields.
+
+    ``d/ds xi`` for strains, and ``-d/ds (dl/dXi)`` for their momenta.
+    """
+    jets, added = jets_of(setting), dict[str, Element]()
+    for each in (each for each in setting.advected if each.strain):
+        slopes = setting.field.gradient(setting.lagrangian, each.components)
+        triples = zip(setting.momenta, setting.velocities, each.components, slopes, strict=True)
+        for mu, xi, strain, slope in triples:
+            added[strain] = jets.total(close(setting, setting.field[xi]))
+            added[mu] = -jets.total(close(setting, slope))
+    return added

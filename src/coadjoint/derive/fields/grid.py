@@ -1,0 +1,504 @@
+r"""Grids: fields at N points of the circle, by central differences, as a family of equal members.
+
+With the spacing h = L/N the energy is :math:`H = h \sum_i e_i`, derivatives in the density e being
+differences. The bracket is that of the fields with a difference :math:`D_k` for each
+:math:`\partial_s^k`, so that
+
+.. math:: \dot u_i = \Big(P_D \frac{\delta e}{\delta u}\Big)_i, \qquad
+    \frac{\delta e}{\delta u} = \sum_k (-1)^k D_k \frac{\partial e}{\partial u_k}.
+
+The second formula is the gradient of H over h, since :math:`D_k^T = (-1)^k D_k` on a circle, and
+:math:`P_D` is antisymmetric if the terms of P are those of minus its adjoint: then H is kept
+exactly by the motion in continuous time. Products of two derivatives with a constant factor are
+summed by parts first, :math:`u_j v_k \to (-1)^j u v_{j+k}`, since one difference of order j + k
+reads fewer points than two.
+
+The motion is derived twice. That of the generic point, from which kernels are made, applies
+differences to expressions. Rings of a few points have a matrix for the bracket and the gradient of
+H by all points, and are the ordinary systems with which kernels are compared.
+Comes in: Equations of fields. Goes out: a `Grid`.
+Read next: `coadjoint.prove.grids`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import sympy
+
+from coadjoint.derive import setting as settings
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields.jets import Jets, jets_of
+from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
+from coadjoint.derive.fields.operators import Operator
+from coadjoint.derive.fields.stencils import stencil, width_of
+from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.records import Exact, Kept
+from coadjoint.derive.setting import Setting, once
+from coadjoint.derive.symbols import choose_names
+from coadjoint.exact import Element, Field
+from coadjoint.families import Family, Sum, Total
+from coadjoint.spec import Spec
+from coadjoint.spec.core.members import member_name
+from coadjoint.spec.model import Poisson, Variable, Windows
+
+
+def narrow(jets: Jets, density: Element) -> Element:
+    """A density with the same integral, whose products of two derivatives are summed by parts.
+
+    >>> field = Field(["u", "u_s", "u_ss", "c", "_degree"])
+    >>> jets = Jets(field, {"u": ("u", "u_s", "u_ss")})
+    >>> narrow(jets, field["c"] * field["u_s"] ** 2 / 2 + field["u"] ** 3)
+    -c*u*u_ss/2 + u**3
+    """
+    field, found = jets.field, list[Element]()
+    orders = {x: (name, n) for name, tower in jets.towers.items() for n, x in enumerate(tower)}
+    for term in field.terms(density):
+        named = sorted(field.reach(term) & orders.keys())
+        factors = _read_pair(field, term, named)
+        if factors is None:
+            found.append(term)
+            continue
+        (first, j), (second, k) = (orders[x] for x in factors)
+        constant = term / (field[factors[0]] * field[factors[1]])
+        moved = field[first] * field[jets.towers[second][j + k]]
+        found.append(constant * moved * (-1) ** j)
+    return field.sum(found)
+
+
+def _read_pair(field: Field, term: Element, named: Sequence[str]) -> tuple[str, str] | None:
+    """The two jets of a term that is their product and a constant; None of any other."""
+    if len(named) not in (1, 2) or field.functions_in(term):
+        return None
+    first, second = named[0], named[-1]
+    rest = term / (field[first] * field[second])
+    return None if field.reach(rest) & {first, second} else (first, second)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Fields at the points of a grid.
+
+    Attributes:
+        equations: Of the fields.
+        count: The name of N in formulas.
+        family: The motion of the generic point.
+        windows: Equations of two small rings of points.
+        declared: What is known of the other points.
+        rates: Rates of the generic point in a field that has symbols for its neighbours.
+        lattice: That field, and the symbols.
+        brackets: In this field, of two fields and how many points further the second one is, the
+            bracket of both times the spacing.
+    """
+
+    equations: Equations
+    count: str
+    family: Family
+    windows: tuple[Equations, ...]
+    declared: Windows
+    rates: tuple[Element, ...]
+    lattice: LatticeField
+    brackets: Mapping[tuple[str, str, int], Element]
+
+
+@once
+def make_grid(equations: Equations) -> Grid:
+    """The motion of fields at the points of a grid."""
+    return _Maker(equations).grid
+
+
+def generic_point(equations: Equations) -> Family:
+    """The motion of fields at one point of a grid, by that of its neighbours."""
+    return _Maker(equations).family
+
+
+class _Maker:
+    """The making of a grid from Equations of fields."""
+
+    def __init__(self, equations: Equations) -> None:
+        assert equations.spec.space is not None, equations.spec.name
+        self.equations, self.spec = equations, equations.spec
+        self.space, self.setting = equations.spec.space, equations.setting
+        self.jets: Jets = jets_of(self.setting)
+        self.operator: Operator = field_operator(self.setting)
+        (self.count,) = choose_names(self.spec, ["N"])
+        self.order = self.space.order
+
+    # -- densities ------------------------------------------------------------------------
+
+    @cached_property
+    def densities(self) -> dict[str, Element]:
+        """The energy and the observables, by component."""
+        return {name: narrow(self.jets, value) for name, value in self.equations.exact.observables}
+
+    @cached_property
+    def slopes(self) -> list[list[Element]]:
+        """Derivatives of the density of the energy by each field and its derivatives."""
+        energy = self.densities["energy"]
+        return [self.jets.slopes(energy, name) for name in self.setting.state]
+
+    @cached_property
+    def stencil_reach(self) -> int:
+        """The widest difference."""
+        orders = {t.order for row in self.operator for entry in row for t in entry}
+        for value in self.densities.values():
+            orders |= {len(self.jets.slopes(value, name)) - 1 for name in self.setting.state}
+        return max(width_of(k, self.order) for k in orders if k >= 0)
+
+    # -- at points, in any arithmetic -------------------------------------------------------
+
+    def motion(self, calculus: Calculus, place: Callable[[Element], Lattice]) -> list[Lattice]:
+        """The rates of the fields at points."""
+        slopes = [calculus.vary([place(x) for x in own]) for own in self.slopes]
+        entries = [
+            [[(place(t.left), t.order, place(t.right)) for t in entry] for entry in row]
+            for row in self.operator
+        ]
+        return calculus.compose(entries, slopes)
+
+    def placer(
+        self,
+        calculus: Calculus,
+        value: Callable[[str, int], Any],
+        convert: Callable[[Element, Mapping[str, Any]], Any],
+    ) -> Callable[[Element], Lattice]:
+        """How an expression in jets is evaluated at points.
+
+        Args:
+            calculus: The differences.
+            value: A component at a point.
+            convert: An expression with values for jets.
+        """
+        orders = {
+            x: (name, n) for name, tower in self.jets.towers.items() for n, x in enumerate(tower)
+        }
+
+        def jet(symbol: str) -> Lattice:
+            name, n = orders[symbol]
+            return calculus.differentiate(lambda i: value(name, i), n)
+
+        def place(element: Element) -> Lattice:
+            named = sorted(self.setting.field.reach(element) & orders.keys())
+            values = {symbol: jet(symbol) for symbol in named}
+            known = dict[int, Any]()
+
+            def at(i: int) -> Any:
+                if i not in known:
+                    known[i] = convert(element, {x: f(i) for x, f in values.items()})
+                return known[i]
+
+            return at
+
+        return place
+
+    # -- the generic point ------------------------------------------------------------------
+
+    @cached_property
+    def written(self) -> tuple[list[sympy.Expr], dict[str, sympy.Expr]]:
+        """Rates and densities of the generic point as expressions that are not multiplied out."""
+        field = self.setting.field
+        inverse = sympy.Symbol(self.count) / sympy.Symbol(self.space.length)
+        calculus = Calculus(self.order, inverse, _rational, sympy.factor_terms)
+
+        def convert(element: Element, values: Mapping[str, Any]) -> Any:
+            new = {sympy.Symbol(name): value for name, value in values.items()}
+            return field.to_sympy(element).xreplace(new)
+
+        place = self.placer(calculus, lambda name, i: sympy.Symbol(name_at(name, i)), convert)
+        rates = [f(0) for f in self.motion(calculus, place)]
+        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    @cached_property
+    def reach(self) -> int:
+        """How far the neighbours are that rates and densities read."""
+        rates, densities = self.written
+        named = {s.name for each in (*rates, *densities.values()) for s in each.free_symbols}
+        return max(abs(shift) for _, shift in map(_read_place, named))
+
+    @cached_property
+    def lattice(self) -> LatticeField:
+        """An exact field for what is proved of the generic point."""
+        reach = 4 * self.reach
+        symbols = [name_at(c, r) for c in self.setting.state for r in range(-reach, reach + 1)]
+        rest = [*self.setting.parameters, self.count]
+        slots = len(self.setting.field.adjoined)
+        positive = [*(self.setting.field.positive & {*rest}), self.count]
+        return LatticeField(Field([*symbols, *rest], slots, positive), self.setting.state, reach)
+
+    def _calculus_in(self, field: Field, inverse: Element) -> Calculus:
+        return Calculus(self.order, inverse, field.number)
+
+    def converter(self, field: Field) -> Callable[[Element, Mapping[str, Any]], Any]:
+        """Expressions in jets as elements of another field."""
+        own = self.setting.field
+
+        def convert(element: Element, values: Mapping[str, Any]) -> Any:
+            known = {name: field[name] for name in own.reach(element) if name not in values}
+            return own.evaluate(element, {**known, **values}, field.number, field.call)
+
+        return convert
+
+    def _place_exactly(self) -> tuple[Calculus, Callable[[Element], Lattice]]:
+        """Differences and expressions in the exact field of the lattice."""
+        field = self.lattice.field
+        calculus = self._calculus_in(field, field[self.count] / field[self.space.length])
+        convert = self.converter(field)
+        return calculus, self.placer(calculus, lambda c, i: field[name_at(c, i)], convert)
+
+    @cached_property
+    def brackets(self) -> dict[tuple[str, str, int], Element]:
+        """``h {u_a(i), u_b(i + r)}`` by a, b and r."""
+        calculus, place = self._place_exactly()
+        found = dict[tuple[str, str, int], list[Element]]()
+        for a, entries in zip(self.setting.state, self.operator, strict=True):
+            for b, entry in zip(self.setting.state, entries, strict=True):
+                for term in entry:
+                    left, right = place(term.left), place(term.right)
+                    for r, c in stencil(term.order, self.order).items():
+                        weight = calculus.inverse**term.order * c
+                        found.setdefault((a, b, r), []).append(left(0) * right(r) * weight)
+        return {key: self.lattice.field.sum(parts) for key, parts in found.items()}
+
+    @cached_property
+    def exact_point(self) -> tuple[list[Element], dict[str, Element]]:
+        """Rates and densities of the generic point in the exact field of the lattice."""
+        calculus, place = self._place_exactly()
+        rates = [f(0) for f in self.motion(calculus, place)]
+        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    @cached_property
+    def family(self) -> Family:
+        """The generic point as loops are made of it."""
+        rates, densities = self.written
+        symbols = {s for each in (*rates, *densities.values()) for s in each.free_symbols}
+        states = tuple(map(sympy.Symbol, self.setting.state))
+        neighbours = {
+            (sympy.Symbol(name), shift): symbol
+            for symbol in sorted(symbols, key=lambda s: (_read_place(s.name)[1], s.name))
+            for name, shift in [_read_place(symbol.name)]
+            if shift
+        }
+        count, length = map(sympy.Symbol, (self.count, self.space.length))
+        totals = tuple(
+            Total(
+                name=name,
+                formula=length * sympy.Symbol(f"{name}_sum") / count,
+                sums=(Sum(symbol=sympy.Symbol(f"{name}_sum"), term=term),),
+            )
+            for name, term in densities.items()
+        )
+        return Family(
+            index=self.space.index,
+            states=states,
+            shifts=tuple(sorted({shift for _, shift in neighbours})),
+            neighbours=neighbours,
+            shared=tuple(map(sympy.Symbol, self.setting.parameters)),
+            indexed=(),
+            partners={},
+            rates=tuple(rates),
+            pair_sums=(),
+            ends={},
+            totals=totals,
+            small=2 * self.stencil_reach + 1,
+            wraps=True,
+            count=(count,),
+        )
+
+    # -- rings of a few points ----------------------------------------------------------------
+
+    def ring(self, size: int, kept: Mapping[str, Kept]) -> Equations:
+        """The ordinary system of so many points: a tensor, and the gradient of the energy."""
+        spec = replace(self._bare(size), family=self.declared)
+        setting = settings.make_setting(spec)
+        field = setting.field
+        inverse = field.number(size) / field[self.space.length]
+        calculus = self._calculus_in(field, inverse)
+        names = {
+            (c, k): own
+            for v in self.spec.state
+            for k in range(size)
+            for c, own in zip(v.components, _write_point(v, k).components, strict=True)
+        }
+
+        def value(name: str, i: int) -> Element:
+            return field[names[name, i % size]]
+
+        place = self.placer(calculus, value, self.converter(field))
+        totals = {
+            name: field.sum(place(density)(i) for i in range(size)) / inverse
+            for name, density in self.densities.items()
+        }
+        tensor = self._tensor(setting, calculus, place, names, size)
+        slopes = field.gradient(totals["energy"], setting.state)
+        rates = tuple(
+            field.sum(p * slope for p, slope in zip(row, slopes, strict=True) if p and slope)
+            for row in tensor
+        )
+        emitted = tuple(
+            replace(
+                each,
+                values=tuple(totals[name] for name in each.components),
+                kept=kept.get(each.name, Kept.UNKNOWN),
+                form=None,
+            )
+            for each in self.equations.exact.emitted
+        )
+        exact = Exact((), rates, totals["energy"], emitted, tensor)
+        return Equations(setting=setting, route=self.equations.route, exact=exact, steps=())
+
+    def _tensor(
+        self,
+        setting: Setting,
+        calculus: Calculus,
+        place: Callable[[Element], Lattice],
+        names: Mapping[tuple[str, int], str],
+        size: int,
+    ) -> tuple[tuple[Element, ...], ...]:
+        """``{u_a(i), u_b(j)}``, with a matrix for each difference."""
+        field = setting.field
+        rows: dict[tuple[str, str], list[Element]] = {}
+        for a, entries in zip(self.setting.state, self.operator, strict=True):
+            for b, entry in zip(self.setting.state, entries, strict=True):
+                for term in entry:
+                    left, right = place(term.left), place(term.right)
+                    for i in range(size):
+                        for j, weight in self._matrix_row(term.order, i, size):
+                            part = (
+                                left(i) * right(j) * weight * calculus.inverse ** (term.order + 1)
+                            )
+                            rows.setdefault((names[a, i], names[b, j]), []).append(part)
+        known = {pair: field.sum(parts) for pair, parts in rows.items()}
+        return tuple(
+            tuple(known.get((a, b), field.zero) for b in setting.state) for a in setting.state
+        )
+
+    def _matrix_row(self, derivative: int, i: int, size: int) -> Iterator[tuple[int, Fraction]]:
+        """A row of the matrix of a difference on a ring, times the power of the spacing."""
+        for r, c in stencil(derivative, self.order).items():
+            yield (i + r) % size, c
+
+    def _bare(self, size: int) -> Spec:
+        """A spec with the variables of so many points, and no formulas that lead anywhere."""
+        variables = tuple(_write_point(v, k) for v in self.spec.state for k in range(size))
+        return replace(
+            self.spec,
+            variables=variables,
+            algebra=None,
+            diffeomorphisms=None,
+            space=None,
+            profiles={},
+            poisson=Poisson(kind="brackets"),
+            lagrangian=None,
+            hamiltonian=None,
+            lax=None,
+            casimirs=(),
+            conserved=(),
+            definitions=(),
+        )
+
+    @cached_property
+    def declared(self) -> Windows:
+        """What is known of the points that no ring has."""
+        return Windows(
+            index=self.space.index,
+            variables=tuple(v.name for v in self.spec.state),
+            shared=tuple(p.name for p in self.spec.parameters),
+            indexed=(),
+            defaults=sample_profiles(self.equations, self.space.size),
+            repeating=(),
+            reach=self.reach,
+            alone=(0, 0),
+            pairs=False,
+            least=2 * self.stencil_reach + 1,
+            windows=(),
+        )
+
+    @property
+    def grid(self) -> Grid:
+        """All of it."""
+        kept = {each.name: each.kept for each in self.equations.exact.emitted}
+        kept |= {
+            name: Kept.UNKNOWN
+            for name, value in kept.items()
+            if value is Kept.ALWAYS and not self.is_kept(name)
+        }
+        size = 2 * self.reach + 1
+        windows = tuple(self.ring(n, kept) for n in (size, size + 1))
+        rates, _ = self.exact_point
+        return Grid(
+            equations=self.equations,
+            count=self.count,
+            family=self.family,
+            windows=windows,
+            declared=self.declared,
+            rates=tuple(rates),
+            lattice=self.lattice,
+            brackets=self.brackets,
+        )
+
+    # -- what differences keep ------------------------------------------------------------------
+
+    def is_kept(self, name: str) -> bool:
+        """Whether the sum of an observable over the points is kept exactly."""
+        (each,) = (x for x in self.equations.exact.emitted if x.name == name)
+        field = self.lattice.field
+        return all(field.is_zero(x) for c in each.components for x in self.change(c).values())
+
+    def change(self, component: str) -> dict[str, Element]:
+        """The variation of the rate of the sum of a density; zeros if the sum is kept."""
+        rates, densities = self.exact_point
+        lattice, field = self.lattice, self.lattice.field
+        density, parts = densities[component], list[Element]()
+        for name, rate in zip(self.setting.state, rates, strict=True):
+            for r in range(-self.reach, self.reach + 1):
+                slope = field.derivative(density, name_at(name, r))
+                if slope:
+                    parts.append(slope * lattice.shift(rate, r))
+        return lattice.vary(field.sum(parts))
+
+
+def _write_point(of: Variable, place: int) -> Variable:
+    """A field at one point, as a variable of its own."""
+    return Variable(
+        name=member_name(of.name, place),
+        role="coordinate",
+        shape=of.shape,
+        unit=of.unit,
+        doc=of.doc,
+        form=of.form,
+    )
+
+
+def _rational(value: Fraction) -> sympy.Rational:
+    return sympy.Rational(value.numerator, value.denominator)
+
+
+def _read_place(name: str) -> tuple[str, int]:
+    """A component and how many points away it is, by the name of both."""
+    component, _, rest = name.partition("[")
+    return component, int(rest.removesuffix("]") or 0)
+
+
+def sample_profiles(
+    equations: Equations, size: int | None
+) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
+    """The fields at the beginning at so many points, by component: numbers of 50 digits, rounded.
+
+    None without a number of points.
+    """
+    spec, space = equations.spec, equations.spec.space
+    if size is None or space is None:
+        return {}
+    return {name: tuple(zip(*_sample(spec, name, size), strict=True)) for name in spec.profiles}
+
+
+def _sample(spec: Spec, name: str, size: int) -> Iterator[tuple[Fraction, ...]]:
+    """A field at each point."""
+    from coadjoint.derive.fields.profiles import evaluate_profile
+
+    for i in range(size):
+        yield evaluate_profile(spec, name, Fraction(i, size))

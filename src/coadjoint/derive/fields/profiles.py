@@ -1,0 +1,64 @@
+"""Profiles: the fields at the beginning, evaluated at points of the circle.
+
+Comes in: a Spec with [profiles]. Goes out: numbers at the defaults of the parameters, computed to
+50 digits and rounded to doubles. Read next: `coadjoint.derive.fields.grid`.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, cast
+
+import mpmath
+
+from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.setting import assemble
+from coadjoint.exact import Field
+from coadjoint.spec import Spec
+
+#: Digits of the arithmetic.
+DIGITS = 50
+
+
+class _Numbers:
+    """What `interpret` asks of a field, of numbers of many digits."""
+
+    zero, one = mpmath.mpf(0), mpmath.mpf(1)
+
+    def number(self, value: Fraction) -> Any:
+        """A rational number."""
+        return mpmath.mpf(value.numerator) / value.denominator
+
+    def is_zero(self, value: Any) -> bool:
+        """Whether a number is 0."""
+        return bool(value == 0)
+
+    def is_function_free(self, value: Any) -> bool:
+        """Said of every divisor: a division by 0 raises by itself."""
+        return True
+
+    def call(self, function: str, *arguments: Any) -> Any:
+        """An elementary function."""
+        return getattr(mpmath, function)(*arguments)
+
+
+def evaluate_profile(spec: Spec, name: str, part: Fraction) -> tuple[Fraction, ...]:
+    """The components of a field at a part of the way around the circle.
+
+    Args:
+        spec: With a profile of the field.
+        name: The field.
+        part: From 0 to 1.
+    """
+    space, numbers = spec.space, _Numbers()
+    assert space is not None, spec.name
+    with mpmath.workdps(DIGITS):
+        values = dict[str, Any]()
+        for each in spec.parameters:
+            own = [numbers.number(x) for x in each.default or ()]
+            values |= zip(each.components, own, strict=True)
+            values[each.name] = assemble(each, values)
+        values[space.name] = numbers.number(part) * values[space.length]
+        value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
+        numbers_of: Any = entries(value)
+        return tuple(Fraction(float(x)) for x in numbers_of)

@@ -1,0 +1,151 @@
+r"""The principal symbol: whether the equations of fields are well posed.
+
+About any fields, short waves :math:`e^{i k s - i \omega t}` obey :math:`-i \omega v = (i k)^n A v`,
+with :math:`A = \partial \dot u / \partial (\partial_s^n u)` for the highest derivative in the
+rates. A wave does not grow if :math:`\omega` is real: of a bracket, whose eigenvalues come in
+pairs, for odd n if all eigenvalues of A are real, and for even n if all are imaginary. Otherwise
+there are waves that grow faster the shorter they are, and nothing depends on initial fields
+continuously (Hadamard). For a strand with :math:`l = \tfrac12 A \Omega^2 + B \Omega \Xi +
+\tfrac12 C \Xi^2` the roots of :math:`A \tau^2 + 2 B \tau + C` are looked at so.
+
+Roots are counted exactly, at rational points: the defaults of parameters, and a few fields.
+Comes in: Equations of fields. Goes out: what is wrong with them, if anything.
+Read next: `coadjoint.prove.fields`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from random import Random
+
+import sympy
+
+from coadjoint.derive.fields.jets import Jets
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element
+
+#: Fields at which the symbol is looked at.
+POINTS = 5
+#: Wave number at which growth is shown.
+SHOWN = 10
+_ROOT = sympy.Symbol("_root")
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A short wave that grows.
+
+    Attributes:
+        order: The highest derivative in the rates.
+        speed: How fast it grows: the amplitude has the factor ``exp(speed * k^order * t)``.
+        point: Parameters and fields there, as text.
+    """
+
+    order: int
+    speed: float
+    point: dict[str, str]
+
+    @property
+    def told(self) -> str:
+        """What happens, as a clause."""
+        rate = f"{self.speed * SHOWN**self.order:.3g}"
+        power = f"k^{self.order}" if self.order > 1 else "k"
+        return (
+            "the principal symbol has complex roots, so that a wave of wave number k grows like "
+            f"exp({self.speed:.3g}*{power}*t), with k = {SHOWN} like exp({rate}*t)"
+        )
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What was seen of the principal symbol.
+
+    Attributes:
+        order: The highest derivative in the rates.
+        points: At how many points its roots were counted.
+        growth: A short wave that grows, if there is one.
+    """
+
+    order: int
+    points: int
+    growth: Growth | None = None
+
+
+def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
+    """The roots of the principal symbol at some points; none where it calls functions."""
+    order, points = max((_order(jets, rate) for rate in rates), default=0), 0
+    if not order:
+        return Seen(order, points)
+    field = setting.field
+    matrix = [
+        field.gradient(rate, [tower[order] for tower in jets.towers.values()]) for rate in rates
+    ]
+    for values in _list_points(setting, matrix):
+        numbers = sympy.Matrix(
+            [
+                [sympy.Rational(x.numerator, x.denominator) for x in row]
+                for row in (
+                    [field.evaluate(entry, values, Fraction) for entry in row] for row in matrix
+                )
+            ]
+        )
+        polynomial = numbers.charpoly(_ROOT).as_expr()
+        if _count_bad(sympy.Poly(polynomial, _ROOT, domain="QQ"), odd=order % 2 == 1):
+            parts = [complex(root) for root in sympy.Poly(polynomial, _ROOT).nroots()]
+            speed = max(abs(x.imag if order % 2 else x.real) for x in parts)
+            reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
+            point = {name: str(values[name]) for name in field.names if name in reached}
+            return Seen(order, points + 1, Growth(order, speed, point))
+        points += 1
+    return Seen(order, points)
+
+
+def _order(jets: Jets, rate: Element) -> int:
+    """The highest derivative that a rate names."""
+    return max((len(jets.slopes(rate, name)) - 1 for name in jets.towers), default=0)
+
+
+def _list_points(
+    setting: Setting, matrix: Sequence[Sequence[Element]]
+) -> Iterator[dict[str, Fraction]]:
+    """Defaults of parameters, and fields that are rational numbers."""
+    field, source = setting.field, Random(0)  # noqa: S311 - not a secret
+    reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
+    if any(field.functions_in(x) for row in matrix for x in row):
+        return
+    defaults = field.region.defaults
+    for _ in range(POINTS):
+        yield {
+            name: defaults.get(name, Fraction(source.randint(1, 9), source.randint(1, 9)))
+            if name in setting.parameters
+            else Fraction(source.randint(-9, 9), source.randint(1, 9))
+            for name in sorted(reached)
+        }
+
+
+def _count_bad(polynomial: sympy.Poly, *, odd: bool) -> int:
+    """How many roots are neither real, for an odd order, nor imaginary, for an even one."""
+    degree = int(polynomial.degree())
+    if not odd:  # real y with p(i y) = 0 are the common roots of its real and imaginary parts
+        real, imaginary = _split(
+            sympy.Poly(polynomial.as_expr().subs(_ROOT, sympy.I * _ROOT), _ROOT)
+        )
+        polynomial = sympy.Poly(sympy.gcd(real, imaginary), _ROOT, domain="QQ")
+    return degree - _count_real(polynomial)
+
+
+def _split(polynomial: sympy.Poly) -> tuple[sympy.Expr, sympy.Expr]:
+    """Real and imaginary parts of a polynomial at real arguments."""
+    parts = [sympy.S(0), sympy.S(0)]
+    for (power,), value in polynomial.terms():
+        real, imaginary = value.as_real_imag()
+        parts[0] += real * _ROOT**power
+        parts[1] += imaginary * _ROOT**power
+    return parts[0], parts[1]
+
+
+def _count_real(polynomial: sympy.Poly) -> int:
+    """Real roots with their multiplicities, by Sturm's theorem."""
+    return sum(factor.count_roots() * power for factor, power in polynomial.sqf_list()[1])

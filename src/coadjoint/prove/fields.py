@@ -1,0 +1,283 @@
+r"""Claims about fields: their bracket, what is conserved, and that all routes give one motion.
+
+A bracket :math:`\{f, h\} = \oint \frac{\delta f}{\delta u} P \frac{\delta h}{\delta u}`
+satisfies the Jacobi identity if and only if, for all covectors :math:`\xi, \eta, \zeta` along
+space,
+
+.. math:: \oint \xi \cdot P'[P \eta]\, \zeta + \text{cyclic} = 0,
+
+with the derivative :math:`P'[v]` of P by the fields along v (Olver 1993, Applications of Lie Groups
+to Differential Equations, 2nd ed., proposition 7.7). The integrand is a polynomial in the jets of
+all, and its integral vanishes if and only if its variational derivative by :math:`\zeta` does. A
+density f is conserved if its rate is a total derivative, :math:`\partial_t f + \partial_s F = 0`:
+the variational derivative of the rate decides that, and the flux F is exhibited.
+Comes in: Equations of fields by all routes. Goes out: statements, and what must be zero.
+Read next: `coadjoint.prove.claims`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+
+from coadjoint.derive import Equations
+from coadjoint.derive.fields.grid import make_grid
+from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
+from coadjoint.derive.fields.operators import Operator, Term, apply, order_of, skew_defects
+from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.fields.symbol import look_at_symbol
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.grids import about_grid
+from coadjoint.prove.lax import lax_decision
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.spec.sections.space import jet_name
+
+#: Characters of a flux that a certificate shows.
+SHOWN = 400
+_COVECTORS = ("_xi", "_eta", "_zeta")
+
+
+def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """All that is examined of fields, in the order of the certificate."""
+    first = routes[0]
+    yield from _about_bracket(first)
+    yield from _about_posedness(first)
+    yield from _about_equality(routes)
+    yield from _about_casimirs(first)
+    yield from _about_densities(first)
+    for equations in routes:
+        yield from _about_pair(first, routes, equations)
+    yield from about_grid(make_grid(first))
+
+
+# -- the bracket ------------------------------------------------------------------------------
+
+
+def _about_bracket(first: Equations) -> Iterator[Examined]:
+    """The bracket of the fields: antisymmetric, and a Poisson bracket."""
+    setting, jets = first.setting, jets_of(first.setting)
+    operator = field_operator(setting)
+    yield (
+        "the bracket of the fields is antisymmetric: P + P^* = 0 by integration by parts",
+        "jacobi",
+        lambda: decide_skew(operator, jets),
+    )
+    yield (
+        "the bracket of the fields satisfies the Jacobi identity",
+        "jacobi",
+        lambda: decide_jacobi(operator, jets),
+    )
+
+
+def decide_skew(operator: Operator, jets: Jets) -> Decision:
+    """Whether an operator is minus its adjoint."""
+    defects = skew_defects(operator, jets)
+    names = [*jets.towers]
+    decision = decide_zero([x for found in defects.values() for x in found], jets.field)
+    if defects:
+        i, j = next(iter(defects))
+        decision = replace(decision, method=f"{decision.method} in {{{names[i]}, {names[j]}}}")
+    return decision
+
+
+def decide_jacobi(operator: Operator, jets: Jets) -> Decision:
+    """Whether the bracket of an antisymmetric operator satisfies the Jacobi identity."""
+    trivector = _Trivector(operator, jets)
+    for place, name in enumerate(jets.towers):
+        defect = trivector.defect(place)
+        if trivector.field.is_zero(defect):
+            continue
+        decision = decide_zero([defect], trivector.field)
+        a, b = trivector.find_pair(defect)
+        method = f"{decision.method} for the triple ({a}, {b}, {name})"
+        return replace(decision, method=method)
+    method = "for all covectors along space, the variational derivative of the cyclic sum is 0"
+    return Decision(Verdict.PROVED, method)
+
+
+class _Trivector:
+    """The cyclic sum of a bracket, in a field that has symbols for three covectors.
+
+    Args:
+        operator: The bracket.
+        jets: Of the fields.
+    """
+
+    def __init__(self, operator: Operator, jets: Jets) -> None:
+        self.names, size = [*jets.towers], len(operator)
+        depth = 3 * order_of(operator) + 1
+        space = [*jets.towers.values()]
+        letter = space[0][1].removeprefix(f"{self.names[0]}_")
+        towers = {name: tower[: depth + 1] for name, tower in jets.towers.items()}
+        self.covectors = [[f"{of}{n}" for n in range(1, size + 1)] for of in _COVECTORS]
+        towers |= {
+            name: tuple(jet_name(name, letter, k) for k in range(2 * depth + 1))
+            for names in self.covectors
+            for name in names
+        }
+        symbols = [x for tower in towers.values() for x in tower]
+        moving = {x for tower in space for x in tower}
+        rest = [name for name in jets.field.names if name not in moving and name != DEGREE]
+        self.field = Field([*symbols, *rest, DEGREE])
+        self.jets = Jets(self.field, towers)
+        self.operator: Operator = tuple(
+            tuple(
+                tuple(
+                    Term(self.field.adopt(t.left), t.order, self.field.adopt(t.right))
+                    for t in entry
+                )
+                for entry in row
+            )
+            for row in operator
+        )
+        self.density = self.field.sum(
+            self._part(*(self.covectors[(n + k) % 3] for k in range(3))) for n in range(3)
+        )
+
+    def _part(self, xi: list[str], eta: list[str], zeta: list[str]) -> Element:
+        """``xi . P'[P eta] zeta``."""
+        field, jets = self.field, self.jets
+        vectors = [[field[name] for name in names] for names in (xi, eta, zeta)]
+        along = dict(zip(self.names, apply(self.operator, vectors[1], jets.total), strict=True))
+        varied: Operator = tuple(
+            tuple(
+                tuple(
+                    part
+                    for t in entry
+                    for part in (
+                        Term(jets.rate(t.left, along), t.order, t.right),
+                        Term(t.left, t.order, jets.rate(t.right, along)),
+                    )
+                )
+                for entry in row
+            )
+            for row in self.operator
+        )
+        moved = apply(varied, vectors[2], jets.total)
+        return field.sum(a * b for a, b in zip(vectors[0], moved, strict=True))
+
+    def defect(self, place: int) -> Element:
+        """The variational derivative by a component of the last covector."""
+        return self.jets.euler(self.density, self.covectors[2][place])
+
+    def find_pair(self, defect: Element) -> tuple[str, str]:
+        """The components of the other covectors in the first term of a defect."""
+        reached = self.field.reach(self.field.terms(defect)[0])
+        return (
+            next(
+                name
+                for name, one in zip(self.names, self.covectors[0], strict=True)
+                if reached & {*self.jets.towers[one]}
+            ),
+            next(
+                name
+                for name, one in zip(self.names, self.covectors[1], strict=True)
+                if reached & {*self.jets.towers[one]}
+            ),
+        )
+
+
+# -- the motion -------------------------------------------------------------------------------
+
+
+def _about_posedness(first: Equations) -> Iterator[Examined]:
+    """The roots of the principal symbol; what has others is refused where it is derived."""
+    seen = look_at_symbol(first.setting, jets_of(first.setting), first.exact.rates)
+    assert seen.growth is None, first.spec.name
+    if not seen.points:
+        return
+    kind = "real" if seen.order % 2 else "imaginary"
+    decision = Decision(Verdict.PROVED, f"roots counted exactly, about {seen.points} fields")
+    yield (
+        f"the principal symbol, of order {seen.order}, has {kind} eigenvalues, so that short waves "
+        "do not grow, at the defaults of the parameters and about some fields of rational values",
+        "posed",
+        lambda: decision,
+    )
+
+
+def _about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
+    """All routes give the same rates, as differential polynomials."""
+    first = routes[0]
+    for other in routes[1:]:
+        pairs = zip(first.exact.rates, other.exact.rates, strict=True)
+        defects = [a - b for a, b in pairs]
+        if first.exact.energy is not None and other.exact.energy is not None:
+            defects.append(first.exact.energy - other.exact.energy)
+        yield (
+            f"the route {other.route} gives the same motion and energy as {first.route}",
+            "equivalence",
+            partial(list, defects),
+        )
+
+
+def _about_casimirs(first: Equations) -> Iterator[Examined]:
+    """The bracket of the integral of a density with everything vanishes."""
+    setting, jets = first.setting, jets_of(first.setting)
+    operator = field_operator(setting)
+
+    def decide(value: Element) -> list[Element]:
+        slopes = [jets.euler(value, name) for name in setting.state]
+        return list(apply(operator, slopes, jets.total))
+
+    for place, formula in enumerate(setting.spec.casimirs):
+        parts = setting.components(formula)
+        defects = partial(lambda parts: [x for part in parts for x in decide(part)], parts)
+        claimed = [(f"the integral of {formula.in_one_line} is a Casimir", "casimir", defects)]
+        key = ("claims", "casimirs", place)
+        yield from mark_accepted(setting.spec, key, claimed, setting.field)
+
+
+def _about_densities(first: Equations) -> Iterator[Examined]:
+    """The energy, and what the spec claims to be conserved."""
+    setting, spec = first.setting, first.spec
+    emitted = {each.name: each.whole for each in first.exact.emitted}
+    if first.exact.energy is not None:
+        decide = partial(decide_density, first, [first.exact.energy])
+        yield "the integral of the energy is conserved", "conserved", decide
+    for place, claim in enumerate(spec.conserved):
+        if claim.everywhere != "energy":
+            parts = setting.components(claim.formula, emitted)
+            statement = f"the integral of {claim.formula.in_one_line} is conserved"
+            claimed = [(statement, "conserved", partial(decide_density, first, parts))]
+            yield from mark_accepted(spec, ("claims", "conserved", place), claimed, setting.field)
+
+
+def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
+    """Whether the rates of densities are total derivatives, with the fluxes."""
+    setting, jets = equations.setting, jets_of(equations.setting)
+    rates = dict(zip(setting.state, equations.exact.rates, strict=True))
+    texts = list[str]()
+    for part in parts:
+        rate = jets.rate(part, rates)
+        decision = decide_zero([*jets.variation(rate).values()], setting.field)
+        if decision.verdict is not Verdict.PROVED:
+            method = f"{decision.method} of the variational derivative of its rate"
+            return replace(decision, method=method)
+        flux = jets.integrate(-rate)
+        if flux is None:
+            texts.append("its rate is a total derivative, by the Euler operator")
+            continue
+        assert setting.field.is_zero(jets.total(flux) + rate), equations.spec.name
+        text = element_text(setting.field, flux)
+        long = f"a flux of {len(setting.field.terms(flux))} terms"
+        texts.append(f"flux {text if len(text) <= SHOWN else long}")
+    return Decision(Verdict.PROVED, f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}")
+
+
+def _about_pair(
+    first: Equations, routes: Sequence[Equations], equations: Equations
+) -> Iterator[Examined]:
+    """The equation of zero curvature of a declared pair."""
+    if equations.pair is None:
+        return
+    pair = equations.pair
+    motion = next((each for each in routes if each.pair is None), first)
+    yield (
+        f"dL/dt - dM/ds = [L, M] for every {pair.spectral}, with L = {pair.texts[0]} and M = "
+        f"{pair.texts[1]}, on the route {equations.route}",
+        "lax",
+        lambda: lax_decision(motion, pair),
+    )

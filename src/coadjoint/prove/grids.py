@@ -1,0 +1,175 @@
+"""Claims about fields on a grid: what differences keep exactly, and what they do not.
+
+Comes in: a `Grid`. Goes out: statements. The energy is kept since the matrix of the bracket is
+antisymmetric. Other sums are kept if the variation of their rate over an endless grid vanishes;
+what is no sum of differences changes by terms of the order of the differences. The Jacobi identity
+of a bracket with differences fails by Leibniz' rule, which no difference obeys.
+Read next: `coadjoint.prove.fields`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TypeVar
+
+from coadjoint.derive import Equations
+from coadjoint.derive.fields.grid import Grid
+from coadjoint.derive.fields.lattice import name_at
+from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.records import Kept
+from coadjoint.exact import Element
+from coadjoint.poisson.jacobi import schouten_bracket, slopes_by
+from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+from coadjoint.spec.core.members import member_name
+
+
+def about_grid(grid: Grid) -> Iterator[Examined]:
+    """What is proved of fields at N points."""
+    first, family = grid.equations, grid.family
+    space = first.spec.space
+    assert space is not None, first.spec.name
+    where = f"at N >= {family.small} points, with differences of order {space.order}"
+    sizes = " and ".join(str(count_points(each, grid)) for each in grid.windows)
+    yield (
+        f"the motion of the generic point is that of rings of {sizes} points by their matrices",
+        "equivalence",
+        lambda: _compare_rings(grid),
+    )
+    yield f"the energy is conserved, {where}", "conserved", lambda: _decide_energy(grid)
+    yield from _about_sums(grid, where)
+    yield _about_jacobi(grid, where)
+
+
+def count_points(ring: Equations, grid: Grid) -> int:
+    """How many points a ring has."""
+    return len(ring.spec.state) // len(grid.declared.variables)
+
+
+# -- the motion -------------------------------------------------------------------------------
+
+
+def _compare_rings(grid: Grid) -> Decision:
+    """Differences of the rates of the generic point, seen in rings, and those of the rings."""
+    decisions = [decide_zero(_differences(grid, each), each.setting.field) for each in grid.windows]
+    return next((d for d in decisions if d.verdict is not Verdict.PROVED), decisions[0])
+
+
+def _differences(grid: Grid, ring: Equations) -> list[Element]:
+    """Of each point of a ring and each field: the rate by the generic point minus its own."""
+    field, size = ring.setting.field, count_points(ring, grid)
+    own = dict(zip(ring.setting.state, ring.exact.rates, strict=True))
+    known = {each.name: each for each in ring.spec.variables}
+    reach, lattice = max(map(abs, grid.family.shifts), default=0), grid.lattice.field
+    names = {
+        (c, k): name
+        for v in grid.equations.spec.state
+        for k in range(size)
+        for c, name in zip(v.components, known[member_name(v.name, k)].components, strict=True)
+    }
+    values = {name: field[name] for name in ring.setting.parameters}
+    values[grid.count] = field.number(size)
+    found = list[Element]()
+    for k in range(size):
+        seen = {
+            name_at(c, r): field[names[c, (k + r) % size]]
+            for c in grid.lattice.components
+            for r in range(-reach, reach + 1)
+        }
+        for c, rate in zip(grid.lattice.components, grid.rates, strict=True):
+            value = lattice.evaluate(rate, {**values, **seen}, field.number, field.call)
+            found.append(value - own[names[c, k]])
+    return found
+
+
+# -- what is kept -----------------------------------------------------------------------------
+
+
+def _decide_energy(grid: Grid) -> Decision:
+    """The matrix of the bracket is antisymmetric; rates are this matrix times the gradient.
+
+    That is seen at the generic point: the bracket with a neighbour is minus that of the neighbour
+    with the point, whatever the differences are.
+    """
+    lattice = grid.lattice
+    defects = list[Element]()
+    for (a, b, r), value in grid.brackets.items():
+        back = grid.brackets.get((b, a, -r), lattice.field.zero)
+        defects.append(value + lattice.shift(back, r))
+    decision = decide_zero(defects, lattice.field)
+    method = (
+        f"{decision.method}: the matrix of the bracket is antisymmetric at the generic point, and "
+        "rates are this matrix times the gradient of the energy"
+    )
+    return replace(decision, method=method)
+
+
+def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
+    """The other sums that the fields conserve."""
+    kept = {each.name: each.kept for each in grid.windows[0].exact.emitted}
+    space = grid.equations.spec.space
+    assert space is not None, grid.equations.spec.name
+    for each in grid.equations.exact.emitted:
+        if each.kept is not Kept.ALWAYS:
+            continue
+        if kept[each.name] is Kept.ALWAYS:
+            method = "the variation of its rate over the points of an endless grid is 0"
+            decision = Decision(Verdict.PROVED, method)
+            yield f"{each.name} is conserved, {where}", "conserved", partial(_give, decision)
+            continue
+        found = Discovery("the variation of its rate over the points is not 0", "on the grid")
+        yield (
+            f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N",
+            "conserved",
+            partial(_give, found),
+        )
+
+
+Found = TypeVar("Found")
+
+
+def _give(found: Found) -> Found:
+    """What is known already."""
+    return found
+
+
+def _about_jacobi(grid: Grid, where: str) -> Examined:
+    """Whether the bracket at N points is a Poisson bracket."""
+    ring = grid.windows[0]
+    field, tensor = ring.setting.field, ring.exact.poisson_tensor
+    assert tensor is not None, ring.spec.name
+    operator = field_operator(grid.equations.setting)
+    pointwise = all(not t.order for row in operator for entry in row for t in entry)
+    found = schouten_bracket(tensor, slopes_by(field, ring.setting.state))
+    defects = {triple: x for triple, x in found.items() if not field.is_zero(x)}
+    size = count_points(ring, grid)
+    if not defects and (pointwise or is_constant(tensor, ring)):
+        method = f"normal form, for {size} points; points commute" if pointwise else "constants"
+        decision = Decision(Verdict.PROVED, method)
+        return f"the bracket satisfies the Jacobi identity, {where}", "jacobi", lambda: decision
+    if not defects:
+        method = f"normal form, for {size} points"
+        discovery = Discovery(method, f"for {size} points")
+        return "the bracket satisfies the Jacobi identity", "jacobi", lambda: discovery
+    a, b, c = (ring.setting.state[n] for n in next(iter(defects)))
+    method = f"differences do not obey Leibniz' rule: of the triple {a}, {b}, {c} and others"
+    discovery = Discovery(method, f"for {size} points")
+    return (
+        f"the Jacobi identity of the bracket fails at N points by O(h^{_order(grid)})",
+        "jacobi",
+        lambda: discovery,
+    )
+
+
+def is_constant(tensor: Sequence[Sequence[Element]], ring: Equations) -> bool:
+    """Whether the brackets of a ring do not depend on the fields."""
+    state = {*ring.setting.state}
+    return not any(ring.setting.field.reach(x) & state for row in tensor for x in row)
+
+
+def _order(grid: Grid) -> int:
+    space = grid.equations.spec.space
+    assert space is not None, grid.equations.spec.name
+    return space.order

@@ -1,0 +1,284 @@
+"""Space: the table [space], the coordinate along which variables are fields.
+
+Comes in: its keys, and the variables. Goes out: a `Space` with the derivatives that formulas may
+name: with a coordinate s, those of ``Xi`` are ``Xi_s``, ``Xi_ss`` and so on.
+Read next: `coadjoint.derive.fields.jets`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from coadjoint.families import Index
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.faults import did_you_mean, list_names
+from coadjoint.spec.core.formulas import Formula, read_fitting
+from coadjoint.spec.core.parts import Part
+from coadjoint.spec.core.reading import Naming, Reading, Table
+from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.values import Unit
+from coadjoint.spec.sections.parameters import PARAMETERS
+from coadjoint.spec.sections.state import Variable, state_of
+from coadjoint.spec.sections.variables import VARIABLES
+
+#: Tables that a spec of fields may have, next to [space] and [profiles].
+TABLES = (
+    "space",
+    "profiles",
+    "algebra",
+    "diffeomorphisms",
+    "variables",
+    "parameters",
+    "definitions",
+    "lagrangian",
+    "hamiltonian",
+    "lax",
+    "observables",
+    "claims",
+)
+_HEAD = ("title", "source", "description", "license", "routes")
+#: Roles of fields.
+_ROLES = ("velocity", "momentum", "strain", "advected")
+
+
+class SpacePart(Part):
+    """The coordinate along which variables are fields, which goes round a circle."""
+
+    length: str = Field(description="the parameter that is the length of the circle")
+    size: Annotated[int, Field(ge=1)] | None = Field(
+        None,
+        description="how many points there are; chosen when the system is loaded if left out, as "
+        'coadjoint.load("chain.toml", sizes={"s": 512})',
+    )
+    order: Literal[2, 4, 6, 8] = Field(
+        4, description="order of the central differences: 2, 4 (the default), 6 or 8"
+    )
+    derivatives: Annotated[int, Field(ge=1, le=4)] = Field(
+        1, description="the highest derivative along the coordinate that formulas name"
+    )
+    unit: Unit = ""
+
+
+@dataclass(frozen=True)
+class Jet:
+    """A derivative of a field along space, such as ``Xi_s``.
+
+    Attributes:
+        of: The field.
+        order: How often it is differentiated.
+        coordinate: The name of the coordinate.
+    """
+
+    default: ClassVar[None] = None
+
+    of: Variable
+    order: int
+    coordinate: str
+
+    @property
+    def name(self) -> str:
+        """``Xi_ss``."""
+        return jet_name(self.of.name, self.coordinate, self.order)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """``Xi1_ss`` and so on."""
+        return tuple(jet_name(c, self.coordinate, self.order) for c in self.of.components)
+
+    @property
+    def role(self) -> str:
+        """That of the field."""
+        return self.of.role
+
+    @property
+    def shape(self) -> Shape:
+        """That of the field."""
+        return self.of.shape
+
+    @property
+    def form(self) -> str:
+        """That of the field."""
+        return self.of.form
+
+    @property
+    def value_shape(self) -> Shape:
+        """Shape in formulas."""
+        return self.of.value_shape
+
+
+def jet_name(name: str, coordinate: str, order: int) -> str:
+    """What a derivative along space is called.
+
+    >>> jet_name("Xi1", "s", 2), jet_name("u", "s", 0)
+    ('Xi1_ss', 'u')
+    """
+    return f"{name}_{coordinate * order}" if order else name
+
+
+@dataclass(frozen=True)
+class Space:
+    """The coordinate along which variables are fields.
+
+    Attributes:
+        name: As declared, e.g. ``s``; it also counts the points.
+        length: The parameter that is the length of the circle.
+        size: How many points there are, or None.
+        order: Order of the central differences.
+        derivatives: The highest derivative that formulas name.
+        jets: The derivatives that formulas may name.
+        unit: Unit of the coordinate.
+    """
+
+    name: str
+    length: str
+    size: int | None
+    order: int
+    derivatives: int
+    jets: tuple[Jet, ...]
+    unit: str = ""
+
+    @property
+    def index(self) -> Index:
+        """What counts the points."""
+        return Index(self.name, self.size, periodic=True, from_zero=True)
+
+
+def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
+    """The coordinate.
+
+    Raises:
+        SpecError: There are several, the length is no scalar parameter, a derivative has a name of
+            another kind of coordinate, or a table or a role does not go with fields.
+    """
+    (name, part), *more = parts.items()
+    if more:
+        problem, found = f"there are {len(parts)} coordinates of space", list_names(parts)
+        raise reading.at_key(("space", more[0][0]), problem, found, "one", "Remove the others.")
+    _check_tables(reading)
+    _check_length(reading, name, part)
+    fields = state_of(VARIABLES.of(reading))
+    velocities = (each for each in VARIABLES.of(reading) if each not in fields)
+    jets = (
+        Jet(each, order, name)
+        for each in (*fields, *velocities)
+        for order in range(1, part.derivatives + 1)
+    )
+    return Space(
+        name=name,
+        length=part.length,
+        size=part.size,
+        order=part.order,
+        derivatives=part.derivatives,
+        jets=tuple(jets),
+        unit=part.unit,
+    )
+
+
+def _check_tables(reading: Reading) -> None:
+    """Nothing is declared that no field has."""
+    file, source = reading.file, reading.source
+    for table in type(file).model_fields:
+        if table not in (*TABLES, *_HEAD) and getattr(file, table) not in (None, {}):
+            problem, expected = f"there are tables [space] and [{table}]", "one of them"
+            raise source.fault((table,), problem, table, expected, f"Remove [{table}].")
+    for place, claim in enumerate(file.claims.conserved):
+        if claim.where:
+            problem, expected = "a density is claimed to be conserved on a level set", "everywhere"
+            key = ("claims", "conserved", place, "where")
+            raise source.fault(key, problem, claim.where[0], expected, "Remove where.")
+    strains = [name for name, part in file.variables.items() if part.role == "strain"]
+    if len(strains) > 1:
+        problem, expected = f"there are {len(strains)} strains", "one, along the whole algebra"
+        raise source.fault(("variables", strains[1], "role"), problem, strains[1], expected)
+    for name, part in file.variables.items():
+        if part.role not in _ROLES:
+            problem = f"the {part.role} {name!r} is a field"
+            expected = f"one of the roles {list_names(_ROLES)}"
+            raise source.fault(("variables", name, "role"), problem, part.role, expected)
+
+
+def _check_length(reading: Reading, name: str, part: SpacePart) -> None:
+    """The length is a scalar parameter that is positive."""
+    key = ("space", name, "length")
+    known = {each.name: each for each in PARAMETERS.of(reading)}
+    if part.length not in known:
+        problem = f"there is no parameter {part.length!a}"
+        hint = did_you_mean(part.length, known) or (
+            f"Write [parameters] and below it {part.length} = {{ positive = true, default = 1 }}."
+        )
+        raise reading.fault(key, problem, part.length, "a parameter of one component", hint)
+    if known[part.length].shape or not known[part.length].positive:
+        problem = f"the length {part.length!r} may be negative, or is no scalar"
+        hint = f"Write {part.length} = {{ positive = true, default = 1 }} in [parameters]."
+        raise reading.fault(key, problem, part.length, "a positive scalar parameter", hint)
+
+
+def _name_all(table: str, space: Space | None) -> Iterator[Naming]:
+    """The names of the coordinate and of all derivatives."""
+    if space is None:
+        return
+    why = "It is the name of a derivative along space; rename the other."
+    yield Naming(key=(table, space.name), name=space.name)
+    for each in space.jets:
+        yield Naming(key=(table, space.name), name=each.name, components=each.components, why=why)
+
+
+SPACE = Table[Space | None](
+    "space",
+    SpacePart,
+    'the coordinate along which variables are fields, as s = { length = "L" }',
+    read_space,
+    many=True,
+    absent=None,
+    quantities=lambda space: () if space is None else space.jets,
+    names=_name_all,
+    example='s = { length = "L" }',
+)
+
+
+def read_profiles(reading: Reading, texts: Mapping[str, str]) -> Mapping[str, Formula]:
+    """The fields at the beginning, as functions of the coordinate.
+
+    Raises:
+        SpecError: There is no space, or no such field, or the shapes differ.
+    """
+    space, source = SPACE.of(reading), reading.source
+    if space is None:
+        problem, expected = "there is a table [profiles] without [space]", "fields"
+        raise source.fault(("profiles",), problem, "profiles", expected, "Remove [profiles].")
+    fields = {each.name: each for each in state_of(VARIABLES.of(reading))}
+    scope = reading.scope("a profile", (), [space.name])
+    read = dict[str, Formula]()
+    for name, text in texts.items():
+        if name not in fields:
+            problem = f"there is no field {name!a}"
+            raise reading.unknown(("profiles", name), problem, name, fields)
+        shape = fields[name].value_shape
+        hint = "Write vector(a, b, c) for the components." if shape else ""
+        read[name] = read_fitting(source, ("profiles", name), text, scope, shape, name, hint)
+    _check_defaults(source, read, PARAMETERS.of(reading))
+    return read
+
+
+def _check_defaults(source: Source, read: Mapping[str, Formula], parameters: object) -> None:
+    """Profiles are computed at the defaults of parameters, so that there have to be some."""
+    assert isinstance(parameters, tuple)
+    for each in parameters if read else ():
+        if each.default is None:
+            problem = f"the parameter {each.name!r} has no default, and there are profiles"
+            key = ("parameters", each.name)
+            raise source.at_key(key, problem, each.name, "a default for each parameter")
+
+
+PROFILES = Table[Mapping[str, Formula]](
+    "profiles",
+    str,
+    "the fields at the beginning, as functions of the coordinate of space",
+    read_profiles,
+    many=True,
+    absent={},
+)

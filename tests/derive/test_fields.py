@@ -1,0 +1,221 @@
+"""Fields along space: jets, equations of strands, magnets and motions of the circle."""
+
+import re
+
+import numpy as np
+import pytest
+import sympy
+
+from coadjoint.derive import derive, make_setting
+from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
+from coadjoint.derive.fields.operators import Term, adjoint, apply, expand
+from coadjoint.derive.fields.symbol import look_at_symbol
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Field
+from coadjoint.spec import read_spec_text
+from tests.specs import emitted, shipped
+
+STRAND = shipped("spin_chain").path.read_text(encoding="utf-8")
+
+
+def spec_of(text):
+    """A spec of a text."""
+    return read_spec_text(text, "strand.toml")
+
+
+def jets_of_u(depth=6):
+    """One field and its derivatives."""
+    tower = ("u", *(f"u_{'s' * n}" for n in range(1, depth + 1)))
+    return Jets(Field([*tower, "c", DEGREE]), {"u": tower})
+
+
+def test_the_euler_operator_is_the_variational_derivative():
+    """Of KdV's third integral u^3/2 - c u_s^2/2 it is 3u^2/2 + c u_ss, as by hand."""
+    jets = jets_of_u()
+    u, u_s, u_ss, c = (jets.field[x] for x in ("u", "u_s", "u_ss", "c"))
+    assert jets.euler(u**3 / 2 - c * u_s**2 / 2, "u") == u**2 * 3 / 2 + c * u_ss
+
+
+@pytest.mark.parametrize("power", [1, 2, 3])
+def test_a_total_derivative_has_no_variation_and_is_integrated(power):
+    """E D P = 0, and the homotopy formula finds P again; what is none has a variation."""
+    jets = jets_of_u()
+    P = jets.field["u"] ** power * jets.field["u_ss"] + jets.field["u_s"] ** 2
+    f = jets.total(P)
+    assert jets.euler(f, "u") == 0
+    assert jets.integrate(f) == P
+    assert jets.euler(f + jets.field["u_s"] ** 2, "u") != 0
+
+
+def test_a_part_of_degree_zero_is_not_integrated():
+    """u_s/u is the derivative of a logarithm, about which the formula says nothing."""
+    jets = jets_of_u()
+    assert jets.integrate(jets.field["u_s"] / jets.field["u"]) is None
+    assert jets.integrate(1 / (1 + jets.field["u"] ** 2)) is None
+
+
+def test_operators_keep_the_order_of_factors():
+    """(u D + D u) f = 2 u f_s + u_s f, and it is minus its adjoint."""
+    jets, one = jets_of_u(), jets_of_u().field.one
+    u, u_s = jets.field["u"], jets.field["u_s"]
+    both = ((Term(u, 1, one), Term(one, 1, u)),)
+    assert expand(both[0], jets) == {0: u_s, 1: 2 * u}
+    assert apply((both,), [u], jets.total) == (3 * u * u_s,)
+    turned = adjoint((both,))[0][0]
+    assert expand((*both[0], *turned), jets) == {}
+
+
+# -- strands ------------------------------------------------------------------------------
+
+
+def test_the_spin_chain_is_the_one_of_the_book():
+    """I dOmega/dt = I Omega x Omega + K Xi_s + Xi x K Xi, Xi_t = Omega_s + Xi x Omega.
+
+    Holm, Ivanov and Percival 2012, by vector products at rational points.
+    """
+    equations, source = emitted("spin_chain"), np.random.default_rng(1)
+    field = equations.setting.field
+    for _ in range(3):
+        I, K = source.integers(1, 9, (2, 3))  # noqa: E741
+        Pi, Pi_s, Xi, Xi_s = source.integers(-9, 9, (4, 3))
+        values = {f"I{n}": I[n - 1] for n in (1, 2, 3)} | {f"K{n}": K[n - 1] for n in (1, 2, 3)}
+        for name, rows in (("Pi{}", Pi), ("Pi{}_s", Pi_s), ("Xi{}", Xi), ("Xi{}_s", Xi_s)):
+            values |= {name.format(n): rows[n - 1] for n in (1, 2, 3)}
+        exact = {name: sympy.Rational(int(value)) for name, value in values.items()}
+        number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+        found = [field.evaluate(rate, exact, number) for rate in equations.exact.rates]
+        Omega, Omega_s = Pi / I, Pi_s / I
+        expected = [*np.cross(Pi, Omega) + K * Xi_s + np.cross(Xi, K * Xi)]
+        expected += [*Omega_s + np.cross(Xi, Omega)]
+        np.testing.assert_allclose(np.array(found, dtype=float), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("invariance", ["left", "right"])
+def test_compatibility_is_that_of_mixed_derivatives_of_matrices(invariance):
+    """Xi_t - Omega_s from g = 1 + s X + t Y + s t Z, multiplied out to first order.
+
+    With g^-1 = 1 - s X - t Y the parts without Z are -Y X and -X Y for left, and the other way
+    round for right invariance.
+    """
+    text = STRAND.replace('invariance = "left"', f'invariance = "{invariance}"')
+    setting = make_setting(spec_of(text))
+    rates = [derive(setting.spec, r, setting=setting).exact.rates for r in setting.spec.routes]
+    assert rates[0] == rates[1] == rates[2]
+    field, hat = setting.field, sympy.Matrix([[0, -3, 2], [3, 0, -1], [-2, 1, 0]])
+    X, Y = (
+        hat.subs({}),
+        sympy.Matrix([[0, -7, 5], [7, 0, -4], [-5, 4, 0]]),
+    )  # hat(1,2,3), hat(4,5,7)
+    mixed = X * Y - Y * X if invariance == "left" else Y * X - X * Y
+    values = {f"Xi{n}": n for n in (1, 2, 3)} | {"Pi1": 4, "Pi2": 5, "Pi3": 7}
+    values |= {f"I{n}": 1 for n in (1, 2, 3)} | {f"Pi{n}_s": 0 for n in (1, 2, 3)}
+    exact = {name: sympy.Integer(value) for name, value in values.items()}
+    number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+    found = [field.evaluate(rate, exact, number) for rate in rates[0][3:]]
+    assert found == [mixed[2, 1], mixed[0, 2], mixed[1, 0]]
+    assert any(found)
+
+
+def test_without_dependence_on_space_the_chain_is_the_rigid_body():
+    """With Xi = 0 and no derivatives it is Euler's equation of the shipped free body."""
+    chain, body = emitted("spin_chain"), emitted("rigid_body")
+    field = chain.setting.field
+    still = {
+        f"{name}{n}{end}": field.zero
+        for name, end in (("Xi", ""), ("Xi", "_s"), ("Pi", "_s"))
+        for n in (1, 2, 3)
+    }
+    own = [str(field.substitute(rate, still)) for rate in chain.exact.rates]
+    closed = [str(body.close(rate)) for rate in body.exact.rates]
+    assert own == [*closed, "0", "0", "0"]
+
+
+def test_a_wave_of_equal_fields_solves_the_chiral_model():
+    """Omega = Xi = f(s + t) for any f, and the spin chain with other inertia lacks it."""
+    for name, solves in (("spin_chain_chiral", True), ("spin_chain", False)):
+        equations = emitted(name)
+        field = equations.setting.field
+        equal = {f"Pi{n}{end}": field[f"Xi{n}{end}"] for n in (1, 2, 3) for end in ("", "_s")}
+        rates = [field.substitute(rate, equal) for rate in equations.exact.rates]
+        wave = [field[f"Xi{n}_s"] for n in (1, 2, 3)] * 2
+        assert all(map(field.is_zero, map(lambda a, b: a - b, rates, wave))) is solves
+
+
+def test_landau_and_lifshitz_turn_about_the_field():
+    """dS/dt = S x (-S_ss - a S - B) for the minus bracket, first component by hand."""
+    equations = emitted("landau_lifshitz")
+    field = equations.setting.field
+    S2, S3, a2, a3, B2, B3 = (field[x] for x in ("S2", "S3", "a2", "a3", "B2", "B3"))
+    S2_ss, S3_ss = field["S2_ss"], field["S3_ss"]
+    expected = S2 * (-S3_ss - a3 * S3 - B3) - S3 * (-S2_ss - a2 * S2 - B2)
+    assert equations.exact.rates[0] == expected
+
+
+def test_korteweg_and_de_vries():
+    """m_t = -3 m m_s - c m_sss by both routes (Ovsienko and Khesin 1987, the signs of P5)."""
+    spec = shipped("kdv")
+    setting = make_setting(spec)
+    m, m_s, m_sss, c = (setting.field[x] for x in ("m", "m_s", "m_sss", "c"))
+    for route in spec.routes:
+        assert derive(spec, route, setting=setting).exact.rates == (-3 * m * m_s - c * m_sss,)
+
+
+def test_advected_quantities_turn_along_a_strand():
+    """Of a chain of tops the three routes agree, and the torque is l_Gamma x Gamma."""
+    text = STRAND.replace(
+        "[parameters]",
+        'Gamma = { role = "advected", representation = "vector" }\n\n[parameters]\n'
+        "w = { default = 1 }",
+    )
+    text = text.replace("diag(K)*Xi)/2", "diag(K)*Xi)/2 - w*Gamma3").replace('"P"]', "]")
+    setting = make_setting(spec_of(text.replace('"energy", ]', '"energy"]')))
+    rates = [derive(setting.spec, r, setting=setting).exact.rates for r in setting.spec.routes]
+    assert rates[0] == rates[1] == rates[2]
+    field = setting.field
+    torque = [field.derivative(rate, "w") for rate in rates[0][:3]]
+    assert torque == [field["Gamma2"], -field["Gamma1"], field.zero]  # -e3 x Gamma
+
+
+# -- refusals -----------------------------------------------------------------------------
+
+
+def test_an_energy_of_strains_with_the_wrong_sign_is_ill_posed():
+    """The message shows how fast waves grow: sqrt(K/I) k, here with sqrt(3)."""
+    text = STRAND.replace("- dot(Xi, diag(K)*Xi)/2", "+ dot(Xi, diag(K)*Xi)/2")
+    with pytest.raises(DerivationError, match=r"ill posed.*exp\(1\.73\*k\*t\), with k = 10") as e:
+        derive(spec_of(text))
+    assert "lagrangian.l" in str(e.value)
+    assert "Change the sign" in str(e.value)
+
+
+def test_a_magnet_has_waves_of_imaginary_eigenvalues():
+    """Landau and Lifshitz's equation is posed; with a gradient flow backwards it is not."""
+    jets, setting = jets_of(emitted("landau_lifshitz").setting), emitted("landau_lifshitz").setting
+    rates = list(emitted("landau_lifshitz").exact.rates)
+    assert look_at_symbol(setting, jets, rates).growth is None
+    assert look_at_symbol(setting, jets, rates).points
+    rates[0] -= setting.field["S1_ss"]  # heat that flows from cold to hot
+    assert look_at_symbol(setting, jets, rates).growth is not None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("diag(K)*Xi)/2", "diag(K)*Xi)/2 - dot(Xi_s, Xi_s)", "names the derivative Xi1_s"),
+        ("dot(Omega, diag(I)*Omega)/2", "dot(Omega, diag(I)*Omega)/2 + Omega1^4", "closed form"),
+    ],
+)
+def test_lagrangians_of_strands_that_are_refused(old, new, message):
+    """Each with the way out, the route lie-poisson with a Hamiltonian."""
+    assert old in STRAND
+    with pytest.raises(DerivationError, match=re.escape(message)) as error:
+        derive(spec_of(STRAND.replace(old, new)))
+    assert "lie-poisson" in str(error.value)
+
+
+@pytest.mark.parametrize("l", ["u^2/2 + u_s^2/2", "u^4", "L"])
+def test_lagrangians_of_the_circle_that_are_refused(l):  # noqa: E741
+    """A momentum that is no multiple of the velocity at each point, or no kinetic energy."""
+    text = shipped("kdv").path.read_text(encoding="utf-8").replace('l = "u^2/2"', f'l = "{l}"')
+    with pytest.raises(DerivationError, match=r"lagrangian\.l: .*expected"):
+        derive(read_spec_text(text, "kdv.toml"))

@@ -1,0 +1,167 @@
+"""Fields on a grid: central differences, and the motion of the points."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy
+
+from coadjoint.derive.fields.grid import narrow, sample_profiles
+from coadjoint.derive.fields.jets import DEGREE, Jets
+from coadjoint.derive.fields.stencils import stencil, width_of
+from coadjoint.derive.reference import Reference
+from coadjoint.exact import Field
+from tests.families import family_of
+from tests.fields import (
+    cnoidal_wave,
+    family_by_order,
+    find_rates,
+    grid_of,
+    helix,
+    precessing_wave,
+)
+from tests.specs import emitted, shipped
+
+ORDERS = (2, 4, 6, 8)
+
+
+@pytest.mark.parametrize("derivative", [1, 2, 3, 4])
+@pytest.mark.parametrize("order", ORDERS)
+def test_stencils_are_those_of_interpolation(derivative, order):
+    """SymPy's weights on as many points (Fornberg 1988), and symmetric or antisymmetric."""
+    width = width_of(derivative, order)
+    places = list(range(-width, width + 1))
+    weights = sympy.finite_diff_weights(derivative, places, 0)[-1][-1]
+    found = stencil(derivative, order)
+    assert [sympy.Rational(str(found.get(r, 0))) for r in places] == list(weights)
+    assert all(found[-r] == (-1) ** derivative * c for r, c in found.items())
+    assert len(found) >= 2
+
+
+def test_stencils_are_those_that_books_print():
+    """Of order 8: 4/5, -1/5, 4/105, -1/280."""
+    printed = ("4/5", "-1/5", "4/105", "-1/280")
+    assert [stencil(1, 8)[r] for r in range(1, 5)] == [Fraction(x) for x in printed]
+
+
+def test_products_of_derivatives_are_summed_by_parts():
+    """u_s v_ss becomes -u v_sss; what has a factor that is a field stays."""
+    towers = {x: (x, *(f"{x}_{'s' * n}" for n in range(1, 5))) for x in "uv"}
+    names = [name for tower in towers.values() for name in tower]
+    jets = Jets(Field([*names, "c", DEGREE]), towers)
+    u, u_s, v_ss, v_sss, c = (jets.field[x] for x in ("u", "u_s", "v_ss", "v_sss", "c"))
+    assert narrow(jets, c * u_s * v_ss) == -c * u * v_sss
+    assert narrow(jets, u * u_s**2) == u * u_s**2
+    assert narrow(jets, u_s) == u_s
+
+
+def waves():
+    """Exact solutions with the system that they solve, parameters and numbers of points.
+
+    The precessing wave tests the sign of [Xi, Omega], to which equal fields are blind.
+    """
+    return {
+        "spin_chain_chiral": (precessing_wave, 10.0, [10.0], 64),
+        "landau_lifshitz": (helix, 20.0, [0, 0, 0.6, 0, 0, 0.3, 20.0], 64),
+        "kdv": (cnoidal_wave, 12.0, [1.3, 12.0], 96),
+    }
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("name", waves())
+def test_rates_of_exact_waves_converge_as_claimed(name, order):
+    """Halving the spacing divides the error of the rates by 2^order, within 0.1 of the order."""
+    solution, length, parameters, count = waves()[name]
+    family, errors = family_by_order(name, order), []
+    for N in (count // (1 + order // 8), 2 * (count // (1 + order // 8))):
+        fields, rates = solution(np.arange(N) * length / N, 0.3)
+        errors.append(np.abs(find_rates(family, fields, parameters) - rates).max())
+    assert errors[1] > 0
+    assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1
+
+
+def test_waves_see_a_wrong_sign():
+    """With Xi -> -Xi in the rates the precessing wave is no solution: the check above can fail."""
+    solution, length, parameters, N = waves()["spin_chain_chiral"]
+    fields, rates = solution(np.arange(N) * length / N, 0.3)
+    spoiled = fields * np.array([1, 1, 1, -1, -1, -1])[:, None]
+    found = find_rates(grid_of("spin_chain_chiral").family, spoiled, parameters)
+    assert np.abs(found - rates).max() > 0.1
+
+
+def test_small_waves_disperse_as_the_chain_says():
+    """About zero omega^2 = K/I k^2, with the symbol (8 sin kh - sin 2kh)/(6h) for k."""
+    N, L, n, eps = 32, 10.0, 3, 1e-7
+    I, K = np.array([1.0, 2.0, 3.0]), np.array([3.0, 2.0, 1.0])  # noqa: E741
+    s, k = np.arange(N) * L / N, 2 * np.pi * n / L
+    h = L / N
+    symbol = (8 * np.sin(k * h) - np.sin(2 * k * h)) / (6 * h)
+    for axis in range(3):
+        omega = np.sqrt(K[axis] / I[axis]) * symbol
+        fields = np.zeros((6, N))
+        fields[axis] = eps * np.cos(k * s)  # Pi
+        rates = find_rates(grid_of("spin_chain").family, fields, [*I, *K, L])
+        np.testing.assert_allclose(
+            rates[3 + axis], -eps * np.sin(k * s) * symbol / I[axis], atol=1e-15
+        )
+        second = find_rates(grid_of("spin_chain").family, rates, [*I, *K, L])
+        np.testing.assert_allclose(second[axis], -(omega**2) * fields[axis], atol=2e-13)
+
+
+def test_the_lattice_of_spins_is_the_magnet_in_order_two():
+    """Heisenberg's lattice is the thread with differences of order 2, J = 1/h^2, time reversed.
+
+    Both generic members, one with the plus and the other with the minus bracket: S_i x (S_{i-1} +
+    S_{i+1}) J with opposite signs, since S x S = 0.
+    """
+    lattice = family_of(shipped("heisenberg_lattice"))
+    thread = family_by_order("landau_lifshitz", 2)
+    names = {s: sympy.Symbol(s.name) for s in thread.states}
+    free = {sympy.Symbol(f"{x}{n}"): 0 for x in "aB" for n in (1, 2, 3)}
+    spacing = {sympy.Symbol("J"): sympy.Symbol("N") ** 2 / sympy.Symbol("L") ** 2}
+    assert [*names.values()] == [*lattice.states]
+    for one, other in zip(lattice.rates, thread.rates, strict=True):
+        assert sympy.expand(one.xreplace(spacing) + other.xreplace(free)) == 0
+        assert other.xreplace(free) != 0
+
+
+def test_the_lattice_of_spins_tends_to_the_magnet():
+    """Taylor's expansion of the shipped lattice: -J a^2 (S x S_ss + a^2/12 S x S_ssss + ...)."""
+    lattice, a = family_of(shipped("heisenberg_lattice")), sympy.Symbol("a")
+    jets = {s: [sympy.Symbol(f"{s}_{k}") for k in range(7)] for s in lattice.states}
+    new = {s: tower[0] for s, tower in jets.items()}
+    for (component, shift), symbol in lattice.neighbours.items():
+        terms = (jets[component][k] * (shift * a) ** k / sympy.factorial(k) for k in range(7))
+        new[symbol] = sympy.Add(*terms)
+    S, S_ss, S_4 = (sympy.Matrix([jets[s][k] for s in lattice.states]) for k in (0, 2, 4))
+    expected = sympy.Symbol("J") * (S.cross(S_ss) * a**2 + S.cross(S_4) * a**4 / 12)
+    for rate, known in zip(lattice.rates, expected, strict=True):
+        series = sympy.expand(rate.xreplace(new))
+        low = sum(series.coeff(a, k) * a**k for k in range(6))
+        assert sympy.expand(low - known) == 0
+        assert low != 0
+
+
+def test_rings_are_the_matrices_of_the_bracket():
+    """A ring of KdV by hand: -(m D m + D(m m)) - c D3 m with circulant matrices."""
+    ring = grid_of("kdv").windows[0]
+    N = len(ring.setting.state)
+    source, order = np.random.default_rng(0), shipped("kdv").space.order
+    m, c, L = source.normal(size=N), 0.7, 3.0
+    D, D3 = (
+        sum(float(x) * np.roll(np.eye(N), r, axis=1) for r, x in stencil(k, order).items())
+        * (N / L) ** k
+        for k in (1, 3)
+    )
+    given = dict(zip(ring.setting.state, m.tolist(), strict=True)) | {"c": c, "L": L}
+    found = Reference(ring).evaluate("rhs", given, float, lambda *_: 0.0)
+    np.testing.assert_allclose(found, -(m * (D @ m) + D @ (m * m)) - c * D3 @ m, rtol=1e-11)
+    assert grid_of("kdv").family.small <= N
+
+
+def test_profiles_are_sampled_to_rounding():
+    """The default of KdV is the cosine over 3 at each point."""
+    (values,) = sample_profiles(emitted("kdv"), 8)["m"]
+    expected = np.cos(2 * np.pi * np.arange(8) / 8) / 3
+    np.testing.assert_allclose([float(x) for x in values], expected, atol=1e-16)
+    assert sample_profiles(emitted("kdv"), None) == {}

@@ -1,0 +1,95 @@
+"""Exact solutions of fields and what tests of fields share.
+
+Formulas are typed here from the literature; nothing of the engine's output stands in them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import sympy
+from scipy.special import ellipj, ellipk
+
+from coadjoint.derive import Equations, derive
+from coadjoint.derive.fields.grid import Grid, generic_point, make_grid
+from coadjoint.families import Family
+from coadjoint.spec import read_spec_text
+from tests.specs import emitted, shipped
+
+
+@cache
+def grid_of(name: str) -> Grid:
+    """The grid of a shipped system."""
+    return make_grid(emitted(name))
+
+
+@cache
+def fields_by_order(name: str, order: int) -> Equations:
+    """The Equations of a shipped system, for differences of an order."""
+    text = shipped(name).path.read_text(encoding="utf-8")
+    old = f"order = {shipped(name).space.order}"
+    assert text.count(old) == 1, name
+    return derive(read_spec_text(text.replace(old, f"order = {order}"), f"{name}.toml"))
+
+
+def family_by_order(name: str, order: int) -> Family:
+    """The generic point of a shipped system with differences of an order."""
+    return generic_point(fields_by_order(name, order))
+
+
+def compile_rates(family: Family):
+    """The rates of the generic point as a function of arrays of points."""
+    given = [*family.states, *family.neighbours.values(), *family.shared, *family.count]
+    return sympy.lambdify(given, list(family.rates), "numpy")
+
+
+def find_rates(family: Family, fields, parameters) -> np.ndarray:
+    """Rates at all points of a ring, ``(fields, N)``."""
+    count = np.shape(fields)[1]
+    known = dict(zip(family.states, np.asarray(fields, dtype=float), strict=True))
+    near = [np.roll(known[c], -shift) for c, shift in family.neighbours]
+    rates = compile_rates(family)(*known.values(), *near, *parameters, float(count))
+    return np.array([np.broadcast_to(rate, (count,)) for rate in rates])
+
+
+def precessing_wave(s, t, length=10.0, speed=0.5):
+    """Omega = F(s - c t), Xi = C - c F, with dF/ds = C x F/(c^2 - 1): fields and their rates.
+
+    The chiral model, dOmega/dt = dXi/ds, dXi/dt = dOmega/ds + Xi x Omega; by substitution.
+    """
+    rate = 2 * np.pi / length  # F turns once around the circle
+    axis = np.array([2.0, -1.0, 2.0]) / 3
+    C = axis * rate * abs(speed**2 - 1)
+    start = np.array([0.7, 0.1, 0.4])
+    along, across = axis * (axis @ start), start - axis * (axis @ start)
+    angle = rate * np.sign(speed**2 - 1) * (s - speed * t)
+    turned = np.outer(across, np.cos(angle)) + np.outer(np.cross(axis, across), np.sin(angle))
+    F = along[:, None] + turned
+    dF = np.cross(C, F.T).T / (speed**2 - 1)
+    return np.vstack([F, C[:, None] - speed * F]), np.vstack([-speed * dF, speed**2 * dF])
+
+
+def helix(s, t, length=20.0, a=0.6, B=0.3, turns=2):
+    """A helix of 40 degrees about the third axis, which turns at (k^2 + a) cos(theta) + B.
+
+    dS/dt = S x dh/dS with h = S_s.S_s/2 - a S3^2/2 - B S3 (Lakshmanan 2011, time reversed).
+    """
+    k, theta = 2 * np.pi * turns / length, np.deg2rad(40)
+    rate = (k**2 + a) * np.cos(theta) + B
+    angle = k * s + rate * t
+    S = np.array([np.cos(angle), np.sin(angle), 0 * s]) * np.sin(theta)
+    S[2] = np.cos(theta)
+    return S, rate * np.array([-S[1], S[0], 0 * s])
+
+
+def cnoidal_wave(s, t, length=12.0, c=1.3, m=0.3, level=0.2):
+    """U = u2 + 4 c b^2 m cn^2(b (s - V t) | m) of u_t + 3 u u_s + c u_sss = 0, and u_t.
+
+    b = 2 K(m)/L and V = 3 u2 + 4 c b^2 (2 m - 1).
+    """
+    b = 2 * ellipk(m) / length
+    speed = 3 * level + 4 * c * b**2 * (2 * m - 1)
+    sn, cn, dn, _ = ellipj(b * (s - speed * t), m)
+    slope = -8 * c * b**3 * m * cn * sn * dn
+    return (level + 4 * c * b**2 * m * cn**2)[None], (-speed * slope)[None]

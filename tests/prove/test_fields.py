@@ -1,0 +1,186 @@
+"""Claims about fields: brackets, conserved densities, what grids keep, and wrong claims."""
+
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.derive.fields.grid import make_grid
+from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.operators import Term
+from coadjoint.derive.fields.structure import field_operator
+from coadjoint.errors import ClaimError
+from coadjoint.prove import Verdict, prove
+from coadjoint.prove.fields import decide_density, decide_jacobi, decide_skew
+from coadjoint.prove.grids import about_grid
+from coadjoint.spec import read_spec_text
+from tests.fields import grid_of
+from tests.specs import emitted, shipped
+
+NAMES = ("spin_chain", "spin_chain_chiral", "landau_lifshitz", "kdv")
+
+
+def bracket_of(name):
+    """The bracket of a shipped system, and its jets."""
+    setting = emitted(name).setting
+    return field_operator(setting), jets_of(setting)
+
+
+def spoil(operator, places, order):
+    """A bracket of a strand with the sign changed of terms of an order in some blocks."""
+    return tuple(
+        tuple(
+            tuple(
+                Term(-t.left, t.order, t.right)
+                if (i // 3, j // 3) in places and t.order == order
+                else t
+                for t in entry
+            )
+            for j, entry in enumerate(row)
+        )
+        for i, row in enumerate(operator)
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_claim_of_shipped_fields_is_proved(name):
+    """Brackets, routes, densities and grids; a statement about each of these is there."""
+    certificate = prove(shipped(name)).require()
+    kinds = {claim.kind for claim in certificate.claims}
+    assert {"jacobi", "posed", "conserved", "equivalence"} <= kinds
+    assert certificate.count(Verdict.PROVED) == len(certificate.claims) >= 9
+
+
+@pytest.mark.parametrize(
+    ("places", "triple"),
+    [([(0, 0)], "(Pi"), ([(0, 1), (1, 0)], "(Pi")],
+    ids=["Pi x", "Xi x"],
+)
+def test_a_wrong_sign_at_points_breaks_the_jacobi_identity(places, triple):
+    """Of Pi x or of Xi x alone: the bracket stays antisymmetric, and the triple is named."""
+    operator, jets = bracket_of("spin_chain")
+    spoiled = spoil(operator, places, 0)
+    assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
+    found = decide_jacobi(spoiled, jets)
+    assert found.verdict is Verdict.REFUTED
+    assert f"for the triple {triple}" in found.method
+
+
+def test_a_wrong_sign_of_one_derivative_breaks_antisymmetry():
+    """Of the two d_s one alone; the pair is named."""
+    operator, jets = bracket_of("spin_chain")
+    found = decide_skew(spoil(operator, [(0, 1)], 1), jets)
+    assert found.verdict is Verdict.REFUTED
+    assert "{Pi1, Xi1}" in found.method
+
+
+def test_wrong_signs_of_both_derivatives_are_another_poisson_bracket():
+    """The cocycle may have any factor; compatibility alone, another route, refutes the motion."""
+    operator, jets = bracket_of("spin_chain")
+    spoiled = spoil(operator, [(0, 1), (1, 0)], 1)
+    assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
+    assert decide_jacobi(spoiled, jets).verdict is Verdict.PROVED
+    assert spoiled != operator
+
+
+def test_the_bracket_of_the_circle_needs_its_factor_two():
+    """-(m D + D m) is Poisson; -(m D + D m)/1 with m^2 in the place of m is none."""
+    operator, jets = bracket_of("kdv")
+    assert decide_jacobi(operator, jets).verdict is Verdict.PROVED
+    m, one = jets.field["m"], jets.field.one
+    spoiled = (((Term(-(m**2), 1, one), Term(-one, 1, m**2), Term(-one, 3, one)),),)
+    assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
+    assert decide_jacobi(spoiled, jets).verdict is Verdict.REFUTED
+
+
+def test_fluxes_are_exhibited():
+    """Of the energy of the spin chain, -K Xi . Omega (Holm 2011, chapter 10)."""
+    found = decide_density(emitted("spin_chain"), [emitted("spin_chain").exact.energy])
+    assert found.method.endswith("the flux -Pi1*Xi1*K1/I1 - Pi2*Xi2*K2/I2 - Pi3*Xi3*K3/I3")
+
+
+@pytest.mark.parametrize(("name", "symbol"), [("spin_chain", "Pi1"), ("kdv", "m_s")])
+def test_a_density_that_is_not_conserved_is_refuted_by_a_field(name, symbol):
+    """The total momentum of a chain of unequal bodies, and the square of a slope of KdV."""
+    field = emitted(name).setting.field
+    found = decide_density(emitted(name), [field[symbol] ** 2])
+    assert found.verdict is Verdict.REFUTED
+    assert found.point
+    assert found.defect not in ("", "0")
+
+
+def test_a_wrong_claim_of_a_spec_is_refused():
+    """J of KdV with the other sign of c; the counterexample names derivatives at a point."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    wrong = text.replace("m^3/2 - c*m_s^2/2", "m^3/2 + c*m_s^2/2")
+    assert wrong != text
+    with pytest.raises(ClaimError, match="integral of J is conserved"):
+        prove(read_spec_text(wrong, "kdv.toml")).require()
+
+
+def test_a_wrong_pair_has_curvature():
+    """With 1 - mu in one place the entry at fault is named."""
+    text = shipped("spin_chain_chiral").path.read_text(encoding="utf-8")
+    wrong = text.replace("hat(Pi - Xi)*(1 + 1/mu))/4", "hat(Pi - Xi)*(1 - 1/mu))/4")
+    assert wrong != text
+    certificate = prove(read_spec_text(wrong, "chiral.toml"))
+    refuted = {claim.kind for claim in certificate.refuted}
+    assert "lax" in refuted
+
+
+def test_the_lengths_of_spins_are_a_casimir_and_others_are_not():
+    """dot(S, S) is one, and the first component is none."""
+    text = shipped("landau_lifshitz").path.read_text(encoding="utf-8")
+    wrong = text.replace('casimirs  = ["dot(S, S)"]', 'casimirs  = ["dot(S, S)", "S1"]')
+    verdicts = [
+        c.verdict for c in prove(read_spec_text(wrong, "m.toml")).claims if c.kind == "casimir"
+    ]
+    assert verdicts == [Verdict.PROVED, Verdict.REFUTED]
+
+
+# -- on a grid ----------------------------------------------------------------------------
+
+
+def statements(grid):
+    """What is said of a grid, with what decides it."""
+    return {statement: decide() for statement, _, decide in about_grid(grid)}
+
+
+def test_what_differences_keep_is_said_of_each_density():
+    """Of KdV the energy and the momentum exactly, the third integral up to O(h^6)."""
+    found = statements(grid_of("kdv"))
+    kept = [
+        s.split(" is conserved")[0]
+        for s, d in found.items()
+        if getattr(d, "verdict", None) is Verdict.PROVED and " is conserved" in s
+    ]
+    assert kept == ["the energy", "M"]
+    assert any(s.startswith("J is conserved up to O(h^6)") for s in found)
+    assert any("Jacobi identity of the bracket fails" in s for s in found)
+
+
+def test_the_bracket_of_a_magnet_stays_one_on_a_grid():
+    """Brackets at different points commute, and each is that of so(3)."""
+    found = statements(grid_of("landau_lifshitz"))
+    (jacobi,) = (d for s, d in found.items() if "Jacobi" in s)
+    assert jacobi.verdict is Verdict.PROVED
+
+
+def test_a_bracket_with_products_differentiated_loses_the_energy():
+    """-(2 m D + m_s) is the same as -(m D + D m) for fields, and not antisymmetric on a grid."""
+    grid = grid_of("kdv")
+    brackets = dict(grid.brackets)
+    (a, b, r) = next(key for key in brackets if key[2] == 1)
+    brackets[a, b, r] = brackets[a, b, r] * 2
+    found = statements(replace(grid, brackets=brackets))
+    (energy,) = (d for s, d in found.items() if s.startswith("the energy"))
+    assert energy.verdict is Verdict.REFUTED
+
+
+def test_a_wrong_rate_of_the_generic_point_is_seen_in_rings():
+    """The two derivations of the motion on a grid are compared."""
+    grid = grid_of("spin_chain")
+    wrong = (-grid.rates[0], *grid.rates[1:])
+    found = statements(replace(grid, rates=wrong))
+    (same,) = (d for s, d in found.items() if "generic point" in s)
+    assert same.verdict is Verdict.REFUTED
+    assert make_grid(grid.equations) is grid

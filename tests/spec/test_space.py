@@ -1,0 +1,101 @@
+# ruff: noqa: E501 - a row of the table of mistakes is one line
+"""The tables [space], [profiles] and [diffeomorphisms], and the role strain."""
+
+import pytest
+
+from coadjoint.errors import SpecError
+from coadjoint.spec import read_spec_text
+from tests.specs import RIGID_BODY, shipped
+
+STRAND = shipped("spin_chain").path.read_text(encoding="utf-8")
+KDV = shipped("kdv").path.read_text(encoding="utf-8")
+
+
+def read(text, **sizes):
+    """A spec of a text."""
+    return read_spec_text(text, "fields.toml", sizes)
+
+
+def test_a_coordinate_has_a_length_points_and_derivatives():
+    """Names of derivatives are those of books: Xi_s, with the components Xi1_s, Xi2_s, Xi3_s."""
+    space = shipped("spin_chain").space
+    assert (space.name, space.length, space.size, space.order) == ("s", "L", 256, 4)
+    jets = {each.name: each.components for each in space.jets}
+    assert jets["Xi_s"] == ("Xi1_s", "Xi2_s", "Xi3_s")
+    assert {"Pi_s", "Omega_s"} < jets.keys()
+    assert shipped("rigid_body").space is None
+    assert shipped("rigid_body").jets == ()
+
+
+def test_a_strain_is_advected_by_the_adjoint_representation():
+    """It is part of the state and spans the algebra."""
+    (strain,) = (v for v in shipped("spin_chain").state if v.strain)
+    assert (strain.name, strain.role, strain.representation.name) == ("Xi", "advected", "adjoint")
+
+
+def test_another_number_of_points_is_chosen_where_a_spec_is_loaded():
+    """As with an index, by the name of the coordinate."""
+    assert read(STRAND, s=64).space.size == 64
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "message", "fix"),
+    [
+        (STRAND, 'length = "L"', 'length = "M"', "there is no parameter 'M'", "below it M = "),
+        (STRAND, "L = { positive = true,", "L = {", "may be negative", "positive = true"),
+        (STRAND, 'length = "L"', 'length = "K"', "is no scalar", "Write K = "),
+        (STRAND, "order = 4 }", 'order = 4 }\nr = { length = "L" }', "2 coordinates", "Remove"),
+        (STRAND, "order = 4", "order = 3", "order", "2, 4, 6 or 8"),
+        (STRAND, "[claims]", "[forces]\nOmega = \"-Omega\"\n\n[claims]", "[space] and [forces]", "Remove"),
+        (STRAND, '"P"]', '{ claim = "P", where = ["Xi1"] }]', "level set", "Remove where"),
+        (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_ss, Xi_ss)/2", "Xi_ss", "Xi_s"),
+        (STRAND, "Pi = \"vector(cos(2*pi*s/L), sin(2*pi*s/L)/2, 1)\"", 'Pi = "cos(s)"', "a scalar", "vector(a, b, c)"),
+        (STRAND, "[profiles]\nPi", "[profiles]\nPhi", "there is no field 'Phi'", "Did you mean"),
+        (STRAND, "[profiles]\nPi = \"vector(cos(2*pi*s/L)", "[profiles]\nPi = \"vector(cos(2*pi*s/Pi1)", "'Pi1' is a momentum", "parameters"),
+        (STRAND, "default = [3, 2, 1], ", "", "'K' has no default", "default for each parameter"),
+        (STRAND, "Xi    = { role = \"strain\"", "Psi = { role = \"strain\" }\nXi    = { role = \"strain\"", "2 strains", "one, along"),
+        (STRAND, "\"hamilton-pontryagin\"]", "\"clebsch\"]", "moves no fields", "hamilton-pontryagin"),
+        (RIGID_BODY, "Pi = {", "Xi = { role = \"strain\" }\nPi = {", "without [space]", "Write [space]"),
+        (RIGID_BODY, "[lagrangian]", "[profiles]\nPi = \"1\"\n\n[lagrangian]", "without [space]", "Remove [profiles]"),
+        (RIGID_BODY, "[variables]", "[diffeomorphisms]\n\n[variables]", "both [algebra] and [diff", "one of them"),
+        (KDV, "[space]\ns = { length = \"L\", size = 256, order = 6 }\n", "", "no circle", "Write [space]"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_shown_with_the_likely_fix(text, old, new, message, fix):
+    """Where, what was found, and what to do."""
+    assert old in text
+    with pytest.raises(SpecError) as error:
+        read(text.replace(old, new))
+    assert message in str(error.value)
+    assert fix in str(error.value)
+
+
+@pytest.mark.parametrize(("sizes", "message"), [({"i": 4}, "no coordinate"), ({"s": 0}, "integer")])
+def test_sizes_that_are_none(sizes, message):
+    """Another name, or no number of points."""
+    with pytest.raises(SpecError, match=message):
+        read_spec_text(STRAND, "fields.toml", sizes)
+
+
+def test_more_derivatives_are_named_if_they_are_declared():
+    """With derivatives = 2 a density may name S_ss."""
+    text = shipped("landau_lifshitz").path.read_text(encoding="utf-8")
+    text = text.replace("dot(S_s, S_s)/2", "-dot(S, S_ss)/2")
+    with pytest.raises(SpecError, match="S_ss"):
+        read(text)
+    spec = read(text.replace("order = 4", "order = 4, derivatives = 2"))
+    assert {each.name for each in spec.jets} == {"S_s", "S_ss"}
+
+
+def test_derivatives_take_part_in_units():
+    """Xi_s is Xi over the unit of s; a sum with another unit is refused."""
+    text = STRAND.replace("size = 256, order = 4", 'size = 256, order = 4, unit = "m"')
+    text = text.replace('Xi    = { role = "strain"', 'Xi    = { role = "strain", unit = "1/m"')
+    assert 'unit = "m"' in text
+    assert 'unit = "1/m"' in text
+    good = text.replace('expression = "dot(Pi, Xi)"', 'expression = "dot(Xi_s, Xi_s)"')
+    (observable,) = read(good.replace('"P"]', "]").replace('"energy", ]', '"energy"]')).observables
+    assert observable.unit == "1/m^4"
+    bad = text.replace('expression = "dot(Pi, Xi)"', 'expression = "Xi1_s + Xi1"')
+    with pytest.raises(SpecError, match="1/m"):
+        read(bad)
