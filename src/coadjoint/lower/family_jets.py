@@ -77,8 +77,10 @@ def _make(name: str, part: Part, components: int) -> PartJets:
 
 
 def is_constant(read: Read, components: int) -> bool:
-    """Whether a name is constant in a step: a parameter, a size, or a given sign below the state."""
-    return read.array in ("parameters", "sizes") or (read.array == "state" and read.blocks >= components)
+    """Whether a name is constant in a step: a parameter, a size, or a sign below the state."""
+    return read.array in ("parameters", "sizes") or (
+        read.array == "state" and read.blocks >= components
+    )
 
 
 def _separate(part: Part, components: int) -> Program:
