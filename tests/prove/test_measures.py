@@ -5,8 +5,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from coadjoint.derive import derive, make_setting
 from coadjoint.exact import element_text
-from coadjoint.prove import Verdict
+from coadjoint.prove import Verdict, measures
+from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.densities import Measure
 from coadjoint.prove.invariant_factors import InvariantFactors
 from coadjoint.prove.measures import about_measure
@@ -15,7 +17,9 @@ from coadjoint.prove.zero import Discovery, decide_zero
 from coadjoint.systems import chaplygin_ball
 from tests.constrained import PARTICLE
 from tests.constrained import motion as small
+from tests.contacts import BALL_INSIDE
 from tests.prove.rolling import motion
+from tests.specs import spec, unitless
 
 #: Suslov's problem with an axis of the constraint that is an eigenvector of the inertia.
 PRINCIPAL = [
@@ -246,3 +250,25 @@ def test_the_divergence_is_the_trace_of_the_jacobian():
     slopes = chaplygin_ball.jacobian(np.array(state, dtype=float), parameters, target="numpy")
     assert found != 0
     assert np.trace(slopes) == pytest.approx(float(found), rel=1e-12)  # a few roundings
+
+
+def test_conditions_that_are_too_long_leave_the_measure_undecided(monkeypatch):
+    """Of a ball in a cone: work is counted, so that the verdict is the same on every machine."""
+    cone = unitless(BALL_INSIDE).replace("b^2 - X1^2 - X2^2", "b^2*X3^2 - X1^2 - X2^2")
+    declared = spec(cone)
+    along = ConstrainedRates(derive(declared, setting=make_setting(declared)))
+    monkeypatch.setattr(measures, "BRACKET_WORK", 500)
+    ((statement, found),) = entries(along)
+    assert statement.startswith("whether an invariant measure rho domega dc dX exists")
+    assert "is not decided; no formula was found" in statement
+    assert isinstance(found, Discovery)
+    assert "more than 500 operations of exact arithmetic" in found.method
+    assert found.scope == "no statement"
+
+
+def test_the_budget_of_brackets_hides_no_measure_that_is_known(monkeypatch):
+    """A formula needs no brackets, and is found and proved without any."""
+    monkeypatch.setattr(measures, "BRACKET_WORK", 0)
+    statement, verdict = about("chaplygin_ball_centred")
+    assert statement == "an invariant measure: det(B^T M B)^(1/2) dOmega dGamma"
+    assert verdict is Verdict.PROVED

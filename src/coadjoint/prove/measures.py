@@ -20,10 +20,11 @@ from fractions import Fraction
 from itertools import islice
 
 from coadjoint.derive.setting import once
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import BudgetSpent, Element, element_text
 from coadjoint.exact.dense import determinant, pfaffian
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.ranks import CHANCE
+from coadjoint.limits import BRACKET_WORK
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.completeness import SHOWN, describe
 from coadjoint.prove.densities import (
@@ -86,10 +87,17 @@ def about_measure(motion: Motion) -> Iterator[Examined]:
     points = list(islice(samples.points(), POINTS))
     assert points, "a motion without an obstacle has points"
     known = _has_density(measure, points)  # brackets of long conditions would take minutes
-    refusal = None if known else _refusal(motion, measure, samples, points[0])
+    refusal, is_decided = None, True
+    try:
+        with motion.field.budget(BRACKET_WORK):
+            refusal = None if known else _refusal(motion, measure, samples, points[0])
+    except BudgetSpent:
+        is_decided = False
     if refusal is not None:
         yield refusal
-    examined = _of_positions(motion, measure, samples, points) if refusal is None else None
+    examined = None
+    if refusal is None:
+        examined = _of_positions(motion, measure, samples, points, is_decided=is_decided)
     yield examined or _of_velocities(motion, measure, samples)
 
 
@@ -181,17 +189,35 @@ def _is_certain(
 
 
 def _of_positions(
-    motion: Motion, measure: Measure, samples: Samples, points: Sequence[Point]
+    motion: Motion,
+    measure: Measure,
+    samples: Samples,
+    points: Sequence[Point],
+    *,
+    is_decided: bool,
 ) -> Examined | None:
     """A density of the positions alone, as a formula if there is one.
 
     None where the conditions do not show that there is one: where they are not all, and where they
-    were looked at for one value of the inputs.
+    were looked at for one value of the inputs. Whether there is one is left open if the search for
+    a contradiction between them ended early.
     """
     powers = measure.exponents(_factors_of_minors(motion, measure, measure.positions), points)
     examined = None if powers is None else _state(motion, powers)
     if examined is not None or not measure.is_affine or motion.setting.driving:
         return examined
+    if not is_decided:
+        count = len(measure.conditions)
+        method = f"the brackets of {count} conditions on it were not compared further: they take "
+        method += f"more than {BRACKET_WORK} operations of exact arithmetic"
+        ended = Discovery(method, "no statement")
+        statement = (
+            f"whether an invariant measure rho {_form(motion)} exists, rho a function of the "
+            "positions, is not decided; no formula was found among products of powers of the "
+            f"minors of the mass matrix and their factors, with denominators of exponents up to "
+            f"{DENOMINATOR}"
+        )
+        return statement, "measure", lambda: ended
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
         f"near almost every point{_generic(motion)}",
