@@ -143,7 +143,8 @@ def test_a_step_that_is_not_solved_ends_its_member_alone():
     assert "1 NOT_SOLVED" in run.message
     alone = rigid_body.simulate(40 * TURNING, (0, 10), FREE, method="midpoint", step=0.5, samples=1)
     assert alone.message == (
-        "the equation of a step of 0.5 was not solved near t = 0; take shorter steps"
+        "the equation of a step of 0.5 was not solved near t = 0; take shorter steps, "
+        "or newton=True, which solves stiff ones"
     )
     assert np.array_equal(alone.state[:, -1], 40 * TURNING)
 

@@ -209,6 +209,7 @@ def render(written: Written) -> str:
                 "sweeps": SWEEPS,
                 "terms": TERMS,
                 "has_bracket": True,
+                "has_newton": False,
                 "near": spherical_midpoint.NEAR,
                 "roundings": spherical_midpoint.ROUNDINGS,
                 "mean": {

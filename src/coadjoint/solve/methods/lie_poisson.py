@@ -88,17 +88,19 @@ class Sweep:
 class Search:
     """The search for the middle of a step: sweeps, until they no longer improve it.
 
-    A lane stops at the first sweep that changes nothing, after `FREE`. Where roundings never end it
-    goes on to `EXACT` of them and stops one sweep after one that changes next to nothing, and no
-    less than the sweep before it: what the step adds belongs to the middle before the last sweep,
-    which has to be such an end itself. To stop earlier leaves an error of one sign: with steps of
-    0.1 of a free body 1e-10 of its Casimir in 2e6 steps where it is at a given size of the change,
-    and 2e-21 a step where it is by one.
+    A lane is done at the first sweep that changes nothing, after `FREE`. Where roundings never end
+    that, it goes on to `EXACT` of them and stops one sweep after one that changes next to nothing,
+    and no less than the sweep before it: what the step adds belongs to the middle before the last
+    sweep, which has to be such an end itself. To stop earlier leaves an error of one sign: with
+    steps of 0.1 of a free body 1e-10 of its Casimir in 2e6 steps where it is at a given size of the
+    change, and 2e-21 a step where it is by one.
 
     Args:
         middle: Where it begins, ``(n, N)``.
         rows: Those of the state.
         exact: `EXACT`, or `FREE` of Newton's method, which has no such errors.
+        holds: Whether lanes that are done are left as they are. A sweep that changes nothing
+            changes nothing again, so that this is asked for only where they are done otherwise.
 
     Attributes:
         middle: What was found, ``(n, N)``.
@@ -108,8 +110,10 @@ class Search:
         made: How many sweeps there were, ``(N,)``.
     """
 
-    def __init__(self, middle: Array, rows: int, exact: int = EXACT) -> None:
-        count, self.exact = middle.shape[1], exact
+    def __init__(
+        self, middle: Array, rows: int, exact: int = EXACT, *, holds: bool = False
+    ) -> None:
+        count, self.exact, self.holds = middle.shape[1], exact, holds
         self.middle, self.rise = middle, np.zeros((rows, count))
         self.done, self.turned = np.zeros(count, bool), np.zeros(count, bool)
         self.last, self.made = np.full(count, np.inf), np.zeros(count, np.uint64)
@@ -122,12 +126,13 @@ class Search:
     def take(self, number: int, sweep: Sweep) -> None:
         """Go on to what a sweep finds, in lanes that have not ended; sweeps are counted from 0."""
         ends = ~np.asarray(sweep.goes_on)
+        held = self.done & np.array(self.holds or number >= self.exact)
+        middle = np.where(held, self.middle, sweep.middle)
         if number >= self.exact:
-            ends = ends & self._may_end(sweep.middle)
+            ends = ends & self._may_end(middle)
         elif number >= FREE:
-            ends = ends & (sweep.middle == self.middle).all(axis=0)
-        self.middle = np.where(self.done, self.middle, sweep.middle)
-        self.rise = np.where(self.done, self.rise, sweep.rise)
+            ends = ends & (middle == self.middle).all(axis=0)
+        self.middle, self.rise = middle, np.where(held, self.rise, sweep.rise)
         self.made = np.where(self.done, self.made, self.made + np.uint64(1))
         if number >= FREE:
             self.done = self.done | ends
@@ -165,10 +170,12 @@ class LiePoisson:
         jacobian: The derivatives of the rates by the state, row by row, some time after lanes, for
             Newton's method; None without it.
         along: In its place, of equal members, the derivative of the rates along a vector.
+        holds: Whether a sweep that changes nothing may change something again.
     """
 
     jacobian: Callable[[Lanes, Array, Array], Array] | None = None
     along: Bracket | None = None
+    holds = False
 
     def __init__(
         self, *, gradient: Gradient, bracket: Bracket, size: float, order: int = 2
@@ -212,16 +219,19 @@ class LiePoisson:
         if over.all():
             first.done = solved
             return first
-        again, more = self._try_search(arc, start, over)
+        again, more = self._try_search(arc, start, over, holds=True)
         again.take_over(first, over)
         again.done = np.where(over, solved, more)
         return again
 
-    def _try_search(self, arc: Arc, middle: Array, done: Mask) -> tuple[Search, Mask]:
+    def _try_search(
+        self, arc: Arc, middle: Array, done: Mask, *, holds: bool = False
+    ) -> tuple[Search, Mask]:
         """A search from some middle on in lanes that are not done, and where it is solved."""
         has_newton = self.jacobian is not None or self.along is not None
         exact = FREE if has_newton else EXACT
-        search, kept = Search(middle, len(arc.state), exact), self.prepare(arc, middle)
+        search = Search(middle, len(arc.state), exact, holds=holds or self.holds)
+        kept = self.prepare(arc, middle)
         search.done = done
         for number in range(SWEEPS):
             if search.done.all():

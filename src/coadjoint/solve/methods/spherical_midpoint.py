@@ -69,6 +69,7 @@ class SphericalMidpoint(LiePoisson):
     ) -> None:
         self.field, self.size, self.stages = field, size, COMPOSITIONS[order]
         self.spheres = spheres
+        self.holds = any(each.tangent for each in spheres)
 
     def prepare(self, arc: Arc, middle: Array) -> list[Scale]:
         """As `LiePoisson.prepare`: of each sphere the quotient of lengths."""
@@ -83,9 +84,10 @@ class SphericalMidpoint(LiePoisson):
         """As `LiePoisson.sweep`."""
         rates = self.field(arc.lanes, arc.middle, middle)
         following = arc.state + (arc.low + 0.5 * arc.length * rates)
+        moves = np.zeros(arc.length.shape, bool)
         for each in kept:
-            each.apply(following)
-        return Sweep(following, arc.length * rates)
+            moves = moves | each.apply(following)
+        return Sweep(following, arc.length * rates, moves)
 
     def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Scale]) -> Array:
         """As `LiePoisson.linearise`, exact."""
@@ -134,8 +136,13 @@ class Scale:
         """Where the quotient is solved: 0 and negative numbers are roots too."""
         return np.asarray(self.empty | ((np.abs(self.rest - 1.0) < NEAR) & (self.scale > 0.0)))
 
-    def apply(self, state: Array) -> None:
-        """Improve the quotient and multiply rows of a state by it."""
+    def apply(self, state: Array) -> Mask:
+        """Improve the quotient and multiply rows of a state by it.
+
+        Returns:
+            Where the quotient changed; nowhere of dual numbers, whose slopes roundings go on to
+            change, so that lanes are held that are done.
+        """
         square, mixed = _measure(state, self.sphere)
         both = self.scale * self.scale
         part = self.half * square
@@ -153,6 +160,8 @@ class Scale:
             state[tangent] = self.scale * state[tangent] + self.slope * state[row]
         for row in self.sphere.rows:
             state[row] = self.scale * state[row]
+        moves = ~np.atleast_2d(stays | (rest == 1.5)).all(axis=0)  # which it is of the vector 0
+        return np.asarray(moves & np.array(not self.sphere.tangent))
 
     def turn(self, found: Array, change: Array) -> None:
         """How rows that were multiplied change with what was multiplied, in the place of that.
