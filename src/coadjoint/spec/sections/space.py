@@ -144,7 +144,7 @@ class Space:
     @property
     def index(self) -> Index:
         """What counts the points."""
-        return Index(self.name, self.size, periodic=True, from_zero=True)
+        return Index(name=self.name, size=self.size, periodic=True, from_zero=True)
 
 
 def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
