@@ -273,3 +273,15 @@ def test_the_strand_of_symplectic_matrices_is_that_of_the_book():
     expected = [rate[0, 0], rate[0, 1], rate[1, 1], strain[0, 0], 2 * strain[0, 1], strain[1, 1]]
     assert evaluate(equations, values) == [*map(int, expected)]
     assert any(expected)
+
+
+def test_a_symbol_with_a_jordan_block_is_told_apart():
+    """Waves of u_t = v_s, v_t = 0 grow linearly: all eigenvalues are 0, of one block."""
+    equations = emitted("spin_chain")
+    setting, jets = equations.setting, jets_of(equations.setting)
+    rates = list(equations.exact.rates)
+    assert look_at_symbol(setting, jets, rates).is_diagonalizable
+    rates[3] = setting.field.zero
+    seen = look_at_symbol(setting, jets, rates)
+    assert seen.growth is None
+    assert not seen.is_diagonalizable

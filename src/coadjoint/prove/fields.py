@@ -192,9 +192,10 @@ def _about_posedness(first: Equations) -> Iterator[Examined]:
     decision = Decision(
         verdict=Verdict.PROVED, method=f"roots counted exactly, about {seen.points} fields"
     )
+    diagonal = " and is diagonalizable" * seen.is_diagonalizable
     yield (
-        f"the principal symbol, of order {seen.order}, has {kind} eigenvalues, so that short waves "
-        "do not grow, at the defaults of the parameters and about some fields of rational values",
+        f"the principal symbol, of order {seen.order}, has {kind} eigenvalues{diagonal}, at the "
+        "defaults of the parameters and about some fields of rational values",
         "posed",
         lambda: decision,
     )
