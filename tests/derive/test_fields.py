@@ -285,3 +285,26 @@ def test_a_symbol_with_a_jordan_block_is_told_apart():
     seen = look_at_symbol(setting, jets, rates)
     assert seen.growth is None
     assert not seen.is_diagonalizable
+
+
+def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
+    """Omega = W(t - s/c), Xi = -W/c with J dW/dt = J W x W, J = I - K/c^2, for any I, K, W and c.
+
+    It tests the terms of the momentum equation for general I and K at random rational points.
+    """
+    equations, source = emitted("spin_chain"), np.random.default_rng(6)
+    number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+    for _ in range(2):
+        I, K, W = (sympy.Matrix([int(x) for x in row]) for row in source.integers(1, 9, (3, 3)))  # noqa: E741
+        c = sympy.Integer(11)
+        J = sympy.Matrix([i - k / c**2 for i, k in zip(I, K, strict=True)])
+        JW = J.multiply_elementwise(W)
+        slope = JW.cross(W).multiply_elementwise(J.applyfunc(lambda x: 1 / x))  # dW/dt
+        values = {"L": sympy.Integer(1)}
+        for n in range(3):
+            values |= {f"I{n + 1}": I[n], f"K{n + 1}": K[n]}
+            values |= {f"Pi{n + 1}": I[n] * W[n], f"Pi{n + 1}_s": -I[n] * slope[n] / c}
+            values |= {f"Xi{n + 1}": -W[n] / c, f"Xi{n + 1}_s": slope[n] / c**2}
+        rates = [equations.setting.field.evaluate(r, values, number) for r in equations.exact.rates]
+        assert rates == [*I.multiply_elementwise(slope), *(-slope / c)]
+        assert any(slope)
