@@ -27,6 +27,10 @@ PICTURES = {
     "gyrostat.png": "simulate examples/gyrostat.toml --state Pi=0.01,1,0.01 --state L=0.2 "
     "--time 60 --plot",
     "chaplygin_ball.png": "simulate chaplygin_ball --time 20 --trace",
+    "spin_chain.png": "simulate spin_chain --time 20 --plot",
+    "spin_chain_chiral.png": "simulate spin_chain_chiral --time 20 --plot",
+    "landau_lifshitz.png": "simulate landau_lifshitz --time 4 --plot",
+    "kdv.png": "simulate kdv --time 1.2 --plot",
 }
 
 

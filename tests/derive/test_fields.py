@@ -219,3 +219,92 @@ def test_lagrangians_of_the_circle_that_are_refused(l):  # noqa: E741
     text = shipped("kdv").path.read_text(encoding="utf-8").replace('l = "u^2/2"', f'l = "{l}"')
     with pytest.raises(DerivationError, match=r"lagrangian\.l: .*expected"):
         derive(read_spec_text(text, "kdv.toml"))
+
+
+def evaluate(equations, values):
+    """Rates at rational points."""
+    exact = {name: sympy.Rational(int(value)) for name, value in values.items()}
+    field, number = equations.setting.field, lambda x: sympy.Rational(x.numerator, x.denominator)
+    return [field.evaluate(rate, exact, number) for rate in equations.exact.rates]
+
+
+def test_the_rod_is_that_of_simo():
+    """Pi_t = Pi x w + P x v + m_s + k x m + e x n, P_t = P x w + n_s + k x n, and k, e likewise.
+
+    With m = K k and n = A (e - e3): Simo, Marsden and Krishnaprasad 1988, by vector products.
+    """
+    equations, source = emitted("se3_strand"), np.random.default_rng(2)
+    I, K, A = source.integers(1, 9, (3, 3))  # noqa: E741
+    w, v, k, e, w_s, v_s, k_s, e_s = source.integers(-9, 9, (8, 3))
+    values = {"M": 3} | {
+        f"{x}{n}": y[n - 1] for x, y in zip("IKA", (I, K, A), strict=True) for n in (1, 2, 3)
+    }
+    rows = {"Pi{}": I * w, "P{}": 3 * v, "Pi{}_s": I * w_s, "P{}_s": 3 * v_s}
+    values |= {name.format(n): row[n - 1] for name, row in rows.items() for n in (1, 2, 3)}
+    strains = {"X{}": (*k, *e), "X{}_s": (*k_s, *e_s)}
+    values |= {name.format(n): row[n - 1] for name, row in strains.items() for n in range(1, 7)}
+    m, n, x = K * k, A * (e - [0, 0, 1]), np.cross
+    expected = [
+        *(x(I * w, w) + x(3 * v, v) + K * k_s + x(k, m) + x(e, n)),
+        *(x(3 * v, w) + A * e_s + x(k, n)),
+        *(w_s + x(k, w)),
+        *(v_s + x(k, v) + x(e, w)),
+    ]
+    assert evaluate(equations, values) == [*map(int, expected)]
+    assert all(expected)
+
+
+def test_the_strand_of_symplectic_matrices_is_that_of_the_book():
+    """l_T,t + l_S,s = l_T T J - J T l_T + l_S S J - J S l_S, S_t = T_s - [T, S]_J (Holm, C.4).
+
+    Right invariant, by products of matrices; the pairing is tr(A B), so that l_T = T, l_S = -S.
+    """
+    equations, source = emitted("sp2_strand"), np.random.default_rng(4)
+    numbers = source.integers(-9, 9, (4, 3))
+    T, T_s, S, S_s = (np.array([[a, b], [b, c]]) for a, b, c in numbers)
+    values = {"N12": 1}
+    for name, matrix in (("M{}", T), ("M{}_s", T_s), ("S{}", S), ("S{}_s", S_s)):
+        twice = 2 if name.startswith("S") else 1  # the component is that along E12, half a unit
+        parts = {"11": matrix[0, 0], "12": twice * matrix[0, 1], "22": matrix[1, 1]}
+        values |= {name.format(place): part for place, part in parts.items()}
+    J = np.array([[0, -1], [1, 0]])
+    rate = S_s + T @ T @ J - J @ T @ T - S @ S @ J + J @ S @ S
+    strain = T_s - (T @ J @ S - S @ J @ T)
+    expected = [rate[0, 0], rate[0, 1], rate[1, 1], strain[0, 0], 2 * strain[0, 1], strain[1, 1]]
+    assert evaluate(equations, values) == [*map(int, expected)]
+    assert any(expected)
+
+
+def test_a_symbol_with_a_jordan_block_is_told_apart():
+    """Waves of u_t = v_s, v_t = 0 grow linearly: all eigenvalues are 0, of one block."""
+    equations = emitted("spin_chain")
+    setting, jets = equations.setting, jets_of(equations.setting)
+    rates = list(equations.exact.rates)
+    assert look_at_symbol(setting, jets, rates).is_diagonalizable
+    rates[3] = setting.field.zero
+    seen = look_at_symbol(setting, jets, rates)
+    assert seen.growth is None
+    assert not seen.is_diagonalizable
+
+
+def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
+    """Omega = W(t - s/c), Xi = -W/c with J dW/dt = J W x W, J = I - K/c^2, for any I, K, W and c.
+
+    It tests the terms of the momentum equation for general I and K at random rational points.
+    """
+    equations, source = emitted("spin_chain"), np.random.default_rng(6)
+    number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+    for _ in range(2):
+        I, K, W = (sympy.Matrix([int(x) for x in row]) for row in source.integers(1, 9, (3, 3)))  # noqa: E741
+        c = sympy.Integer(11)
+        J = sympy.Matrix([i - k / c**2 for i, k in zip(I, K, strict=True)])
+        JW = J.multiply_elementwise(W)
+        slope = JW.cross(W).multiply_elementwise(J.applyfunc(lambda x: 1 / x))  # dW/dt
+        values = {"L": sympy.Integer(1)}
+        for n in range(3):
+            values |= {f"I{n + 1}": I[n], f"K{n + 1}": K[n]}
+            values |= {f"Pi{n + 1}": I[n] * W[n], f"Pi{n + 1}_s": -I[n] * slope[n] / c}
+            values |= {f"Xi{n + 1}": -W[n] / c, f"Xi{n + 1}_s": slope[n] / c**2}
+        rates = [equations.setting.field.evaluate(r, values, number) for r in equations.exact.rates]
+        assert rates == [*I.multiply_elementwise(slope), *(-slope / c)]
+        assert any(slope)

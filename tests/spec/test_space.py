@@ -99,3 +99,29 @@ def test_derivatives_take_part_in_units():
     bad = text.replace('expression = "dot(Pi, Xi)"', 'expression = "Xi1_s + Xi1"')
     with pytest.raises(SpecError, match="1/m"):
         read(bad)
+
+
+STRAIN = 'Xi = { role = "strain" }'
+SPACE = 's = { length = "L" }'
+
+
+@pytest.mark.parametrize(
+    ("wrong", "cured"),
+    [
+        (STRAND.replace('length = "L"', 'length = "M"'), ("[parameters]", "[parameters]\nM = { positive = true, default = 1 }")),
+        (STRAND.replace("L = { positive = true,", "L = {"), ("L = { default = 10,", "L = { positive = true, default = 1,")),
+        (STRAND.replace("order = 4 }", 'order = 4 }\nr = { length = "L" }'), ('\nr = { length = "L" }', "")),
+        (STRAND.replace('"P"]', '{ claim = "P", where = ["Xi1"] }]'), (', where = ["Xi1"]', "")),
+        (STRAND.replace("[claims]", '[time]\nname = "t"\n\n[claims]'), ('[time]\nname = "t"', "")),
+        (STRAND.replace('Xi = "vector(0, sin(2*pi*s/L)/2, 0)"', 'Xi = "sin(2*pi*s/L)"'), ('"sin(2*pi*s/L)"', '"vector(sin(2*pi*s/L), 0, 0)"')),
+        (RIGID_BODY + '[profiles]\nPi = "1"\n', ('[profiles]\nPi = "1"\n', "")),
+        (RIGID_BODY.replace("Pi = {", f"{STRAIN}\nPi = {{").replace("[parameters]", "[parameters]\nL = { positive = true, default = 1 }").split("[claims]")[0], ("[algebra]", f"[space]\n{SPACE}\n\n[algebra]")),
+        (KDV.replace("[space]\ns = { length = \"L\", size = 256, order = 6 }\n", "").split("[profiles]")[0] + "[lagrangian]\nl = \"u^2/2\"\n", ("[diffeomorphisms]", f"[space]\n{SPACE}\n\n[diffeomorphisms]")),
+    ],
+)  # fmt: skip
+def test_the_advice_works(wrong, cured):
+    """What a message says is done, and then the spec is read."""
+    with pytest.raises(SpecError):
+        read(wrong)
+    assert cured[0] in wrong
+    assert read(wrong.replace(*cured)).title

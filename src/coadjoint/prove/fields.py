@@ -94,7 +94,7 @@ def decide_jacobi(operator: Operator, jets: Jets) -> Decision:
         method = f"{decision.method} for the triple ({a}, {b}, {name})"
         return replace(decision, method=method)
     method = "for all covectors along space, the variational derivative of the cyclic sum is 0"
-    return Decision(Verdict.PROVED, method)
+    return Decision(verdict=Verdict.PROVED, method=method)
 
 
 class _Trivector:
@@ -189,10 +189,13 @@ def _about_posedness(first: Equations) -> Iterator[Examined]:
     if not seen.points:
         return
     kind = "real" if seen.order % 2 else "imaginary"
-    decision = Decision(Verdict.PROVED, f"roots counted exactly, about {seen.points} fields")
+    decision = Decision(
+        verdict=Verdict.PROVED, method=f"roots counted exactly, about {seen.points} fields"
+    )
+    diagonal = " and is diagonalizable" * seen.is_diagonalizable
     yield (
-        f"the principal symbol, of order {seen.order}, has {kind} eigenvalues, so that short waves "
-        "do not grow, at the defaults of the parameters and about some fields of rational values",
+        f"the principal symbol, of order {seen.order}, has {kind} eigenvalues{diagonal}, at the "
+        "defaults of the parameters and about some fields of rational values",
         "posed",
         lambda: decision,
     )
@@ -264,7 +267,9 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
         text = element_text(setting.field, flux)
         long = f"a flux of {len(setting.field.terms(flux))} terms"
         texts.append(f"flux {text if len(text) <= SHOWN else long}")
-    return Decision(Verdict.PROVED, f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}")
+    return Decision(
+        verdict=Verdict.PROVED, method=f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}"
+    )
 
 
 def _about_pair(

@@ -116,7 +116,7 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
             continue
         if kept[each.name] is Kept.ALWAYS:
             method = "the variation of its rate over the points of an endless grid is 0"
-            decision = Decision(Verdict.PROVED, method)
+            decision = Decision(verdict=Verdict.PROVED, method=method)
             yield f"{each.name} is conserved, {where}", "conserved", partial(_give, decision)
             continue
         found = Discovery("the variation of its rate over the points is not 0", "on the grid")
@@ -147,7 +147,7 @@ def _about_jacobi(grid: Grid, where: str) -> Examined:
     size = count_points(ring, grid)
     if not defects and (pointwise or is_constant(tensor, ring)):
         method = f"normal form, for {size} points; points commute" if pointwise else "constants"
-        decision = Decision(Verdict.PROVED, method)
+        decision = Decision(verdict=Verdict.PROVED, method=method)
         return f"the bracket satisfies the Jacobi identity, {where}", "jacobi", lambda: decision
     if not defects:
         method = f"normal form, for {size} points"

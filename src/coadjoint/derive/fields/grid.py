@@ -347,7 +347,13 @@ class _Maker:
             )
             for each in self.equations.exact.emitted
         )
-        exact = Exact((), rates, totals["energy"], emitted, tensor)
+        exact = Exact(
+            definitions=(),
+            rates=rates,
+            energy=totals["energy"],
+            emitted=emitted,
+            poisson_tensor=tensor,
+        )
         return Equations(setting=setting, route=self.equations.route, exact=exact, steps=())
 
     def _tensor(

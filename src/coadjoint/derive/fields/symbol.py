@@ -2,11 +2,11 @@ r"""The principal symbol: whether the equations of fields are well posed.
 
 About any fields, short waves :math:`e^{i k s - i \omega t}` obey :math:`-i \omega v = (i k)^n A v`,
 with :math:`A = \partial \dot u / \partial (\partial_s^n u)` for the highest derivative in the
-rates. A wave does not grow if :math:`\omega` is real: of a bracket, whose eigenvalues come in
-pairs, for odd n if all eigenvalues of A are real, and for even n if all are imaginary. Otherwise
-there are waves that grow faster the shorter they are, and nothing depends on initial fields
-continuously (Hadamard). For a strand with :math:`l = \tfrac12 A \Omega^2 + B \Omega \Xi +
-\tfrac12 C \Xi^2` the roots of :math:`A \tau^2 + 2 B \tau + C` are looked at so.
+rates. A wave does not grow if :math:`\omega` is real and A is diagonalizable: of a bracket, whose
+eigenvalues come in pairs, for odd n if all eigenvalues of A are real, and for even n if all are
+imaginary. With other eigenvalues there are waves that grow faster the shorter they are, and nothing
+depends on initial fields continuously (Hadamard). For a strand with :math:`l = \tfrac12 A \Omega^2
++ B \Omega \Xi + \tfrac12 C \Xi^2` they are the roots of :math:`A \tau^2 + 2 B \tau + C`.
 
 Roots are counted exactly, at rational points: the defaults of parameters, and a few fields.
 Comes in: Equations of fields. Goes out: what is wrong with them, if anything.
@@ -66,11 +66,13 @@ class Seen:
         order: The highest derivative in the rates.
         points: At how many points its roots were counted.
         growth: A short wave that grows, if there is one.
+        is_diagonalizable: Whether it is at all of these points.
     """
 
     order: int
     points: int
     growth: Growth | None = None
+    is_diagonalizable: bool = True
 
 
 def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
@@ -78,7 +80,7 @@ def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Se
     order, points = max((_order(jets, rate) for rate in rates), default=0), 0
     if not order:
         return Seen(order, points)
-    field = setting.field
+    field, diagonalizable = setting.field, True
     matrix = [
         field.gradient(rate, [tower[order] for tower in jets.towers.values()]) for rate in rates
     ]
@@ -99,7 +101,8 @@ def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Se
             point = {name: str(values[name]) for name in field.names if name in reached}
             return Seen(order, points + 1, Growth(order, speed, point))
         points += 1
-    return Seen(order, points)
+        diagonalizable = diagonalizable and _is_diagonalizable(numbers, polynomial)
+    return Seen(order, points, is_diagonalizable=diagonalizable)
 
 
 def _order(jets: Jets, rate: Element) -> int:
@@ -123,6 +126,14 @@ def _list_points(
             else Fraction(source.randint(-9, 9), source.randint(1, 9))
             for name in sorted(reached)
         }
+
+
+def _is_diagonalizable(matrix: sympy.Matrix, polynomial: sympy.Expr) -> bool:
+    """Whether the square-free part of the characteristic polynomial vanishes at the matrix."""
+    total = sympy.zeros(*matrix.shape)
+    for coefficient in sympy.Poly(polynomial, _ROOT, domain="QQ").sqf_part().all_coeffs():
+        total = total * matrix + coefficient * sympy.eye(matrix.shape[0])
+    return bool(total.is_zero_matrix)
 
 
 def _count_bad(polynomial: sympy.Poly, *, odd: bool) -> int:

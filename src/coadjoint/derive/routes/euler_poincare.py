@@ -56,13 +56,16 @@ def _derive_fields(setting: Setting, rates: tuple[Element, ...]) -> Equations:
     ]
     *steps, _ = _steps(setting, rates)
     turn = "+" if setting.sign == 1 else "-"
+    law = sign_text(setting.sign, "ad*_xi mu + ad*_Xi nu + dl/da <> a")
+    law_latex = sign_text(
+        setting.sign,
+        r"\mathrm{ad}^*_\xi \mu + \mathrm{ad}^*_\Xi \nu + (\partial l / \partial a) \diamond a",
+    )
     steps.append(
         write_step(
             "Euler-Poincare equations of a strand, and compatibility of g_st = g_ts",
-            f"dmu/dt = {turn}(ad*_xi mu + ad*_Xi nu + dl/da <> a) - d nu/ds,  nu = dl/dXi,  "
-            f"dXi/dt = dxi/ds {turn} [Xi, xi]",
-            rf"\dot\mu = {turn}(\mathrm{{ad}}^*_\xi \mu + \mathrm{{ad}}^*_\Xi \nu + "
-            r"(\partial l / \partial a) \diamond a) - \partial_s \nu, \qquad "
+            f"dmu/dt = {law} - d nu/ds,  nu = dl/dXi,  dXi/dt = dxi/ds {turn} [Xi, xi]",
+            rf"\dot\mu = {law_latex} - \partial_s \nu, \qquad "
             rf"\dot\Xi = \partial_s \xi {turn} [\Xi, \xi]",
             write_rates(setting.state, whole),
         )

@@ -119,7 +119,14 @@ def action_near(setting: Setting, lagrangian: Element, momenta: Sequence[Element
         for mu, value, given in zip(multipliers, values, velocity, strict=True)
     ]
     integrand = field.substitute(lagrangian, moved) + field.sum(pairing)
-    return Action(names[:n], names[n : 2 * n], moved, integrand, names[2 * n :], turned)
+    return Action(
+        coordinates=names[:n],
+        rates=names[n : 2 * n],
+        moved=moved,
+        integrand=integrand,
+        slopes=names[2 * n :],
+        turned=turned,
+    )
 
 
 def _turn(

@@ -144,7 +144,7 @@ class Space:
     @property
     def index(self) -> Index:
         """What counts the points."""
-        return Index(self.name, self.size, periodic=True, from_zero=True)
+        return Index(name=self.name, size=self.size, periodic=True, from_zero=True)
 
 
 def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
@@ -257,7 +257,7 @@ def read_profiles(reading: Reading, texts: Mapping[str, str]) -> Mapping[str, Fo
         if name not in fields:
             problem = f"there is no field {name!a}"
             raise reading.unknown(("profiles", name), problem, name, fields)
-        shape = fields[name].value_shape
+        shape = fields[name].shape
         hint = "Write vector(a, b, c) for the components." if shape else ""
         read[name] = read_fitting(source, ("profiles", name), text, scope, shape, name, hint)
     _check_defaults(source, read, PARAMETERS.of(reading))

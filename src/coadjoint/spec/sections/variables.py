@@ -226,9 +226,12 @@ def _read_variable(
         along = [algebra.basis[place] for place in block] if algebra is not None else ()
         raise misfit_form(source, (*key, "form"), count, form, along)
     elements: tuple[SparseMatrix, ...] = ()
-    if form and block and algebra is not None and algebra.elements:
-        check_elements(source, (*key, "form"), algebra, block, form)
-        elements = algebra.elements if part.role == "velocity" else ()
+    spanned = block
+    if strain and algebra is not None:
+        spanned = tuple(range(algebra.dimension))
+    if form and spanned and algebra is not None and algebra.elements:
+        check_elements(source, (*key, "form"), algebra, spanned, form)
+        elements = algebra.elements if part.role == "velocity" or strain else ()
     elif form == "antisymmetric" and block and algebra is not None:
         check_planes(source, (*key, "form"), algebra, block)
     shape: Shape = (count,) if flat or form else ()
