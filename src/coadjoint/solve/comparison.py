@@ -85,7 +85,7 @@ def count_rows(system: System, choice: Choice) -> int:
 def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
     """Arguments at whose zeros the rates of a method have kinks; none without files."""
     if isinstance(system, FamilySystem):
-        return system.list_kinks()
+        return system.kink_names
     if system.stepwise or not system._solvers.has_files(choice.kind):
         return ()
     module = KernelModule(system, choice.kind.files[2])

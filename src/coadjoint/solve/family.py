@@ -136,7 +136,8 @@ class FamilySystem(System):
             return Quantities(*self.STATE.values(), *sides)
         return super().rows(function)
 
-    def list_kinks(self) -> tuple[str, ...]:
+    @cached_property
+    def kink_names(self) -> tuple[str, ...]:
         """What is zero at each kink of all members, in the rows of the function ``kinks``."""
         i, size = re.escape(self.index.name), self.size
         places = {place % size: own for place, own in self.kinks.items() if place is not None}

@@ -483,7 +483,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         remembered=choice.count_memory(system.STATE.size, searches=False),
         is_implicit=choice.is_structured,
         has_clock=False,
-        sides=len(system.list_kinks()),
+        sides=len(system.kink_names),
     )
     run.begin(0.0)
     return run
