@@ -83,7 +83,7 @@ def helix(s, t, length=20.0, a=0.6, B=0.3, turns=2):
     return S, rate * np.array([-S[1], S[0], 0 * s])
 
 
-def cnoidal_wave(s, t, length=12.0, c=1.3, m=0.3, level=0.2):
+def cnoidal_wave(s, t, length=12.0, c=1.3, m=0.5, level=0.2):
     """U = u2 + 4 c b^2 m cn^2(b (s - V t) | m) of u_t + 3 u u_s + c u_sss = 0, and u_t.
 
     b = 2 K(m)/L and V = 3 u2 + 4 c b^2 (2 m - 1).

@@ -31,16 +31,16 @@ CORE = (
     *core_of(
         "hamilton-pontryagin",
         "hamilton_pontryagin",
-        "action_near _at_the_motion momentum_equation advection",
+        "action_near _turn _at_the_motion momentum_equation advection",
         systems=ADVECTED,
         tests=ON_BOTH_SIDES,
         fallacies={"action_near: drop pairing": "g^-1 dg/dt = xi put in before varying"},
         equivalent=dict.fromkeys(
             (
-                "action_near: flip rate in constraint",
-                "action_near: drop rate in constraint",
-                "action_near: flip xi in constraint",
-                "action_near: drop xi in constraint",
+                "_turn: flip x",
+                "_turn: drop x",
+                "action_near: flip given",
+                "action_near: drop given",
             ),
             "the momentum equation takes no slope of <mu, deps/dt - xi> but those that hold eps",
         ),

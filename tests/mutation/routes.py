@@ -11,6 +11,7 @@ from tests.mutation import routes_over_coordinates as coordinates
 from tests.mutation import routes_over_distributions as distributions
 from tests.mutation.changed_specs import SPECS
 from tests.mutation.core_functions import CORE
+from tests.mutation.routes_over_fields import FIELDS
 from tests.mutation.shared_steps import SHARED
 
 ROUTE_MUTANTS = (
@@ -28,6 +29,7 @@ ROUTE_MUTANTS = (
     *distributions.VARIED,
     *distributions.DISTRIBUTED,
     *distributions.SLIPS,
+    *FIELDS,
     *SHARED,
     *SPECS,
 )

@@ -37,12 +37,12 @@ def field_operator(setting: Setting) -> Operator:
     return tuple(
         tuple(
             (
-                *([Term(tensor[i][j], 0, one)] if not field.is_zero(tensor[i][j]) else []),
+                *([Term(value, 0, one)] if not field.is_zero(value) else []),
                 *([Term(one, 1, one)] if (a, b) in coupled or (b, a) in coupled else []),
             )
-            for j, b in enumerate(setting.state)
+            for b, value in zip(setting.state, row, strict=True)
         )
-        for i, a in enumerate(setting.state)
+        for a, row in zip(setting.state, tensor, strict=True)
     )
 
 
