@@ -25,11 +25,14 @@ _TEXTS = {
 }
 #: Systems with an index whose members are all written out; tests/spec/test_windows.py sees to it.
 WRITTEN = ("n_link_chain", "so8_body")
-#: Systems whose state is written out, and those of N equal members.
+#: Fields along a coordinate of space, systems whose state is written out, and N equal members.
+FIELDS = tuple(name for name, text in _TEXTS.items() if "\n[space]\n" in text)
 SYSTEMS = tuple(
-    name for name, text in _TEXTS.items() if name in WRITTEN or "\n[index]\n" not in text
+    name
+    for name, text in _TEXTS.items()
+    if name in WRITTEN or ("\n[index]\n" not in text and name not in FIELDS)
 )
-FAMILIES = tuple(name for name in _TEXTS if name not in SYSTEMS)
+FAMILIES = tuple(name for name in _TEXTS if name not in (*SYSTEMS, *FIELDS))
 
 
 @pytest.fixture(params=SYSTEMS)

@@ -73,8 +73,23 @@ def change(old, new):
     return [(old, new)]
 
 
+CHAIN_OF_SPINS = shipped("spin_chain").path.read_text(encoding="utf-8")
+STRAND = "dot(Omega, diag(I)*Omega)/2 - dot(Xi, diag(K)*Xi)/2"
 #: A spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    # -- fields
+    *(
+        (
+            CHAIN_OF_SPINS,
+            change(STRAND, f"{STRAND} {more}"),
+            "Give [hamiltonian] and the route lie-poisson instead.",
+            [
+                ('["euler-poincare", "lie-poisson", "hamilton-pontryagin"]', '["lie-poisson"]'),
+                (f'[lagrangian]\nl = "{STRAND} {more}"', '[hamiltonian]\nh = "dot(Pi, Pi)/2"'),
+            ],
+        )
+        for more in ("+ Omega1^4", "- Xi1_s^2")
+    ),
     # -- kinetic energies
     (
         FREE,

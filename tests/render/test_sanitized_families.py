@@ -10,7 +10,7 @@ import pytest
 
 from coadjoint import pipeline
 from coadjoint.spec.reader import read_spec_text
-from tests.conftest import FAMILIES
+from tests.conftest import FAMILIES, FIELDS
 from tests.families import MOVED, TOPS, read
 from tests.kernels import COMPILER
 from tests.render.test_sanitizers import SANITIZERS, compile_and_run
@@ -165,7 +165,7 @@ def test_the_sanitizers_find_nothing_in_what_drives_members(moved, define, sanit
 
 CASES = [
     pytest.param(name, method, each, marks=[pytest.mark.campaign] * (name != "tops" or slow))
-    for name in ("tops", *FAMILIES)
+    for name in ("tops", *FAMILIES, *FIELDS)
     for method in METHODS
     for each in SANITIZERS
     for slow in ((method, each) != ("dop853", "address,undefined"),)

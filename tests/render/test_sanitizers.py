@@ -17,12 +17,14 @@ import pytest
 
 from coadjoint import systems
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from tests.conftest import FAMILIES
+from tests.conftest import FAMILIES, FIELDS
 from tests.kernels import COMPILER, STRICT
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 SANITIZERS = ("address,undefined", "thread")
-NAMES = sorted({each.name for each in pkgutil.iter_modules(systems.__path__)} - {*FAMILIES})
+NAMES = sorted(
+    {each.name for each in pkgutil.iter_modules(systems.__path__)} - {*FAMILIES, *FIELDS}
+)
 #: What every `make test` looks at: constraints, observables and a reconstruction.
 ALWAYS = "chaplygin_sleigh"
 
