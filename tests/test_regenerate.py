@@ -87,6 +87,7 @@ SAMPLE = (
     "rolling_disk_vertical",
     "se2_pendulum",
     "so4_body",
+    "sp2_strand",
     "stochastic_rigid_body",
     "toda_lattice",
 )
