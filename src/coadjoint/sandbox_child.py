@@ -21,6 +21,7 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
+from mmap import PAGESIZE, mmap
 from typing import IO, Any, TypeVar
 
 from coadjoint.errors import CoadjointError, InternalError, ResourceError, system_error
@@ -115,6 +116,7 @@ def _serve_one(request: dict[str, Any]) -> None:
             os.chdir(request["folder"])
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         _limit(resource.RLIMIT_AS, request["memory"])
+        mmap(-1, PAGESIZE).close()  # what was imported may be more than the limit already
         _limit(resource.RLIMIT_CORE, 0)
         # The soft limit alone: what this child starts may be given another one.
         _, most = resource.getrlimit(resource.RLIMIT_CPU)

@@ -556,7 +556,7 @@ MUTANTS = (
     ),
     *of(
         "derive/sandwich",
-        "_emit: rewrite whole - less -> whole",
+        "_emit: rewrite a + field['_bwz'] * b -> a",
         "_find_products: rewrite sign * each -> each",
         tests=("tests/derive/test_sandwich.py",),
     ),
