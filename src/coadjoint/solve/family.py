@@ -132,7 +132,8 @@ class FamilySystem(System):
         if KERNEL_FUNCTIONS[function].below == "sides":
             count = len(self.kinks.get(None, ()))
             names = [f"side{n}" for n in range(1, count + 1)]
-            sides = [self._repeat(Quantity(each, (), "1", (each,)), self.size) for each in names]
+            signs = [Quantity(name=n, shape=(), unit="1", components=(n,)) for n in names]
+            sides = [self._repeat(each, self.size) for each in signs]
             return Quantities(*self.STATE.values(), *sides)
         return super().rows(function)
 
