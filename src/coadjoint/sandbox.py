@@ -43,7 +43,6 @@ _BOOT = (
     "from coadjoint import sandbox_child; sandbox_child.serve()"
 )
 
-
 #: Seconds for which a nursery waits for another request.
 PATIENCE: Final = 60
 #: Limits of the system that children inherit.
@@ -69,16 +68,10 @@ class _Nursery:
     def close(self) -> None:
         """End it and whatever it started, at the latest now."""
         kill(self.process)
-        self._let_go()
+        self.retire()
 
     def retire(self) -> None:
-        """End it while it waits, which it does by itself when nobody can ask any more."""
-        assert self.process.stdin is not None
-        with suppress(BrokenPipeError):
-            self.process.stdin.close()
-        self._let_go()
-
-    def _let_go(self) -> None:
+        """Wait for its end, which comes while it waits as soon as nobody can ask any more."""
         with self.errors, self.process, suppress(BrokenPipeError):
             assert self.process.stdin is not None
             self.process.stdin.close()
@@ -107,7 +100,7 @@ class _Waiting:
 
     def keep(self, nursery: _Nursery) -> None:
         """Let one wait, for some time."""
-        nursery.patience = timer = Timer(PATIENCE, lambda: self._retire([nursery]))
+        nursery.patience = timer = Timer(PATIENCE, self._retire, [nursery])
         timer.daemon = True
         with self._lock:
             self._nurseries.append(nursery)
@@ -115,17 +108,17 @@ class _Waiting:
 
     def retire_all(self) -> None:
         """End them with this process."""
-        self._retire(list(self._nurseries))
+        for nursery in list(self._nurseries):
+            self._retire(nursery)
 
-    def _retire(self, nurseries: list[_Nursery]) -> None:
-        for nursery in nurseries:
-            with self._lock:
-                if nursery not in self._nurseries:
-                    continue
-                self._nurseries.remove(nursery)
-            if nursery.patience is not None:
-                nursery.patience.cancel()
-            nursery.retire()
+    def _retire(self, nursery: _Nursery) -> None:
+        with self._lock:
+            if nursery not in self._nurseries:
+                return
+            self._nurseries.remove(nursery)
+        if nursery.patience is not None:
+            nursery.patience.cancel()
+        nursery.retire()
 
     def disown(self) -> None:
         """Leave them to the process that this one was forked from."""

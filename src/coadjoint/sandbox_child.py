@@ -26,7 +26,7 @@ from typing import IO, Any, TypeVar
 
 from coadjoint.errors import CoadjointError, InternalError, ResourceError, system_error
 
-#: Variables that the nursery was given beside those of its parent; see `coadjoint.sandbox`.
+#: Environment variables that `coadjoint.sandbox` sets for the nursery; its parent may lack them.
 _OWN = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
 _channel: IO[str] | None = None

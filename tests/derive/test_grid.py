@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import sympy
 
-from coadjoint.derive.fields.grid import narrow, sample_profiles
-from coadjoint.derive.fields.jets import DEGREE, Jets
+from coadjoint.derive.fields.jets import DEGREE, Jets, narrow
+from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.reference import Reference
 from coadjoint.exact import Field
@@ -20,7 +20,7 @@ from tests.fields import (
     helix,
     precessing_wave,
 )
-from tests.specs import emitted, shipped
+from tests.specs import shipped
 
 ORDERS = (2, 4, 6, 8)
 
@@ -164,7 +164,7 @@ def test_rings_are_the_matrices_of_the_bracket():
 
 def test_profiles_are_sampled_to_rounding():
     """The default of KdV is the cosine over 3 at each point."""
-    (values,) = sample_profiles(emitted("kdv"), 8)["m"]
+    (values,) = sample_profiles(shipped("kdv"), 8)["m"]
     expected = np.cos(2 * np.pi * np.arange(8) / 8) / 3
     np.testing.assert_allclose([float(x) for x in values], expected, atol=1e-16)
-    assert sample_profiles(emitted("kdv"), None) == {}
+    assert sample_profiles(shipped("kdv"), None) == {}

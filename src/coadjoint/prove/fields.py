@@ -164,19 +164,12 @@ class _Trivector:
 
     def find_pair(self, defect: Element) -> tuple[str, str]:
         """The components of the other covectors in the first term of a defect."""
-        reached = self.field.reach(self.field.terms(defect)[0])
-        return (
-            next(
-                name
-                for name, one in zip(self.names, self.covectors[0], strict=True)
-                if reached & {*self.jets.towers[one]}
-            ),
-            next(
-                name
-                for name, one in zip(self.names, self.covectors[1], strict=True)
-                if reached & {*self.jets.towers[one]}
-            ),
+        reached, towers = self.field.reach(self.field.terms(defect)[0]), self.jets.towers
+        first, second = (
+            next(n for n, one in zip(self.names, own, strict=True) if reached & {*towers[one]})
+            for own in self.covectors[:2]
         )
+        return first, second
 
 
 # -- the motion -------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ Read next: `coadjoint.prove.grids`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -32,9 +32,10 @@ import sympy
 
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.fields.jets import Jets, jets_of
+from coadjoint.derive.fields.jets import Jets, jets_of, narrow
 from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
 from coadjoint.derive.fields.operators import Operator
+from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.records import Exact, Kept
@@ -45,38 +46,6 @@ from coadjoint.families import Family, Sum, Total
 from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Poisson, Variable, Windows
-
-
-def narrow(jets: Jets, density: Element) -> Element:
-    """A density with the same integral, whose products of two derivatives are summed by parts.
-
-    >>> field = Field(["u", "u_s", "u_ss", "c", "_degree"])
-    >>> jets = Jets(field, {"u": ("u", "u_s", "u_ss")})
-    >>> narrow(jets, field["c"] * field["u_s"] ** 2 / 2 + field["u"] ** 3)
-    -c*u*u_ss/2 + u**3
-    """
-    field, found = jets.field, list[Element]()
-    orders = {x: (name, n) for name, tower in jets.towers.items() for n, x in enumerate(tower)}
-    for term in field.terms(density):
-        named = sorted(field.reach(term) & orders.keys())
-        factors = _read_pair(field, term, named)
-        if factors is None:
-            found.append(term)
-            continue
-        (first, j), (second, k) = (orders[x] for x in factors)
-        constant = term / (field[factors[0]] * field[factors[1]])
-        moved = field[first] * field[jets.towers[second][j + k]]
-        found.append(constant * moved * (-1) ** j)
-    return field.sum(found)
-
-
-def _read_pair(field: Field, term: Element, named: Sequence[str]) -> tuple[str, str] | None:
-    """The two jets of a term that is their product and a constant; None of any other."""
-    if len(named) not in (1, 2) or field.functions_in(term):
-        return None
-    first, second = named[0], named[-1]
-    rest = term / (field[first] * field[second])
-    return None if field.reach(rest) & {first, second} else (first, second)
 
 
 @dataclass(frozen=True)
@@ -173,9 +142,7 @@ class _Maker:
             value: A component at a point.
             convert: An expression with values for jets.
         """
-        orders = {
-            x: (name, n) for name, tower in self.jets.towers.items() for n, x in enumerate(tower)
-        }
+        orders = self.jets.orders
 
         def jet(symbol: str) -> Lattice:
             name, n = orders[symbol]
@@ -414,7 +381,7 @@ class _Maker:
             variables=tuple(v.name for v in self.spec.state),
             shared=tuple(p.name for p in self.spec.parameters),
             indexed=(),
-            defaults=sample_profiles(self.equations, self.space.size),
+            defaults=sample_profiles(self.spec, self.space.size),
             repeating=(),
             reach=self.reach,
             alone=(0, 0),
@@ -487,24 +454,3 @@ def _read_place(name: str) -> tuple[str, int]:
     """A component and how many points away it is, by the name of both."""
     component, _, rest = name.partition("[")
     return component, int(rest.removesuffix("]") or 0)
-
-
-def sample_profiles(
-    equations: Equations, size: int | None
-) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
-    """The fields at the beginning at so many points, by component: numbers of 50 digits, rounded.
-
-    None without a number of points.
-    """
-    spec, space = equations.spec, equations.spec.space
-    if size is None or space is None:
-        return {}
-    return {name: tuple(zip(*_sample(spec, name, size), strict=True)) for name in spec.profiles}
-
-
-def _sample(spec: Spec, name: str, size: int) -> Iterator[tuple[Fraction, ...]]:
-    """A field at each point."""
-    from coadjoint.derive.fields.profiles import evaluate_profile
-
-    for i in range(size):
-        yield evaluate_profile(spec, name, Fraction(i, size))

@@ -20,7 +20,7 @@ Read next: `coadjoint.derive.fields.operators`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -72,6 +72,11 @@ class Jets:
 
     field: Field
     towers: Mapping[str, tuple[str, ...]]
+
+    @cached_property
+    def orders(self) -> dict[str, tuple[str, int]]:
+        """Of each symbol the field, and how often it is differentiated."""
+        return {x: (name, n) for name, tower in self.towers.items() for n, x in enumerate(tower)}
 
     @cached_property
     def _next(self) -> dict[str, str]:
@@ -173,3 +178,34 @@ def jets_of(setting: Setting) -> Jets:
         setting.field,
         {name: tuple(jet_name(name, space.name, n) for n in orders) for name in setting.state},
     )
+
+
+def narrow(jets: Jets, density: Element) -> Element:
+    """A density with the same integral, whose products of two derivatives are summed by parts.
+
+    >>> field = Field(["u", "u_s", "u_ss", "c", "_degree"])
+    >>> jets = Jets(field, {"u": ("u", "u_s", "u_ss")})
+    >>> narrow(jets, field["c"] * field["u_s"] ** 2 / 2 + field["u"] ** 3)
+    -c*u*u_ss/2 + u**3
+    """
+    field, found = jets.field, list[Element]()
+    for term in field.terms(density):
+        named = sorted(field.reach(term) & jets.orders.keys())
+        factors = _read_pair(field, term, named)
+        if factors is None:
+            found.append(term)
+            continue
+        (first, j), (second, k) = (jets.orders[x] for x in factors)
+        constant = term / (field[factors[0]] * field[factors[1]])
+        moved = field[first] * field[jets.towers[second][j + k]]
+        found.append(constant * moved * (-1) ** j)
+    return field.sum(found)
+
+
+def _read_pair(field: Field, term: Element, named: Sequence[str]) -> tuple[str, str] | None:
+    """The two jets of a term that is their product and a constant; None of any other."""
+    if len(named) not in (1, 2) or field.functions_in(term):
+        return None
+    first, second = named[0], named[-1]
+    rest = term / (field[first] * field[second])
+    return None if field.reach(rest) & {first, second} else (first, second)

@@ -102,10 +102,6 @@ class LatticeField:
     components: tuple[str, ...]
     reach: int
 
-    def symbol(self, component: str, place: int) -> str:
-        """The name of a component so many points away."""
-        return name_at(component, place)
-
     def shift(self, element: Element, places: int) -> Element:
         """What an expression is so many points further."""
         reached = self.field.reach(element)

@@ -62,3 +62,12 @@ def evaluate_profile(spec: Spec, name: str, part: Fraction) -> tuple[Fraction, .
         value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
         numbers_of: Any = entries(value)
         return tuple(Fraction(float(x)) for x in numbers_of)
+
+
+def sample_profiles(spec: Spec, size: int | None) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
+    """The fields at the beginning at so many points, by component; nothing without a number."""
+    found = dict[str, tuple[tuple[Fraction, ...], ...]]()
+    for name in spec.profiles if size else ():
+        points = (evaluate_profile(spec, name, Fraction(i, size)) for i in range(size or 0))
+        found[name] = tuple(zip(*points, strict=True))
+    return found

@@ -172,12 +172,12 @@ class Scale:
         rows, tangent, twice = self.sphere.rows, self.sphere.tangent, 2.0 * self.half
         along = _multiply(found, rows, change, rows)
         if tangent:
-            beside = _multiply(found, rows, change, tangent)
-            beside = beside + _multiply(found, tangent, change, rows)
-            beside = twice * beside + 2.0 * self.slant * along
+            dual = _multiply(found, rows, change, tangent)
+            dual = dual + _multiply(found, tangent, change, rows)
+            dual = twice * dual + 2.0 * self.slant * along
         along = twice * along
         for row, other in self.sphere.pairs:
-            change[other] = change[other] - found[other] * along - found[row] * beside
+            change[other] = change[other] - found[other] * along - found[row] * dual
         for row in rows:
             change[row] = change[row] - found[row] * along
         for row, other in self.sphere.pairs:
