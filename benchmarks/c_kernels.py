@@ -32,8 +32,9 @@ import sympy
 from figures import Figure, Spread
 from results import Table, write
 
-from coadjoint.build.compiler import MACHINES, compile_kernel, find_compiler, one_function
+from coadjoint.build.compiler import MACHINES, compile_kernel, find_compiler
 from coadjoint.build.library import load_library
+from coadjoint.build.source import one_function
 from coadjoint.resources import systems_folder
 from coadjoint.solve.folders import load_folder
 

@@ -18,10 +18,10 @@ from coadjoint.build.cache import cache_folder
 from coadjoint.build.compiler import (
     Compiler,
     CompilerWarning,
-    Source,
     compile_kernel,
     find_compiler,
 )
+from coadjoint.build.source import Source
 from coadjoint.errors import CompilerError
 from coadjoint.resources import systems_folder
 from coadjoint.solve import kernels

@@ -14,8 +14,9 @@ import pytest
 
 from coadjoint.build import library
 from coadjoint.build.cache import fetch, store
-from coadjoint.build.compiler import find_compiler, one_function
+from coadjoint.build.compiler import find_compiler
 from coadjoint.build.library import Library, load_library
+from coadjoint.build.source import one_function
 from coadjoint.errors import CompilerError, OutputError
 from coadjoint.systems import rigid_body
 

@@ -19,7 +19,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 
 from coadjoint.build import warden
 from coadjoint.build.calling import SUPPORT
+from coadjoint.build.source import KERNEL, Source
 from coadjoint.build.versions import keep_version, recall_version
 from coadjoint.errors import CompilerError, errno_of, remedy_for
 from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
@@ -81,45 +82,6 @@ VERSION_SECONDS = 30
 
 class CompilerWarning(UserWarning):
     """Kernels are not what they could be: another processor's, or NumPy's instead of C."""
-
-
-@dataclass(frozen=True)
-class Source:
-    """What an object is compiled from.
-
-    Attributes:
-        stem: Name of the C file and of its header without their endings.
-        defines: Options that choose what is compiled of it, such as ``-DRK4``.
-        is_loops: Whether it is long straight loops over members, which need fewer passes of GCC.
-        level: How much is optimised, where the environment asks for no less: 3 for what users run;
-            for what is run for some steps alone 0, or 1, from where on products and sums are fused.
-    """
-
-    stem: str = "kernel"
-    defines: tuple[str, ...] = ()
-    is_loops: bool = True
-    level: int = 3
-
-    @property
-    def files(self) -> tuple[str, str]:
-        """Its files: the one that is compiled, and the header that this reads."""
-        return f"{self.stem}.c", f"{self.stem}.h"
-
-    def at(self, levels: Mapping[tuple[str, str], int], build: str) -> Source:
-        """The same, optimised less where levels by stem and build say so."""
-        return replace(self, level=levels.get((self.stem, build), self.level))
-
-    def label(self, name: str) -> str:
-        """The symbol of the id that its object carries, for the name of a system."""
-        return f"{name}_id" if self.stem == KERNEL.stem else f"{name}_{self.stem}_id"
-
-
-KERNEL = Source()
-
-
-def one_function(name: str) -> Source:
-    """One function of a kernel, which is compiled sooner than all of them."""
-    return Source(defines=("-DCOADJOINT_ONLY", f"-DCOADJOINT_ONLY_{name.upper()}"))
 
 
 @dataclass(frozen=True)

@@ -23,12 +23,11 @@ from coadjoint.build.cache import fetch, store, working_folder
 from coadjoint.build.calling import CALL, CALL_AT, LABEL, SUPPORT
 from coadjoint.build.compiler import (
     ANOTHER,
-    KERNEL,
     Compiler,
-    Source,
     compile_kernel,
     find_compiler,
 )
+from coadjoint.build.source import KERNEL, Source
 from coadjoint.errors import CompilerError, OutputError, remedy_for, system_error
 
 _SIZE, _ADDRESS = ctypes.c_size_t, ctypes.c_void_p

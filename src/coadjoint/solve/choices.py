@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from coadjoint.build.compiler import Source
+from coadjoint.build.source import Source
 from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solver_kinds import SOLVER, SolverKind
 

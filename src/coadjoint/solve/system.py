@@ -64,7 +64,7 @@ class System(Functions):
         written: The index of members that are all written out, and their number; else None.
         METHODS: Methods that keep structure, with what each keeps of this system.
         levels: How much compilers optimise, by stem and build, where that is less than they can;
-            see `coadjoint.build.compiler.Source`.
+            see `coadjoint.build.source.Source`.
     """
 
     levels: Mapping[tuple[str, str], int] = MappingProxyType({})

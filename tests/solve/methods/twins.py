@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from coadjoint.build.compiler import Source, compile_kernel, find_compiler
+from coadjoint.build.compiler import compile_kernel, find_compiler
+from coadjoint.build.source import Source
 from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS, Sphere

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from coadjoint.build.compiler import KERNEL, one_function
 from coadjoint.build.library import Library, find_library, load_library
+from coadjoint.build.source import KERNEL, one_function
 from coadjoint.errors import CrossCheckError
 from coadjoint.render.targets.protocol import Call, Evaluate, Generated, Kernel
 
