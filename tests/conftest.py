@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
 import signal
@@ -15,6 +16,8 @@ from coadjoint.build.compiler import OPTIMIZE
 from coadjoint.resources import derivations_folder
 from tests import specs
 
+# Trees of expressions make no cycles, and many are alive: collections would only look at them.
+gc.set_threshold(50_000, 20, 20)
 # A run in the background ignores Ctrl-C, and its children would, too: tests send it to them.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

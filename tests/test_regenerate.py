@@ -110,7 +110,7 @@ def check_rows(specs, complete):
     return {row.system for row in outcome.rows}
 
 
-def test_a_sample_of_the_checked_in_tree_is_current(optimized):
+def test_a_sample_of_the_checked_in_tree_is_current():
     """Of each kind one; all systems as a campaign, and by `coadjoint regenerate --check`."""
     check_rows([ROOT / "derivations" / f"{name}.toml" for name in SAMPLE], complete=False)
 

@@ -1,6 +1,7 @@
 """Derived equations against the formulas of books, exactly, by every route."""
 
 from fractions import Fraction
+from math import prod
 
 import pytest
 import sympy
@@ -17,12 +18,39 @@ BY_ROUTE = [(name, route) for name in SYSTEMS for route in shipped(name).routes]
 UNIT = {f"q{n}": Fraction(part, 5) for n, part in enumerate((1, 2, 2, 4))}
 
 
+def fraction(number):
+    """A rational number of SymPy as a fraction; another one as it is."""
+    return Fraction(int(number.p), int(number.q)) if number.is_Rational else number
+
+
 def values(expressions, point):
-    """SymPy expressions at a rational point, as fractions."""
-    at = {sympy.Symbol(n): sympy.sympify(v) for n, v in point.items()}
-    found = [sympy.sympify(e).xreplace(at) for e in expressions]
-    assert all(value.is_number for value in found), found
-    return [Fraction(int(v.p), int(v.q)) if v.is_Rational else v for v in found]
+    """SymPy expressions at a rational point, as fractions where sums, products and powers are.
+
+    What occurs in several of them is computed once, and without SymPy's own numbers.
+    """
+    known = {sympy.Symbol(n): fraction(sympy.sympify(v)) for n, v in point.items()}
+
+    def value(expression):
+        if expression not in known:
+            parts = [value(part) for part in expression.args]
+            known[expression] = combined(expression, parts)
+        return known[expression]
+
+    found = [value(sympy.sympify(e)) for e in expressions]
+    assert all(isinstance(x, Fraction) or x.is_number for x in found), found
+    return found
+
+
+def combined(expression, parts):
+    """An expression with values in the places of its parts."""
+    if parts and all(isinstance(part, Fraction) for part in parts):
+        if expression.is_Add:
+            return sum(parts)
+        if expression.is_Mul:
+            return prod(parts)
+        if expression.is_Pow and parts[1].denominator == 1:
+            return parts[0] ** int(parts[1])
+    return fraction(expression.func(*map(sympy.sympify, parts)) if parts else expression)
 
 
 def same(found, expected):
