@@ -256,6 +256,8 @@ BY_HAND = {
     + 4,  # three velocities, one of one product; torque of two components
     # Omega; R hat(Omega); Pi x Omega; two torques of two components, four sums, a sign
     "two_field_top": 3 + 27 + 9 + 4 + 4 + 1,
+    "cosserat_rod": 7 + 3 * 9 + 3,  # k and e; m x k, n x e, n x k; a sum
+    "kirchhoff_rod": 3 + 2 * 9 + 2,  # k; m x k, n x k; n2 and n1 added
     "maxwell_bloch": 3,  # x1 x3, -x1 x2
     # q B/m: with a = q B0 z/(m L^2) -a x, -a y and a z + q B0/m; a cross product and a sign
     "magnetic_bottle": 5 + 9 + 1,

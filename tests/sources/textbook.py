@@ -13,7 +13,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven, extremals, fields, machines
+from tests.sources import classical, driven, extremals, fields, machines, rods
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -256,6 +256,7 @@ RATES = {
     **extremals.RATES,
     **fields.RATES,
     **machines.RATES,
+    **rods.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
     "tippe_top": tippe_rates,
@@ -299,6 +300,7 @@ OBSERVABLES = {
     **extremals.OBSERVABLES,
     **fields.OBSERVABLES,
     **machines.OBSERVABLES,
+    **rods.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
     "tippe_top": tippe_observables,
@@ -340,6 +342,7 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     **extremals.TENSORS,
     **fields.TENSORS,
     **machines.TENSORS,
+    **rods.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -383,6 +386,7 @@ STATES = {
     **extremals.STATES,
     **fields.STATES,
     **machines.STATES,
+    **rods.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
     "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
@@ -426,6 +430,7 @@ PARAMETERS = {
     **extremals.PARAMETERS,
     **fields.PARAMETERS,
     **machines.PARAMETERS,
+    **rods.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),
