@@ -6,8 +6,20 @@ import numpy as np
 import pytest
 import sympy
 
+from coadjoint.algebra import algebra_by_name
+from coadjoint.derive import derive
 from coadjoint.prove import Verdict
-from tests.sources.fluids import HARMONICS, basis, fluid_rates, multiply, vorticity
+from coadjoint.spec import read_spec_text
+from tests.sources.fluids import (
+    HARMONICS,
+    add,
+    basis,
+    commute,
+    fluid_rates,
+    half_trace,
+    multiply,
+    vorticity,
+)
 from tests.sources.test_fields import system
 from tests.specs import emitted, prove_claims, shipped, spec
 
@@ -89,3 +101,55 @@ def test_the_square_of_a_vorticity_has_no_imaginary_trace():
     (E, F), i = basis()[3:5], range(4)
     square = multiply(E, F)
     assert sum(square.get((k, k + 4), 0) for k in i) == 0
+
+
+# -- other numbers of rows ----------------------------------------------------------------
+
+
+def generators(n):
+    """The degree and the matrix of each generator, with entries that are fractions."""
+    algebra = algebra_by_name(f"harmonics({n})")
+    for name, matrix in zip(algebra.basis, algebra.matrices, strict=True):
+        yield int(name[1]), {place: Fraction(x) for place, x in matrix.items()}
+
+
+def fluid_of(n):
+    """The truncated fluid of n rows with hbar = 1, as a spec without claims."""
+    terms = []
+    for place, (degree, E) in enumerate(generators(n), 1):
+        terms.append(f"w{place}^2/{-2 * half_trace(E, E) * degree * (degree + 1)}")
+    return f"""
+title = "Truncated fluid"
+routes = ["lie-poisson"]
+[algebra]
+name = "harmonics({n})"
+invariance = "left"
+[variables]
+w = {{ role = "momentum" }}
+[hamiltonian]
+h = "{" + ".join(terms)}"
+"""
+
+
+@pytest.mark.parametrize("n", [3, 5, 7])
+def test_rates_by_structure_constants_are_the_commutator_of_matrices(n):
+    """``dW/dt = [P, W]`` at random integers, P found by the Laplacian's inverse in each degree.
+
+    With the stream function of another degree they are not.
+    """
+    degrees, matrices = zip(*generators(n), strict=True)
+    equations = derive(read_spec_text(fluid_of(n), "fluid.toml"))
+    numbers = np.random.default_rng(n).integers(-9, 9, n * n - 1).tolist()
+    norms = [-half_trace(E, E) for E in matrices]
+    parts = [Fraction(w) / g for w, g in zip(numbers, norms, strict=True)]
+    W = add(zip(parts, matrices, strict=True))
+    values = dict(zip(equations.variables, map(sympy.Integer, numbers), strict=True))
+    number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+    field = equations.setting.field
+    found = [field.evaluate(equations.close(r), values, number) for r in equations.exact.rates]
+    for shift, is_right in ((0, True), (1, False)):
+        eigenvalues = [-(d + shift) * (d + shift + 1) for d in degrees]
+        stream = (x / e for x, e in zip(parts, eigenvalues, strict=True))
+        turned = commute(add(zip(stream, matrices, strict=True)), W)
+        expected = [-half_trace(turned, E) for E in matrices]
+        assert (found == [number(Fraction(x)) for x in expected]) is is_right
