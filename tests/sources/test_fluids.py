@@ -8,6 +8,8 @@ import sympy
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive
+from coadjoint.lower import lowering
+from coadjoint.lower.check import check_sizes
 from coadjoint.prove import Verdict
 from coadjoint.spec import read_spec_text
 from tests.sources.fluids import (
@@ -153,3 +155,18 @@ def test_rates_by_structure_constants_are_the_commutator_of_matrices(n):
         turned = commute(add(zip(stream, matrices, strict=True)), W)
         expected = [-half_trace(turned, E) for E in matrices]
         assert (found == [number(Fraction(x)) for x in expected]) is is_right
+
+
+@pytest.mark.parametrize(
+    ("n", "most", "has_product"),
+    [(4, None, True), (4, 300, False), pytest.param(5, None, False, marks=pytest.mark.campaign)],
+)
+def test_a_product_that_is_too_long_is_left_out(n, most, has_product, monkeypatch):
+    """The system is there without the isospectral midpoint, and within all limits."""
+    if most is not None:
+        monkeypatch.setattr(lowering, "C_STATEMENTS", most)
+    equations = derive(read_spec_text(fluid_of(n), "fluid.toml"))
+    programs = lowering.lower(equations)
+    check_sizes(equations, programs)
+    assert ("sandwich" in programs) is has_product
+    assert "bracket_vector" in programs
