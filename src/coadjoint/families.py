@@ -51,6 +51,24 @@ class Index:
         return 0 if self.from_zero else self.first
 
 
+class Strand:
+    """The strain of a strand, as an element of an algebra of matrices.
+
+    Args:
+        name: The field, with a component for each matrix.
+        side: ``left``: it is g^-1 dg/ds; ``right``: it is (dg/ds) g^-1.
+        length: The parameter that is the length of the circle.
+        size: Rows of the matrices.
+        matrices: Their entries that are not 0: row, column and value.
+    """
+
+    def __init__(
+        self, name: str, side: str, length: str, size: int, *matrices: tuple[Any, ...]
+    ) -> None:
+        self.name, self.side, self.length = name, side, length
+        self.size, self.matrices = size, matrices
+
+
 @dataclass(frozen=True)
 class Sum:
     """A sum over the members, or over the pairs of them.

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+from coadjoint.limits import C_STATEMENTS
+
 #: What is kept of each search for the next step: an offset and its first two differences.
 TERMS: Final = 3
 #: Of how many steps one is composed, by its order.
@@ -259,7 +261,8 @@ _ENTRIES: Final = (
             expects="a motion that is the bracket with its energy alone, of the momentum of an "
             "algebra of 4 to 28 matrices of numbers on which tr(A B) is not degenerate and which "
             "has all products B W B, or lacks multiples of 1 or i alone: so(n), so(p,q), su(n), "
-            "u(n), sl(n), gl(n) and sp(2n)",
+            "u(n), sl(n), gl(n) and sp(2n), in a basis in which B W B takes at most "
+            f"{C_STATEMENTS} statements",
         )
         for suffix, order, steps in (
             ("", 2, ""),

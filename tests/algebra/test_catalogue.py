@@ -175,6 +175,7 @@ def test_bases_are_named_and_ordered_as_books_do():
         "gl(2)": "E11 E12 E21 E22",
         "sp(4)": "A11 A12 A21 A22 B11 B12 B22 C11 C12 C22",
         "su(3)": "A12 A13 A23 S12 S13 S23 D1 D2",
+        "harmonics(3)": "C1_0 C1_1 S1_1 C2_0 C2_1 S2_1 C2_2 S2_2",
         "u(2)": "A12 S12 D1 D2",
         "h(2)": "A1 A2 B1 B2 C",
         "R^3": "P1 P2 P3",

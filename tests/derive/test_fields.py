@@ -308,3 +308,75 @@ def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
         rates = [equations.setting.field.evaluate(r, values, number) for r in equations.exact.rates]
         assert rates == [*I.multiply_elementwise(slope), *(-slope / c)]
         assert any(slope)
+
+
+# -- two times ----------------------------------------------------------------------------
+
+
+def rates_with_two_times(values):
+    """dPi/dt = Pi x Omega + N x Xi - N_s, dXi/dt = Omega_s + Xi x Omega (Holm, C.1.1), by products.
+
+    Pi = I Omega + B Xi and N = B Omega - K Xi.
+    """
+    I, B, K, W, V, W_s, V_s = (sympy.Matrix(row) for row in values)  # noqa: E741
+    Pi, N, N_s = (
+        a.multiply_elementwise(x) + sign * b.multiply_elementwise(y)
+        for a, x, sign, b, y in ((I, W, 1, B, V), (B, W, -1, K, V), (B, W_s, -1, K, V_s))
+    )
+    return [*(Pi.cross(W) + N.cross(V) - N_s), *(W_s + V.cross(W))]
+
+
+def at_two_times(values):
+    """The rates of the shipped system at these velocities."""
+    I, B, K, W, V, W_s, V_s = values  # noqa: E741
+    rows = {"I": I, "B": B, "K": K, "Xi": V, "Xi{}_s": V_s}
+    rows["Pi"] = [i * w + b * v for i, b, w, v in zip(I, B, W, V, strict=True)]
+    rows["Pi{}_s"] = [i * w + b * v for i, b, w, v in zip(I, B, W_s, V_s, strict=True)]
+    named = {(k if "{" in k else k + "{}"): row for k, row in rows.items()}
+    exact = {k.format(n): sympy.Rational(row[n - 1]) for k, row in named.items() for n in (1, 2, 3)}
+    field = emitted("two_time_body").setting.field
+    number = lambda x: sympy.Rational(x.numerator, x.denominator)  # noqa: E731
+    return [field.evaluate(r, exact, number) for r in emitted("two_time_body").exact.rates]
+
+
+def test_the_body_with_two_times_is_that_of_the_book():
+    """At random velocities; with the coupling of the other sign it is another motion."""
+    source = np.random.default_rng(8)
+    for _ in range(3):
+        I, B, K = source.integers(1, 9, (3, 3)).tolist()  # noqa: E741
+        values = [I, B, K, *source.integers(-9, 9, (4, 3)).tolist()]
+        assert at_two_times(values) == rates_with_two_times(values)
+        values[1] = [-b for b in B]
+        assert at_two_times(values) != rates_with_two_times([I, B, *values[2:]])
+
+
+def test_both_times_have_the_same_part():
+    """With the rates in t, the same equations hold with s and t, and I and -K, exchanged.
+
+    Then Omega is the strain and Xi the velocity; all derivatives by s are those by t.
+    """
+    source = np.random.default_rng(9)
+    I, B, K = source.integers(1, 9, (3, 3)).tolist()  # noqa: E741
+    W, V, W_s, V_s = source.integers(-9, 9, (4, 3)).tolist()
+    rates = at_two_times([I, B, K, W, V, W_s, V_s])
+    V_t = rates[3:]
+    W_t = [(p - b * v) / i for p, b, v, i in zip(rates[:3], B, V_t, I, strict=True)]
+    negative = [[-x for x in row] for row in (K, I)]
+    swapped = at_two_times([negative[0], B, negative[1], V, W, V_t, W_t])
+    N_s = [b * w - k * v for b, w, k, v in zip(B, W_s, K, V_s, strict=True)]
+    assert swapped == [*N_s, *W_s]
+    swapped = at_two_times([negative[0], B, K, V, W, V_t, W_t])
+    assert swapped != [*N_s, *W_s]
+
+
+def test_a_body_turns_by_one_time_minus_the_other():
+    """Omega = W(t - s/c), Xi = -W/c solves it iff J dW/dt = J W x W, J = I - 2 B/c - K/c^2."""
+    source, c = np.random.default_rng(10), sympy.Rational(7, 2)
+    I, B, K = (sympy.Matrix(row.tolist()) for row in source.integers(1, 9, (3, 3)))  # noqa: E741
+    W = sympy.Matrix([3, -2, 5])
+    for J, solves in ((I - 2 * B / c - K / c**2, True), (I - K / c**2, False)):
+        turned = J.multiply_elementwise(W).cross(W)
+        W_t = turned.multiply_elementwise(J.applyfunc(lambda x: 1 / x))
+        values = [list(x) for x in (I, B, K, W, -W / c, -W_t / c, W_t / c**2)]
+        Pi_t = (I - B / c).multiply_elementwise(W_t)
+        assert (at_two_times(values) == [*Pi_t, *(-W_t / c)]) is solves

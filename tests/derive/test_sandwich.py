@@ -144,7 +144,9 @@ class Step:
         return abs(D @ first @ D.T - last).max()
 
 
-@pytest.mark.parametrize("algebra", ["sp(4)", "so(3,1)", "su(3)", "sl(3,R)", "u(2)"])
+@pytest.mark.parametrize(
+    "algebra", ["sp(4)", "so(3,1)", "su(3)", "harmonics(3)", "sl(3,R)", "u(2)"]
+)
 def test_a_step_is_a_poisson_map_by_cayleys_transform(algebra):
     """On every algebra that has the product; on su(n) and sl(n) the part outside makes it one."""
     own = Step(algebra)
@@ -152,7 +154,7 @@ def test_a_step_is_a_poisson_map_by_cayleys_transform(algebra):
     assert own.find_turn(x) < 1e-13
     assert own.find_defect(x) < 1e-7
     defect = Step(algebra, outside=False).find_defect(x)
-    assert (defect > 1e-5) == (algebra in ("su(3)", "sl(3,R)"))
+    assert (defect > 1e-5) == (algebra in ("su(3)", "harmonics(3)", "sl(3,R)"))
 
 
 def test_algebras_without_the_product_have_none():

@@ -54,7 +54,7 @@ def total(counts):
 LONG_BRACKETS = ("n_link_chain", "veselova_so4")
 
 
-#: Systems on so(n), n above 3, in the basis of the planes.
+#: Systems on so(n), n above 3, in the basis of the planes, and on su(4).
 MATRICES = (
     "complex_rigid_body",
     "manakov_so4",
@@ -63,6 +63,7 @@ MATRICES = (
     "so5_body",
     "so6_body",
     "so8_body",
+    "zeitlin_su_4",
 )
 
 
@@ -256,6 +257,10 @@ BY_HAND = {
     + 4,  # three velocities, one of one product; torque of two components
     # Omega; R hat(Omega); Pi x Omega; two torques of two components, four sums, a sign
     "two_field_top": 3 + 27 + 9 + 4 + 4 + 1,
+    # P over hbar; each of 4 x 4 entries of P W and of W P, products of complex numbers; differences
+    "zeitlin_su_4": 15 + 2 * 16 * (4 * 6 + 3 * 2) + 16 * 2,
+    "cosserat_rod": 7 + 3 * 9 + 3,  # k and e; m x k, n x e, n x k; a sum
+    "kirchhoff_rod": 3 + 2 * 9 + 2,  # k; m x k, n x k; n2 and n1 added
     "maxwell_bloch": 3,  # x1 x3, -x1 x2
     # q B/m: with a = q B0 z/(m L^2) -a x, -a y and a z + q B0/m; a cross product and a sign
     "magnetic_bottle": 5 + 9 + 1,

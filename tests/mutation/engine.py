@@ -186,6 +186,20 @@ MUTANTS = (
         "su: rewrite {(0, 1): -half, (1, 0): half} -> {(0, 1): half, (1, 0): -half}",
         "coquaternions: rewrite {(0, 1): -1, (1, 0): 1} -> {(0, 1): 1, (1, 0): -1}",
     ),
+    *of(
+        "algebra/harmonics",
+        "spin_matrices: rewrite n - j -> n",
+        "_generators: rewrite commutator(up, U) -> commutator(U, up)",
+        "_generators: rewrite (-1, U) -> (1, U)",
+        tests=("tests/algebra/test_harmonics.py",),
+    ),
+    *of(
+        "solve/strands",
+        "_magnus: rewrite last - first -> first - last",
+        "_magnus: rewrite b + two -> b - two",
+        "transport: rewrite step @ frames[n] -> frames[n] @ step",
+        tests=("tests/solve/test_strands.py -k 'solves or order'",),
+    ),
     *of("algebra/matrices", "commutator: flip 1"),
     *of(
         "lie_algebra",

@@ -16,7 +16,7 @@ from coadjoint.spec import read_spec_text
 from tests.fields import grid_of
 from tests.specs import emitted, shipped
 
-NAMES = ("spin_chain", "spin_chain_chiral", "landau_lifshitz", "kdv", "sp2_strand")
+NAMES = ("spin_chain", "spin_chain_chiral", "landau_lifshitz", "kdv", "sp2_strand", "two_time_body")
 
 
 def bracket_of(name):

@@ -13,7 +13,7 @@ from functools import partial
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
-from tests.sources import classical, driven, extremals, fields, machines
+from tests.sources import classical, driven, extremals, fields, fluids, machines, rods
 from tests.sources.balls import BALLS, ball_observables, ball_rates, ball_tensor
 from tests.sources.bodies import (
     heavy_top_observables,
@@ -255,7 +255,9 @@ RATES = {
     **driven.RATES,
     **extremals.RATES,
     **fields.RATES,
+    **fluids.RATES,
     **machines.RATES,
+    **rods.RATES,
     **{name: partial(ball_rates, name) for name in BALLS},
     **{name: partial(body_rates, name) for name in ROLLING},
     "tippe_top": tippe_rates,
@@ -298,7 +300,9 @@ OBSERVABLES = {
     **driven.OBSERVABLES,
     **extremals.OBSERVABLES,
     **fields.OBSERVABLES,
+    **fluids.OBSERVABLES,
     **machines.OBSERVABLES,
+    **rods.OBSERVABLES,
     **{name: partial(ball_observables, name) for name in BALLS},
     **{name: partial(body_observables, name) for name in ROLLING},
     "tippe_top": tippe_observables,
@@ -339,7 +343,9 @@ TENSORS: dict[str, Callable[[Vector, Vector], list[list[Any]]]] = {
     **driven.TENSORS,
     **extremals.TENSORS,
     **fields.TENSORS,
+    **fluids.TENSORS,
     **machines.TENSORS,
+    **rods.TENSORS,
     **{name: partial(ball_tensor, name) for name in BALLS},
     **{name: partial(body_tensor, name) for name in ROLLING},
 }
@@ -382,7 +388,9 @@ STATES = {
     **driven.STATES,
     **extremals.STATES,
     **fields.STATES,
+    **fluids.STATES,
     **machines.STATES,
+    **rods.STATES,
     **dict.fromkeys((*BALLS, *ROLLING), (*numbered("Omega", 3), *numbered("Gamma", 3))),
     "tippe_top": (*numbered("Omega", 3), *numbered("Y", 3), *numbered("Gamma", 3)),
 }
@@ -425,7 +433,9 @@ PARAMETERS = {
     **driven.PARAMETERS,
     **extremals.PARAMETERS,
     **fields.PARAMETERS,
+    **fluids.PARAMETERS,
     **machines.PARAMETERS,
+    **rods.PARAMETERS,
     "chaplygin_ball": (*numbered("I", 3), "m", "r", "g", *numbered("chi", 3)),
     "chaplygin_ball_centred": (*numbered("I", 3), "m", "r"),
     "routh_sphere": ("I1", "I3", "m", "r", "g", "l"),

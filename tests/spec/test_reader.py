@@ -21,7 +21,7 @@ from coadjoint.errors import CoadjointError, LimitError, SpecError, plain
 from coadjoint.exact import Field
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec, read_spec_text, unpack
-from tests.sources import fields, machines
+from tests.sources import fields, fluids, machines, rods
 from tests.sources.textbook import PARAMETERS, STATES
 from tests.specs import RIGID_BODY, shipped
 
@@ -61,7 +61,9 @@ BEYOND = {
     "orbiting_body",
     "darwin_charges",
     *fields.STATES,
+    *fluids.STATES,
     *machines.STATES,
+    *rods.STATES,
 }
 #: Systems whose claims are of integrals alone: they have no Casimir, or those of a rotation.
 CONSERVED_ALONE = (
@@ -169,6 +171,9 @@ SHIPPED = {
         "a1 a2 a3 kappa nu sigma",
         ("lie-poisson", "euler-poincare", "hamilton-pontryagin"),
     ),
+    "zeitlin_su_4": (" ".join(STATES["zeitlin_su_4"]), "hbar", ("lie-poisson", *INERTIAL[1:3])),
+    "cosserat_rod": ("m1 m2 m3 n1 n2 n3", "K1 K2 K3 A1 A2 A3", ADVECTING[:4]),
+    "kirchhoff_rod": ("m1 m2 m3 n1 n2 n3", "K1 K2 K3", (*ADVECTING[:4], "newton-euler")),
     "hess_appelrot": (
         "Pi1 Pi2 Pi3 Gamma1 Gamma2 Gamma3",
         "I1 I3 d m g chi",

@@ -18,6 +18,7 @@ from coadjoint.derive.formulas import Rows, rhs, rows_of
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.limits import C_STATEMENTS
 from coadjoint.lower.definitions import inline_single_uses, shorten
 from coadjoint.lower.guesses import find_iterations, insert_guess, with_carried_velocities
 from coadjoint.lower.jacobian import factors_of_solves, jacobian, residual_slopes
@@ -55,7 +56,18 @@ def lower(equations: Equations) -> dict[str, Program]:
     named = name_frames(equations)
     ways = [equations] if named is equations else [equations, named]
     forms = map(_lower_all, ways)
-    return min(forms, key=lambda programs: cost(programs["rhs"]))
+    programs = min(forms, key=lambda programs: cost(programs["rhs"]))
+    return {name: each for name, each in programs.items() if not _is_spared(each)}
+
+
+def _is_spared(program: Program) -> bool:
+    """Whether a function that one method alone asks for is too long for a compiler.
+
+    Then the system goes without this method: matrices of a basis with many entries have a long
+    product, and other methods keep the same.
+    """
+    length = len(program.statements) + len(program.outputs)
+    return program.name == "sandwich" and length > C_STATEMENTS
 
 
 def _lower_all(equations: Equations) -> dict[str, Program]:

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import sympy
 
+from coadjoint.algebra.matrices import size
 from coadjoint.declared import KernelContext, Quantity
 from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
@@ -22,7 +24,7 @@ from coadjoint.derive.emitted import list_following
 from coadjoint.derive.fields.grid import Grid
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
-from coadjoint.families import Family
+from coadjoint.families import Family, Strand
 from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
@@ -171,7 +173,22 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
     ]
     lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
-    return replace(context, routes=tuple(routes), equations=tuple(lines))
+    return replace(context, routes=tuple(routes), equations=tuple(lines), strand=find_strand(spec))
+
+
+def find_strand(spec: Spec) -> Strand | None:
+    """The strain of a strand and its matrices; None without, or where they have parameters."""
+    strains = [each for each in spec.variables if each.strain]
+    if not strains or spec.algebra is None or spec.space is None or not spec.algebra.matrices:
+        return None
+    matrices, (strain,) = spec.algebra.matrices, strains
+    if not all(isinstance(x, int | Fraction) for each in matrices for x in each.values()):
+        return None
+    entries = (
+        tuple((row, column, float(x)) for (row, column), x in sorted(each.items()))
+        for each in matrices
+    )
+    return Strand(strain.name, spec.invariance, spec.space.length, size(matrices), *entries)
 
 
 def _name_process(name: str) -> Quantity:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index
+from coadjoint.families import Index, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -312,6 +312,7 @@ class FamilyContext:
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
+        strand: The strain of a strand and its matrices.
     """
 
     name: str
@@ -340,6 +341,7 @@ class FamilyContext:
     positions: tuple[int, ...] = ()
     kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
     pair_kinks: tuple[str, ...] = ()
+    strand: Strand | None = None
 
     @property
     def held(self) -> Loops:
@@ -448,11 +450,13 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             ),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
+            *(["strand=STRAND"] * bool(context.strand)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
         "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
+        "strand": _tell_strand(context.strand),
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -514,6 +518,14 @@ def _tell_spheres(context: FamilyContext) -> str:
     """The vectors on spheres, as a generated package declares them."""
     entries = (f"{quote(name)}: {rows}" for name, rows in context.spheres.items())
     return "{" + ", ".join(entries) + "}"
+
+
+def _tell_strand(strand: Strand | None) -> list[str]:
+    """The strain of a strand, as a generated package declares it; empty without one."""
+    if strand is None:
+        return []
+    names = map(quote, (strand.name, strand.side, strand.length))
+    return [*names, str(strand.size), *(map(str, strand.matrices))]
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

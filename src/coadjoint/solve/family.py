@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
-from coadjoint.families import Index
+from coadjoint.families import Index, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
@@ -56,6 +56,7 @@ class FamilySystem(System):
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of members at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
+        strand: The strain of a strand and its matrices, if the members are points of one.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -85,10 +86,12 @@ class FamilySystem(System):
         positions: tuple[int, ...] = (),
         kinks: Mapping[int | None, tuple[str, ...]] = MappingProxyType({}),
         pair_kinks: tuple[str, ...] = (),
+        strand: Strand | None = None,
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
         self.kinks, self.pair_kinks = kinks, pair_kinks
+        self.strand = strand
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -235,6 +238,7 @@ class FamilySystem(System):
             positions=self.positions,
             kinks=self.kinks,
             pair_kinks=self.pair_kinks,
+            strand=self.strand,
         )
         made.levels = self.levels
         return made

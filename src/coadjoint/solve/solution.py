@@ -339,6 +339,18 @@ class Solution:
             return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
+    def frames(self) -> Array:
+        """The group elements along a strand, ``(n, n, N + 1, *batch, T)``, from 1 at s = 0 on.
+
+        The last one is the holonomy, whose trace is conserved up to the order of the differences.
+
+        Raises:
+            KernelArgumentError: The system is no strand.
+        """
+        from coadjoint.solve.strands import find_frames
+
+        return find_frames(self)
+
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values, of one trajectory."""
         from coadjoint.solve.summary import summarize

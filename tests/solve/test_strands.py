@@ -1,0 +1,170 @@
+"""Group elements along strands: transport, the holonomy and its trace as an integral."""
+
+import importlib
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.families import Strand
+from coadjoint.prove.declaration import find_strand
+from coadjoint.solve.strands import transport
+from tests.specs import shipped
+
+LENGTH = 10.0
+
+
+def hat(x):
+    """The matrices of rotations of vectors ``(3, ...)``."""
+    zero = np.zeros_like(x[0])
+    return np.array([[zero, -x[2], x[1]], [x[2], zero, -x[0]], [-x[1], x[0], zero]])
+
+
+def strains(count, batch=()):
+    """A smooth strain on a circle about all three axes, other than any constant one."""
+    s = 2 * np.pi * np.arange(count).reshape(-1, *[1] * len(batch)) / count
+    parts = [0.3 + 0 * s, np.sin(s) / 4, np.cos(s) / 5]
+    return np.array([np.broadcast_to(each, (count, *batch)) for each in parts])
+
+
+def start(count):
+    """Momenta and strains, row by row."""
+    s = 2 * np.pi * np.arange(count) / count
+    momenta = [0.3 * np.cos(s), 0.15 * np.sin(s), 0.5 + 0 * s]
+    return np.concatenate([*momenta, *strains(count)])
+
+
+def system(name, count):
+    """A shipped system of so many points."""
+    return importlib.import_module(f"coadjoint.systems.{name}").system.resize({"s": count})
+
+
+# -- transport ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_transport_solves_its_equation(side):
+    """psi_s = psi X on the left, X psi on the right, by SciPy; the other order differs."""
+
+    def slope(s, psi):
+        angle = 2 * np.pi * s / LENGTH
+        X = hat(np.array([0.3, np.sin(angle) / 4, np.cos(angle) / 5]))
+        psi = psi.reshape(3, 3)
+        return (psi @ X if side == "left" else X @ psi).ravel()
+
+    known = solve_ivp(slope, (0, LENGTH), np.eye(3).ravel(), rtol=1e-12, atol=1e-13)
+    known = known.y[:, -1].reshape(3, 3)
+    frames = transport(hat(strains(64)), LENGTH, side)
+    np.testing.assert_allclose(frames[..., -1], known, atol=1e-9)
+    other = transport(hat(strains(64)), LENGTH, "right" if side == "left" else "left")
+    assert np.abs(other[..., -1] - known).max() > 0.05
+    turned = np.einsum("ijs,kjs->iks", frames, frames)
+    np.testing.assert_allclose(turned, np.eye(3)[..., None] + 0 * turned, atol=1e-13)
+
+
+def test_a_uniform_strain_is_an_exponential():
+    """psi(s) = exp(s X), for any matrices and a batch of lengths."""
+    X = np.array([[0.3, 1.0], [-0.2, -0.1]])
+    lengths = np.array([1.0, 2.5])
+    frames = transport(np.broadcast_to(X[..., None, None], (2, 2, 5, 2)), lengths)
+    for n, length in enumerate(lengths):
+        for j in range(6):
+            np.testing.assert_allclose(frames[:, :, j, n], expm(j / 5 * length * X), rtol=1e-13)
+
+
+def test_transport_is_of_order_six():
+    """For a field that few points have exactly, so that nothing but the steps is wrong."""
+    known = transport(hat(strains(256)), LENGTH)[..., -1]
+    errors = [
+        np.abs(transport(hat(strains(n)), LENGTH)[..., -1] - known).max() for n in (8, 16, 32)
+    ]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert orders[-1] == pytest.approx(6, abs=0.3)
+
+
+# -- the holonomy of a motion -------------------------------------------------------------
+
+
+def run(count):
+    """A motion of the body with two times."""
+    return system("two_time_body", count).simulate(
+        start(count),
+        (0.0, 10.0),
+        samples=3,
+        method="dop853",
+        rtol=1e-10,
+        atol=1e-11,
+        target="numpy",
+    )
+
+
+def test_the_trace_of_the_holonomy_is_conserved_to_the_order_of_differences():
+    """M_t = [M, Omega(0)]; with psi_s = -psi Xi the trace changes by more than a tenth."""
+    changes, wrong = [], []
+    for count in (64, 128):
+        motion = run(count)
+        traces = np.trace(motion.frames()[:, :, -1])
+        changes.append(np.abs(traces - traces[0]).max())
+        turned = np.trace(transport(hat(-motion["Xi"]), LENGTH)[:, :, -1])
+        wrong.append(np.abs(turned - turned[0]).max())
+        assert np.abs(traces).max() < 2.9
+        assert np.abs(motion["Xi"][..., -1] - motion["Xi"][..., 0]).max() > 0.1
+    assert changes[1] < 1e-5
+    assert np.log2(changes[0] / changes[1]) == pytest.approx(4, abs=0.3)
+    assert min(wrong) > 0.1
+
+
+def test_frames_of_a_batch_are_those_of_its_members():
+    """``(n, n, N + 1, *batch, T)``, with a length of each."""
+    own = system("two_time_body", 16)
+    lengths = np.array([10.0, 12.0])
+    given = {"L": lengths, "I": [3, 3, 2], "B": [0.5, 0.5, 0.25], "K": [1, 1, 1]}
+    states = np.stack([start(16), start(16)], axis=-1)
+    motion = own.simulate(states, (0.0, 1.0), samples=4, parameters=given, target="numpy")
+    frames = motion.frames()
+    assert frames.shape == (3, 3, 17, 2, 4)
+    for n, length in enumerate(lengths):
+        alone = transport(hat(motion["Xi"][:, :, n]), length)
+        np.testing.assert_allclose(frames[:, :, :, n], alone, atol=1e-14)
+    assert np.abs(frames[..., 0, 0] - frames[..., 1, 0]).max() > 0.1
+
+
+@pytest.mark.parametrize(("name", "is_kept"), [("spin_chain_chiral", True), ("spin_chain", False)])
+def test_the_chiral_model_has_an_integral_for_each_spectral_parameter(name, is_kept):
+    """The trace of M of ``U = (Xi + lam Omega)/(1 - lam^2)``; others keep lam = 0."""
+    motion = system(name, 64).simulate(
+        start(64), (0.0, 5.0), samples=3, method="dop853", rtol=1e-9, atol=1e-10, target="numpy"
+    )
+    Omega = motion["Pi"] / (1 if is_kept else np.array([1, 2, 3]).reshape(3, 1, 1))
+    for lam, kept in ((0.0, True), (0.5, is_kept), (-0.3, is_kept)):
+        U = hat((motion["Xi"] + lam * Omega) / (1 - lam**2))
+        traces = np.trace(transport(U, LENGTH)[:, :, -1])
+        assert bool(np.abs(traces - traces[0]).max() < 1e-4) is kept
+
+
+# -- what has frames ----------------------------------------------------------------------
+
+
+def test_the_strain_is_that_of_the_spec():
+    """Field, side, length, and the matrices of the algebra; sp2_strand's have a parameter."""
+    strand = find_strand(shipped("se3_strand"))
+    assert isinstance(strand, Strand)
+    assert (strand.name, strand.side, strand.length, strand.size) == ("X", "left", "L", 4)
+    assert strand.matrices[0] == ((1, 2, -1.0), (2, 1, 1.0))
+    assert strand.matrices[5] == ((2, 3, 1.0),)
+    assert system("two_time_body", 8).strand.name == "Xi"
+    assert find_strand(shipped("sp2_strand")) is None
+    assert find_strand(shipped("kdv")) is None
+
+
+def test_what_is_no_strand_has_no_frames():
+    """The message says what a strand is, and what is declared so is one."""
+    motion = system("kdv", 32).simulate(
+        np.ones(32), (0.0, 0.02), samples=2, method="rk4", step=0.01, target="numpy"
+    )
+    with pytest.raises(KernelArgumentError, match=r'kdv has no strain.*role = "strain"') as caught:
+        motion.frames()
+    assert caught.value.parts["found"] == "kdv"
+    assert find_strand(shipped("spin_chain")) is not None
