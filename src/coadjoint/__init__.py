@@ -17,7 +17,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from coadjoint.errors import CoadjointError
+from coadjoint.errors import CoadjointError, KinkWarning
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra, algebra_by_name
@@ -36,6 +36,7 @@ __all__ = [
     "CoadjointError",
     "Equations",
     "Examination",
+    "KinkWarning",
     "LieAlgebra",
     "PoissonStructure",
     "Spec",

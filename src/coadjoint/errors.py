@@ -229,3 +229,10 @@ def from_record(record: Mapping[str, Any]) -> CoadjointError:
 def _family(kind: type[CoadjointError]) -> list[type[CoadjointError]]:
     """A class and all its descendants."""
     return [kind, *(member for child in kind.__subclasses__() for member in _family(child))]
+
+
+class KinkWarning(UserWarning):
+    """Steps cross kinks or jumps of the rates at which they do not end, with an error.
+
+    `warnings.simplefilter("error", coadjoint.KinkWarning)` refuses such runs.
+    """

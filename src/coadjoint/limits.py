@@ -88,7 +88,7 @@ OPERATIONS = 20_000
 #: components as a state may have, so(23) would have 10 626.
 TABLE_ENTRIES = 20_000
 #: Statements in one C function; compilers need minutes for 20 000.
-C_STATEMENTS = 1500
+C_STATEMENTS = 3000
 
 #: How many members away a neighbour may be in a sum over members.
 NEIGHBOURS = 4

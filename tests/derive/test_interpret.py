@@ -2,7 +2,7 @@
 
 import pytest
 
-from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.interpret import LONG_SUM, entries, interpret
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Field
 from coadjoint.spec.core.definitions import expand, functions
@@ -73,6 +73,15 @@ def test_deep_trees_do_not_exhaust_the_stack():
     for _ in range(999):
         tree = expand(read_expression("-n"), {"n": Definition("n", (), "", tree, ())})
     assert interpret(tree, VALUES, FIELD) == -x["a1"]
+
+
+@pytest.mark.parametrize("term", ["a1*b1", "a"])
+def test_long_sums_are_the_sums_of_their_addends(term):
+    """A sum that is added in pairs, of scalars and of vectors, with a difference within."""
+    count = LONG_SUM + 3
+    whole = value(f"{term} - 2*{term}" + f" + {term}" * count)
+    assert whole == value(f"{count - 1}*({term})")
+    assert whole != value(f"{count}*({term})")
 
 
 def test_entries_are_read_row_by_row():

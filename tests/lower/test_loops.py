@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+import coadjoint
 from coadjoint.crosscheck import recurrences
 from coadjoint.crosscheck.oracle import CONTEXT, call, exact
 from coadjoint.crosscheck.parse_back import check_text
@@ -341,3 +342,16 @@ def test_thirteen_links_move_as_masses_with_tensions(links):
     assert np.allclose(rates[LINKS:], wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())
     other = cartesian_accelerations(theta, omega, 1.3, 0.7, 9.1)
     assert not np.allclose(rates[LINKS:], other, rtol=1e-6)
+
+
+@pytest.mark.campaign  # 4 to 6 minutes of processor time
+def test_thirty_links_are_loaded_and_move_as_masses_with_tensions():
+    """With more time than a load takes by itself, every rung of the ladder included."""
+    count = 30
+    system = coadjoint.load(shipped("n_link_chain").path, sizes={"i": count}, seconds=900)
+    source = np.random.default_rng(3)
+    theta, omega = source.uniform(-1, 1, count), source.uniform(-1, 1, count)
+    rates = system.rhs([*theta, *omega], {"m": 1.3, "l": 0.7, "g": 9.0})
+    wanted = cartesian_accelerations(theta, omega, 1.3, 0.7, 9.0)
+    assert np.allclose(rates[count:], wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())
+    assert rates[:count].tolist() == omega.tolist()

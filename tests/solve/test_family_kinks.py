@@ -4,11 +4,13 @@ Expected values are closed forms between kinks, joined by hand, and systems that
 """
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import coadjoint
 from coadjoint import pipeline
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.errors import CrossCheckError
@@ -224,7 +226,26 @@ def test_the_ladder_is_climbed(targets):
 
 def test_kinks_of_pairs_are_told_of():
     """Steps cross them, which is not silent; those of members are met all the same."""
+    run = {"t": (0, 0.1), "method": "rk4", "step": 0.01}
     kernels._said.clear()
-    with load(PAIRS) as system, pytest.warns(UserWarning, match=r"where q\[i\] - q\[j\] is 0"):
+    with load(PAIRS) as system:
+        with pytest.warns(coadjoint.KinkWarning, match=r"where q\[i\] - q\[j\] is 0"):
+            found = system.simulate(np.linspace(0.1, 1, 12), **run)
+        assert found.kinks is None
+        kernels._said.clear()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", coadjoint.KinkWarning)
+            for _ in range(2):  # the second run as well
+                with pytest.raises(coadjoint.KinkWarning, match="a sum that is smooth"):
+                    system.simulate(np.linspace(0.1, 1, 12), **run)
+
+
+def test_smooth_sums_over_pairs_give_no_warning():
+    """The advice of the warning: with the sum made smooth, there is none."""
+    kernels._said.clear()
+    smooth = PAIRS.replace("abs(q[i] - q[j])", "sqrt((q[i] - q[j])^2 + 1/100)")
+    assert smooth != PAIRS
+    with load(smooth) as system, warnings.catch_warnings():
+        warnings.simplefilter("error", coadjoint.KinkWarning)
         found = system.simulate(np.linspace(0.1, 1, 12), (0, 0.1), method="rk4", step=0.01)
-    assert found.kinks is None
+        assert abs(found.drift["energy"]) < 1e-6

@@ -242,7 +242,16 @@ def _value(function: str, *arguments: Decimal) -> Decimal:
     """A function of numbers."""
     if function in _BY_DECIMAL:
         return _BY_DECIMAL[function](*arguments)
+    if function in ("cos", "sin"):
+        return _cosine_and_sine(*arguments)[function == "sin"]
     return from_digits(getattr(DIGITS_OF_MPMATH, function)(*map(to_digits, arguments)))
+
+
+@lru_cache(maxsize=4096)  # one reduction of the angle gives both, and mostly both are asked for
+def _cosine_and_sine(angle: Decimal) -> tuple[Decimal, Decimal]:
+    """Cosine and sine of an angle."""
+    cosine, sine = DIGITS_OF_MPMATH.cos_sin(to_digits(angle))
+    return from_digits(cosine), from_digits(sine)
 
 
 def to_digits(value: Decimal) -> Any:

@@ -8,8 +8,9 @@ Read next: `coadjoint.derive.setting`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, cast
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import reduce
+from typing import Any, Final, cast
 
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
@@ -40,6 +41,10 @@ from coadjoint.spec.core import tree
 #: An element, a tuple of elements or a tuple of tuples of elements.
 Value = Any
 
+#: Addends beyond which a sum is added in pairs: one by one, the terms that stand already would be
+#: copied for each further one.
+LONG_SUM: Final = 64
+
 SINGULAR = "the inverse of a singular matrix is asked for; expected det != 0."
 
 
@@ -55,11 +60,14 @@ def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Val
         DerivationError: Division by zero or the inverse of a singular matrix.
     """
     known: dict[int, Value] = {}
-    parts = list(tree.walk_up(node))  # definitions put into each other may be 1000 levels deep
+    # definitions put into each other may be 1000 levels deep
+    parts = list(tree.walk_up(node, _children))
     traced = _find_traced(parts)
     for part in parts:
-        below = [known[id(child)] for child in tree.children(part)]
+        below = [known[id(child)] for child in _children(part)]
         match part:
+            case tree.Binary(operator="+") if len(below) > 2:
+                value = reduce(add, below) if isinstance(below[0], tuple) else field.sum(below)
             case tree.Binary(operator="/", right=tree.Power(base=base, exponent=n)) if n > 0:
                 # by the base n times: a factor of its own cancels, its expanded power does not
                 value, divisor = below[0], known[id(base)]
@@ -74,6 +82,15 @@ def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Val
                 value = _value(part, below, values, field)
         known[id(part)] = value
     return known[id(node)]
+
+
+def _children(node: tree.Node) -> Sequence[tree.Node]:
+    """The nodes below one; of a long sum all its addends, which are then added in pairs."""
+    addends, first = list[tree.Node](), node
+    while isinstance(first, tree.Binary) and first.operator == "+":
+        addends.append(first.right)
+        first = first.left
+    return [first, *reversed(addends)] if len(addends) > LONG_SUM else tree.children(node)
 
 
 def _find_traced(parts: Iterable[tree.Node]) -> set[int]:

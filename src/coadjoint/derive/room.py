@@ -22,6 +22,9 @@ _ADJOINED = {"tan": 1, "norm": 1, "pow": 2, "abs": 2, "min": 2, "max": 2} | {
     name: 2 if entry.calls_others else 1 for name, entry in ELEMENTARY.items()
 }
 
+#: Calls beyond which those of equal arguments are counted once.
+COUNTED_CALLS = 200
+
 #: The same for the length of the normal to the surface on which a ball rolls, where it is, where it
 #: is projected to, and in claims about that.
 BALL = 4
@@ -48,8 +51,35 @@ def count_room(spec: Spec, has_symbols: bool) -> int:
 
 
 def count_calls(spec: Spec) -> int:
-    """How many functions may be adjoined for those that the formulas of a spec call."""
-    return sum(_ADJOINED[call.function] for call in _list_calls(spec))
+    """How many functions may be adjoined for those that the formulas of a spec call.
+
+    Among many calls those of equal arguments count once: sums over pairs of members that are
+    written out name each angle four times or more, and places that stay empty cost time in every
+    product.
+    """
+    calls = _list_calls(spec)
+    if len(calls) > COUNTED_CALLS:
+        calls = list({_key(call): call for call in calls}.values())
+    return sum(_ADJOINED[call.function] for call in calls)
+
+
+def _key(call: tree.Call) -> object:
+    """What calls share that take one place: sine and cosine do, of a difference and its opposite.
+
+    >>> from coadjoint.spec.core.expressions import read_expression
+    >>> _key(read_expression("sin(a - b)")) == _key(read_expression("cos(b - a)"))
+    True
+    >>> _key(read_expression("exp(a - b)")) == _key(read_expression("exp(b - a)"))
+    False
+    """
+    entry = ELEMENTARY.get(call.function)
+    if entry is None or not entry.partner:
+        return call.function, call.arguments
+    names = frozenset({call.function, entry.partner})
+    (argument,) = call.arguments
+    if isinstance(argument, tree.Binary) and argument.operator == "-":
+        return names, frozenset({argument.left, argument.right})
+    return names, argument
 
 
 def _list_calls(spec: Spec) -> list[tree.Call]:

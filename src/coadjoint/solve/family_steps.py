@@ -18,7 +18,7 @@ import numpy as np
 
 from coadjoint.build.compiler import HOW_TO_GET_ONE
 from coadjoint.build.library import Library, load_library
-from coadjoint.errors import CompilerError, CrossCheckError
+from coadjoint.errors import CompilerError, CrossCheckError, KinkWarning
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import MAPPED, STRUCTURED
@@ -537,7 +537,8 @@ def find_stepper(
             f"steps of {system.name} do not end at the kinks of pairs of members, where "
             f"{' or '.join(system.pair_kinks)} is 0: they cross them with an error, and with fixed "
             "steps a method loses its order there. Take tolerances that fit the jump, or a sum "
-            "that is smooth."
+            "that is smooth.",
+            category=KinkWarning,
         )
     if inputs is not None:
         return FamilyTwin(system, choice, target, inputs)

@@ -145,16 +145,19 @@ class Kernels:
         return self._loaded["numpy"]
 
 
-def say_once(message: str, *, depth: int = 2) -> None:
+def say_once(
+    message: str, *, depth: int = 2, category: type[UserWarning] = CompilerWarning
+) -> None:
     """Warn that something is not what it could be, unless this process was told so.
 
     Args:
         message: The warning.
         depth: The frame that is warned, as `warnings.warn` counts.
+        category: Its class.
     """
     if message not in _said:
-        _said.add(message)
-        warnings.warn(message, CompilerWarning, stacklevel=depth)
+        warnings.warn(message, category, stacklevel=depth)
+        _said.add(message)  # not where a filter makes an error of it: the next run is one, too
 
 
 def check_target(target: str) -> None:
