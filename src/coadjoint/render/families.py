@@ -95,6 +95,15 @@ class TotalsText:
 
 
 @dataclass(frozen=True)
+class SolveText:
+    """What is solved for before a function begins, as `Solve` has it."""
+
+    factors: PartText
+    blocks: int
+    of: int
+
+
+@dataclass(frozen=True)
 class FamilyFunction:
     """A function of a family as the templates read it.
 
@@ -110,6 +119,7 @@ class FamilyFunction:
         ends_after: Such members at the end.
         partners: As `Loops` has it; likewise ``pair_sums``, ``member``, ``ends``, ``totals`` and
             ``finish``.
+        solve: What is solved for first.
         sums: How many sums there are in a function of sums.
     """
 
@@ -128,6 +138,7 @@ class FamilyFunction:
     ends: tuple[tuple[int, PartText], ...]
     totals: tuple[TotalsText, ...]
     finish: PartText | None
+    solve: SolveText | None
     sums: int
 
 
@@ -248,8 +259,17 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
             for each, first in zip(loops.totals, firsts, strict=True)
         ),
         finish=finish,
+        solve=_arrange_solve(loops, target),
         sums=count,
     )
+
+
+def _arrange_solve(loops: Loops, target: str) -> SolveText | None:
+    """What is solved for first."""
+    solve = loops.solve
+    if solve is None:
+        return None
+    return SolveText(_arrange(solve.factors, loops.wraps, target, ""), solve.blocks, solve.of)
 
 
 def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
@@ -402,6 +422,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "licence": tell_licence(context.license),
         "id": identity,
         "lanes": LANES,
+        "solves": any(loops.solve for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "inputs": inputs,
