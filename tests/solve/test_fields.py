@@ -1,11 +1,22 @@
 """Shipped fields as they are called: exact waves, what is kept, and points of other numbers."""
 
+import re
+import warnings
+
 import numpy as np
 import pytest
 from scipy.linalg import solve_circulant
 
 from coadjoint.errors import CoadjointError, KernelArgumentError
-from coadjoint.systems import camassa_holm, kdv, landau_lifshitz, spin_chain, spin_chain_chiral
+from coadjoint.solve.shocks import ShockWarning
+from coadjoint.systems import (
+    burgers,
+    camassa_holm,
+    kdv,
+    landau_lifshitz,
+    spin_chain,
+    spin_chain_chiral,
+)
 from tests.fields import cnoidal_wave, helix, precessing_wave, smooth_length, smooth_wave
 
 #: Systems with their exact waves, lengths and parameters.
@@ -141,3 +152,41 @@ def test_the_method_of_taylor_is_refused_where_an_equation_is_solved():
     found = small.simulate(np.ones(16), (0, 0.1), target="numpy", samples=2)
     assert found.settings["method"] == "dop853"
     np.testing.assert_allclose(found.state, 1, rtol=1e-14)
+
+
+@pytest.mark.parametrize(("amplitude", "end", "warns"), [(1.0, 0.33, False), (2.0, 0.2, True)])
+def test_a_run_says_when_its_shock_comes(amplitude, end, warns):
+    """u_t + 3 u u_s = 0 with A sin s breaks at 1/(3 A), by its characteristics s + 3 u t."""
+    system, found = burgers.system, []
+    state = amplitude * np.sin(2 * np.pi * np.arange(128) / 128)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", ShockWarning)
+        found = system.simulate(state, (0, end), samples=2, target="numpy", method="rk4", step=1e-3)
+    assert found.state.shape == (128, 2)
+    messages = [str(each.message) for each in told if each.category is ShockWarning]
+    assert len(messages) == warns
+    if warns:
+        said = float(re.search(r"shock at t = ([\d.]+)", messages[0])[1])
+        np.testing.assert_allclose(said, 1 / (3 * amplitude), rtol=1e-3)
+        assert "earlier end" in messages[0]
+
+
+def test_before_its_shock_the_motion_is_that_of_characteristics():
+    """At half of the time u(s + 3 u t) = sin s; a field that falls nowhere has no shock."""
+    N, t = 128, 1 / 6
+    s = 2 * np.pi * np.arange(N) / N
+    found = burgers.system.simulate(
+        np.sin(s), (0, t), samples=2, target="numpy", method="rk4", step=2e-3
+    )
+    label = s - 3 * t * np.sin(s)
+    for _ in range(60):
+        label -= (label + 3 * t * np.sin(label) - s) / (1 + 3 * t * np.cos(label))
+    np.testing.assert_allclose(found.state[:, -1], np.sin(label), atol=2e-4)
+    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.1)
+
+
+def test_other_fields_have_no_such_time():
+    """The waves of Camassa and Holm's equation and those that disperse are not carried alone."""
+    assert burgers.system.wave == ("3*m", "L")
+    assert not camassa_holm.system.wave
+    assert not kdv.system.wave

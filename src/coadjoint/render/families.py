@@ -332,6 +332,8 @@ class FamilyContext:
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
+        wave: Of a field that is carried by itself, the speed of its waves and the name of the
+            length of its circle; empty for others.
     """
 
     name: str
@@ -360,6 +362,7 @@ class FamilyContext:
     positions: tuple[int, ...] = ()
     kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
     pair_kinks: tuple[str, ...] = ()
+    wave: tuple[str, ...] = ()
 
     @property
     def held(self) -> Loops:
@@ -467,6 +470,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
                 [f"pair_kinks={tuple_text(map(quote, context.pair_kinks))}"]
                 * bool(context.pair_kinks)
             ),
+            *([f"wave={tuple_text(map(quote, context.wave))}"] * bool(context.wave)),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
