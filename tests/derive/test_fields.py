@@ -345,3 +345,19 @@ def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
         rates = [equations.setting.field.evaluate(r, values, number) for r in equations.exact.rates]
         assert rates == [*I.multiply_elementwise(slope), *(-slope / c)]
         assert any(slope)
+
+
+def test_the_law_of_a_strand_is_shown_as_in_the_chapter():
+    """dmu/dt = ad*_xi mu + ad*_Xi nu - d nu/ds, without a torque where nothing is advected."""
+    laws = [step.text for step in emitted("spin_chain").steps]
+    (law,) = (each for each in laws if "d nu/ds" in each)
+    assert law.startswith("dmu/dt = ad*_xi mu + ad*_Xi nu - d nu/ds,")
+    text = STRAND.replace(
+        "[parameters]",
+        'Gamma = { role = "advected", representation = "vector" }\n\n[parameters]\n'
+        "w = { default = 1 }",
+    )
+    text = text.replace("diag(K)*Xi)/2", "diag(K)*Xi)/2 - w*Gamma3").replace(
+        '["energy", "P"]', "[]"
+    )
+    assert any("+ dl/da <> a - d nu/ds" in step.text for step in derive(spec_of(text)).steps)
