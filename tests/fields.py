@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import sympy
+from scipy.linalg import solve_circulant
 from scipy.special import ellipj, ellipk
 
 from coadjoint.derive import Equations, derive
@@ -48,8 +49,15 @@ def find_rates(family: Family, fields, parameters) -> np.ndarray:
     """Rates at all points of a ring, ``(fields, N)``."""
     count = np.shape(fields)[1]
     known = dict(zip(family.states, np.asarray(fields, dtype=float), strict=True))
+    given = [*known.values()]
+    values = {**dict(zip(family.shared, parameters, strict=True)), family.count[0]: count}
+    for each in family.solved:
+        row = np.zeros(count)
+        for r, a in enumerate(each.factors):
+            row[r] = row[-r] = a.xreplace(values)
+        known[each.symbol] = solve_circulant(row, known[each.of])
     near = [np.roll(known[c], -shift) for c, shift in family.neighbours]
-    rates = compile_rates(family)(*known.values(), *near, *parameters, float(count))
+    rates = compile_rates(family)(*given, *near, *parameters, float(count))
     return np.array([np.broadcast_to(rate, (count,)) for rate in rates])
 
 
@@ -93,3 +101,35 @@ def cnoidal_wave(s, t, length=12.0, c=1.3, m=0.5, level=0.2):
     sn, cn, dn, _ = ellipj(b * (s - speed * t), m)
     slope = -8 * c * b**3 * m * cn * sn * dn
     return (level + 4 * c * b**2 * m * cn**2)[None], (-speed * slope)[None]
+
+
+def smooth_wave(s, t, alpha=0.9, speed=2.0, low=0.7, high=0.95):
+    """A wave f(s - c t) of Camassa and Holm's equation: its m, and dm/dt; see `smooth_length`.
+
+    (c - f)^2 (f - alpha^2 f'') = K once integrated, and (alpha f')^2 = (f - a) (b - f) (f - d)/(c -
+    f) twice, with d = c - a - b: f = (a + b)/2 - (b - a)/2 cos(theta) turns that into ds/dtheta =
+    alpha sqrt((c - f)/(f - d)), a smooth function of theta (derived here).
+    """
+    modes, rest = smooth_modes(alpha, speed, low, high), speed - low - high
+    mean, modes, numbers = modes[0].real, modes[1:], np.arange(1, len(modes))
+    goal = np.mod(s - speed * t, 2 * np.pi * mean)
+    angle = goal / mean
+    for _ in range(30):  # Newton's iteration for s(theta) = goal
+        waves = np.exp(1j * np.outer(angle, numbers))
+        place = mean * angle + 2 * ((waves - 1) @ (modes / (1j * numbers))).real
+        angle = angle - (place - goal) / (mean + 2 * (waves @ modes).real)
+    u = (low + high - (high - low) * np.cos(angle)) / 2
+    slope = np.sin(angle) * (high - low) / 2 / (alpha * np.sqrt((speed - u) / (u - rest)))
+    K = (high**2 - low**2) / 2 / (1 / (speed - high) - 1 / (speed - low))
+    return (K / (speed - u) ** 2)[None], (-2 * speed * K * slope / (speed - u) ** 3)[None]
+
+
+def smooth_modes(alpha=0.9, speed=2.0, low=0.7, high=0.95):
+    """Fourier coefficients of ds/dtheta of this wave."""
+    u = (low + high - (high - low) * np.cos(2 * np.pi * np.arange(128) / 128)) / 2
+    return (np.fft.rfft(alpha * np.sqrt((speed - u) / (u + low + high - speed))) / 128)[:40]
+
+
+def smooth_length():
+    """How long the wave is at the defaults of its numbers."""
+    return 2 * np.pi * smooth_modes()[0].real

@@ -105,6 +105,24 @@ class Total:
 
 
 @dataclass(frozen=True)
+class Solved:
+    """A component that follows from another one by a linear equation around a ring.
+
+    ``sum_r a_|r| u[i+r] = m[i]``, with the same factors for every member; the matrix is symmetric
+    and positive.
+
+    Attributes:
+        symbol: What is solved for, of member i.
+        of: The component on the right side.
+        factors: ``a_0, a_1, ...``, in symbols of shared parameters and of N.
+    """
+
+    symbol: Symbol
+    of: Symbol
+    factors: tuple[Tree, ...]
+
+
+@dataclass(frozen=True)
 class Family:
     """The equations of the generic member of an indexed system.
 
@@ -143,6 +161,8 @@ class Family:
         sides: Symbols of given signs at the kinks of member i, where the rates are those of given
             signs; its neighbours have others.
         count: The symbol of N, if the equations name it.
+        solved: Components that rates and totals read next to those of the state, with neighbours as
+            these have.
     """
 
     index: Index
@@ -170,6 +190,7 @@ class Family:
     indexed_noise: tuple[Symbol, ...] = ()
     sides: tuple[Symbol, ...] = ()
     count: tuple[Symbol, ...] = ()
+    solved: tuple[Solved, ...] = ()
 
     @property
     def own(self) -> tuple[Symbol, ...]:

@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive, make_setting
+from coadjoint.derive.fields.circle import close, inertia
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
 from coadjoint.derive.fields.operators import Term, adjoint, apply, expand
 from coadjoint.derive.fields.symbol import look_at_symbol
@@ -213,12 +214,48 @@ def test_lagrangians_of_strands_that_are_refused(old, new, message):
     assert "lie-poisson" in str(error.value)
 
 
-@pytest.mark.parametrize("l", ["u^2/2 + u_s^2/2", "u^4", "L"])
-def test_lagrangians_of_the_circle_that_are_refused(l):  # noqa: E741
-    """A momentum that is no multiple of the velocity at each point, or no kinetic energy."""
+@pytest.mark.parametrize(
+    ("l", "message"),
+    [
+        ("u^4", "no multiple of u at each point"),
+        ("L", "no kinetic energy"),
+        ("u^2/2 + u*u_s^2", "no linear operator"),
+        ("u^2/2 - u_s^2/2", "factor of u_s^2 is -1/2 at the defaults"),
+        ("u_s^2/2", "factor of u^2 is 0 at the defaults"),
+    ],
+)
+def test_lagrangians_of_the_circle_that_are_refused(l, message):  # noqa: E741
+    """No kinetic energy, none that is a square, and momenta that do not determine the velocity."""
     text = shipped("kdv").path.read_text(encoding="utf-8").replace('l = "u^2/2"', f'l = "{l}"')
-    with pytest.raises(DerivationError, match=r"lagrangian\.l: .*expected"):
+    with pytest.raises(DerivationError, match=r"lagrangian\.l: .*expected") as error:
         derive(read_spec_text(text, "kdv.toml"))
+    assert message in str(error.value)
+
+
+def test_camassa_and_holm():
+    """m_t + u m_s + 2 m u_s = 0 by both routes, m = u - alpha^2 u_ss (Camassa and Holm 1993)."""
+    spec = shipped("camassa_holm")
+    setting = make_setting(spec)
+    field = setting.field
+    m, m_s, u, u_s, u_ss, u_sss = (field[x] for x in ("m", "m_s", "u", "u_s", "u_ss", "u_sss"))
+    for route in spec.routes:
+        equations = derive(spec, route, setting=setting)
+        assert equations.exact.rates == (-u * m_s - 2 * m * u_s,)
+        assert equations.exact.energy == m * u / 2
+    square = field["alpha"] ** 2
+    assert inertia(setting) == {0: field.one, 2: -square}
+    assert close(setting, m) == u - square * u_ss
+    assert close(setting, m_s) == u_s - square * u_sss
+
+
+def test_more_derivatives_make_another_operator():
+    """Of l = (u^2 + u_s^2 + 3 u_ss^2)/2 it is m = u - u_ss + 3 u_ssss."""
+    text = shipped("camassa_holm").path.read_text(encoding="utf-8")
+    text = text.replace("order = 4", "order = 4, derivatives = 2")
+    text = text.replace("u^2/2 + alpha^2*u_s^2/2", "u^2/2 + u_s^2/2 + 3*u_ss^2/2")
+    setting = make_setting(read_spec_text(text, "c.toml"))
+    one = setting.field.one
+    assert inertia(setting) == {0: one, 2: -one, 4: 3 * one}
 
 
 def evaluate(equations, values):
@@ -308,6 +345,22 @@ def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
         rates = [equations.setting.field.evaluate(r, values, number) for r in equations.exact.rates]
         assert rates == [*I.multiply_elementwise(slope), *(-slope / c)]
         assert any(slope)
+
+
+def test_the_law_of_a_strand_is_shown_as_in_the_chapter():
+    """dmu/dt = ad*_xi mu + ad*_Xi nu - d nu/ds, without a torque where nothing is advected."""
+    laws = [step.text for step in emitted("spin_chain").steps]
+    (law,) = (each for each in laws if "d nu/ds" in each)
+    assert law.startswith("dmu/dt = ad*_xi mu + ad*_Xi nu - d nu/ds,")
+    text = STRAND.replace(
+        "[parameters]",
+        'Gamma = { role = "advected", representation = "vector" }\n\n[parameters]\n'
+        "w = { default = 1 }",
+    )
+    text = text.replace("diag(K)*Xi)/2", "diag(K)*Xi)/2 - w*Gamma3").replace(
+        '["energy", "P"]', "[]"
+    )
+    assert any("+ dl/da <> a - d nu/ds" in step.text for step in derive(spec_of(text)).steps)
 
 
 # -- two times ----------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy
 
+from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, narrow
 from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil, width_of
@@ -15,10 +16,13 @@ from tests.families import family_of
 from tests.fields import (
     cnoidal_wave,
     family_by_order,
+    fields_by_order,
     find_rates,
     grid_of,
     helix,
     precessing_wave,
+    smooth_length,
+    smooth_wave,
 )
 from tests.specs import shipped
 
@@ -65,6 +69,13 @@ def waves():
         "spin_chain_chiral": (precessing_wave, 10.0, [10.0], (64, 128), (32, 64)),
         "landau_lifshitz": (helix, 20.0, [0, 0, 0.6, 0, 0, 0.3, 20.0], (64, 128), (32, 64)),
         "kdv": (cnoidal_wave, 12.0, [1.3, 12.0], (80, 160), (72, 96)),
+        "camassa_holm": (
+            smooth_wave,
+            smooth_length(),
+            [0.9, smooth_length()],
+            (64, 128),
+            (96, 128),
+        ),
     }
 
 
@@ -168,3 +179,31 @@ def test_profiles_are_sampled_to_rounding():
     expected = np.cos(2 * np.pi * np.arange(8) / 8) / 3
     np.testing.assert_allclose([float(x) for x in values], expected, atol=1e-16)
     assert sample_profiles(shipped("kdv"), None) == {}
+
+
+def test_a_wave_of_camassa_and_holm_is_one_by_fourier_series():
+    """The wave by quadrature solves m_t = -(m u_s + (m u)_s) with u = (1 + alpha^2 k^2)^-1 m."""
+    N, L = 64, smooth_length()
+    (m,), (rate,) = smooth_wave(np.arange(N) * L / N, 0.3)
+    k = 2 * np.pi / L * np.fft.rfftfreq(N, 1 / N)
+    u = np.fft.irfft(np.fft.rfft(m) / (1 + 0.9**2 * k**2), N)
+    slope = lambda f: np.fft.irfft(1j * k * np.fft.rfft(f), N)  # noqa: E731
+    np.testing.assert_allclose(-(m * slope(u) + slope(m * u)), rate, atol=1e-13)
+    assert np.ptp(m) > 0.3
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_the_velocity_of_a_ring_solves_its_equation(order):
+    """A u = m with circulant matrices of 1 - alpha^2 D_2, by exact numbers."""
+    grid = make_grid(fields_by_order("camassa_holm", order))
+    (equation,), ring = grid.family.solved, grid.windows[0]
+    field, size = ring.setting.field, len(ring.setting.state)
+    values = {name: field[name] for name in ("alpha", "L")} | {"N": field.number(size)}
+    weight = values["alpha"] ** 2 * values["N"] ** 2 / values["L"] ** 2
+    for i in range(size):
+        terms = (
+            grid.velocities[size]["u", (i + r) % size] * ((r == 0) - weight * c)
+            for r, c in stencil(2, order).items()
+        )
+        assert field.is_zero(field.sum(terms) - field[ring.setting.state[i]])
+    assert len(equation.factors) == 1 + order // 2

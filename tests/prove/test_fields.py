@@ -16,7 +16,15 @@ from coadjoint.spec import read_spec_text
 from tests.fields import grid_of
 from tests.specs import emitted, shipped
 
-NAMES = ("spin_chain", "spin_chain_chiral", "landau_lifshitz", "kdv", "sp2_strand", "two_time_body")
+NAMES = (
+    "spin_chain",
+    "spin_chain_chiral",
+    "landau_lifshitz",
+    "kdv",
+    "camassa_holm",
+    "sp2_strand",
+    "two_time_body",
+)
 
 
 def bracket_of(name):
@@ -125,6 +133,40 @@ def test_a_wrong_pair_has_curvature():
     certificate = prove(read_spec_text(wrong, "chiral.toml"))
     refuted = {claim.kind for claim in certificate.refuted}
     assert "lax" in refuted
+
+
+def test_fluxes_of_camassa_and_holm_are_those_of_books():
+    """These are u m + u^2/2 - alpha^2 u_s^2/2 of m, and u^2 m of the energy, with m = A u."""
+    equations = emitted("camassa_holm")
+    field = equations.setting.field
+    for part, flux in (
+        (field["m"], "3/2*u^2 - u*alpha^2*u_ss - 1/2*alpha^2*u_s^2"),
+        (equations.exact.energy, "u^3 - u^2*alpha^2*u_ss"),
+    ):
+        assert decide_density(equations, [part]).method.endswith(f"the flux {flux}")
+
+
+def test_what_camassa_and_holm_do_not_conserve_is_refuted():
+    """The square of m, though its root is a Casimir."""
+    found = decide_density(
+        emitted("camassa_holm"), [emitted("camassa_holm").setting.field["m"] ** 2]
+    )
+    assert found.verdict is Verdict.REFUTED
+    text = shipped("camassa_holm").path.read_text(encoding="utf-8")
+    wrong = text.replace('["sqrt(m)"]', '["m^2"]')
+    claims = prove(read_spec_text(wrong, "c.toml")).claims
+    assert [c.verdict for c in claims if c.kind == "casimir"] == [Verdict.REFUTED]
+
+
+def test_a_velocity_of_another_equation_moves_other_rings():
+    """The generic point with velocities of the wrong sign is not the ring by its matrix."""
+    grid = grid_of("camassa_holm")
+    wrong = {n: {key: -u for key, u in each.items()} for n, each in grid.velocities.items()}
+    found = statements(replace(grid, velocities=wrong))
+    (same,) = (d for s, d in found.items() if "generic point" in s)
+    assert same.verdict is Verdict.REFUTED
+    (same,) = (d for s, d in statements(grid).items() if "generic point" in s)
+    assert same.verdict is Verdict.PROVED
 
 
 def test_the_lengths_of_spins_are_a_casimir_and_others_are_not():

@@ -1,11 +1,23 @@
 """Shipped fields as they are called: exact waves, what is kept, and points of other numbers."""
 
+import re
+import warnings
+
 import numpy as np
 import pytest
+from scipy.linalg import solve_circulant
 
-from coadjoint.errors import KernelArgumentError
-from coadjoint.systems import kdv, landau_lifshitz, spin_chain, spin_chain_chiral
-from tests.fields import cnoidal_wave, helix, precessing_wave
+from coadjoint.errors import CoadjointError, KernelArgumentError
+from coadjoint.solve.shocks import ShockWarning
+from coadjoint.systems import (
+    burgers,
+    camassa_holm,
+    kdv,
+    landau_lifshitz,
+    spin_chain,
+    spin_chain_chiral,
+)
+from tests.fields import cnoidal_wave, helix, precessing_wave, smooth_length, smooth_wave
 
 #: Systems with their exact waves, lengths and parameters.
 WAVES = {
@@ -17,6 +29,12 @@ WAVES = {
         {"L": 20.0, "a": [0, 0, 0.6], "B": [0, 0, 0.3]},
     ),
     "kdv": (kdv.system, cnoidal_wave, 12.0, {"L": 12.0, "c": 1.3}),
+    "camassa_holm": (
+        camassa_holm.system,
+        smooth_wave,
+        smooth_length(),
+        {"L": smooth_length(), "alpha": 0.9},
+    ),
 }
 
 
@@ -43,22 +61,24 @@ def test_waves_travel_as_they_should(name):
 
 
 @pytest.mark.parametrize(
-    ("system", "kept"),
+    ("system", "kept", "parameters"),
     [
-        (spin_chain.system, {"energy", "P"}),
-        (spin_chain_chiral.system, {"energy", "P", "M"}),
-        (kdv.system, {"energy", "M"}),
+        (spin_chain.system, {"energy", "P"}, None),
+        (spin_chain_chiral.system, {"energy", "P", "M"}, None),
+        (kdv.system, {"energy", "M"}, None),
+        (camassa_holm.system, {"energy", "M"}, {"L": 1, "alpha": 0.02}),
     ],
     ids=lambda each: getattr(each, "name", ""),
 )
-def test_the_midpoint_keeps_what_is_quadratic(system, kept):
+def test_the_midpoint_keeps_what_is_quadratic(system, kept, parameters):
     """Energy and momenta to rounding; a method of order 4 without structure loses them."""
     small = system.resize({"s": 32})
     source = np.random.default_rng(3)
     state = source.normal(size=small.STATE.size) / 4
     by = {}
     for method in ("midpoint", "rk4"):
-        found = small.simulate(state, (0, 0.2), step=0.01, method=method, target="numpy", samples=2)
+        options = {"step": 0.01, "method": method, "target": "numpy", "samples": 2}
+        found = small.simulate(state, (0, 0.2), parameters=parameters, **options)
         assert kept <= set(found.drift)
         by[method] = max(np.max(np.abs(found.drift[name])) for name in kept)
     assert by["midpoint"] < 1e-13 < by["rk4"]
@@ -88,3 +108,85 @@ def test_too_few_points_for_the_differences_are_refused():
     """Seven points for KdV's differences of order 6 would meet themselves."""
     with pytest.raises(KernelArgumentError, match="at least 9"):
         kdv.system.resize({"s": 8})
+
+
+@pytest.mark.parametrize("N", [5, 6, 40, 257])
+@pytest.mark.parametrize("alpha", [1e-3, 1.0, 300.0])
+def test_the_energy_of_camassa_and_holm_solves_its_equation(N, alpha):
+    """L/N sum m u/2 with u from a circulant matrix of SciPy, whatever alpha and N are."""
+    source, L = np.random.default_rng(N), 3.0
+    m, weight = source.normal(size=N), (alpha * N / L) ** 2
+    row = np.zeros(N)
+    for r, c in ((0, 1 + 2.5 * weight), (1, -4 / 3 * weight), (2, weight / 12)):
+        for place in {r, -r % N}:
+            row[place] += c
+    u = solve_circulant(row, m)
+    found = camassa_holm.system.resize({"s": N}).evaluate("energy", m, [alpha, L], target="numpy")
+    condition = 1 + 16 / 3 * weight  # of the matrix, whose entries are rounded
+    np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-15 * (10 + condition))
+
+
+def test_trajectories_of_a_batch_are_solved_as_each_alone():
+    """Shifts end after different numbers of doublings; each column has the bits of a single run."""
+    small = camassa_holm.system.resize({"s": 24})
+    source = np.random.default_rng(2)
+    m, parameters = source.normal(size=(24, 3)), np.array([[0.01, 1.0, 40.0], [3.0, 3.0, 3.0]])
+    found = small.evaluate("rhs", m, parameters, target="numpy")
+    for n in range(3):
+        alone = small.evaluate("rhs", m[:, n], parameters[:, n], target="numpy")
+        np.testing.assert_array_equal(found[:, n], alone)
+
+
+def test_an_equation_without_finite_factors_gives_no_numbers():
+    """One whose factors are too large for doubles is not solved, and no rate is a number."""
+    small = camassa_holm.system.resize({"s": 8})
+    rates = small.evaluate("rhs", np.ones(8), [1e200, 1.0], target="numpy")
+    assert np.isnan(rates).all()
+
+
+def test_the_method_of_taylor_is_refused_where_an_equation_is_solved():
+    """Rates contain the solution of a linear equation; auto takes another method."""
+    small = camassa_holm.system.resize({"s": 16})
+    with pytest.raises(CoadjointError, match="solution of a linear equation"):
+        small.simulate(np.ones(16), (0, 0.1), method="taylor", target="numpy")
+    found = small.simulate(np.ones(16), (0, 0.1), target="numpy", samples=2)
+    assert found.settings["method"] == "dop853"
+    np.testing.assert_allclose(found.state, 1, rtol=1e-14)
+
+
+@pytest.mark.parametrize(("amplitude", "end", "warns"), [(1.0, 0.33, False), (2.0, 0.2, True)])
+def test_a_run_says_when_its_shock_comes(amplitude, end, warns):
+    """u_t + 3 u u_s = 0 with A sin s breaks at 1/(3 A), by its characteristics s + 3 u t."""
+    system, found = burgers.system, []
+    state = amplitude * np.sin(2 * np.pi * np.arange(128) / 128)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", ShockWarning)
+        found = system.simulate(state, (0, end), samples=2, target="numpy", method="rk4", step=1e-3)
+    assert found.state.shape == (128, 2)
+    messages = [str(each.message) for each in told if each.category is ShockWarning]
+    assert len(messages) == warns
+    if warns:
+        said = float(re.search(r"shock at t = ([\d.]+)", messages[0])[1])
+        np.testing.assert_allclose(said, 1 / (3 * amplitude), rtol=1e-3)
+        assert "earlier end" in messages[0]
+
+
+def test_before_its_shock_the_motion_is_that_of_characteristics():
+    """At half of the time u(s + 3 u t) = sin s; a field that falls nowhere has no shock."""
+    N, t = 128, 1 / 6
+    s = 2 * np.pi * np.arange(N) / N
+    found = burgers.system.simulate(
+        np.sin(s), (0, t), samples=2, target="numpy", method="rk4", step=2e-3
+    )
+    label = s - 3 * t * np.sin(s)
+    for _ in range(60):
+        label -= (label + 3 * t * np.sin(label) - s) / (1 + 3 * t * np.cos(label))
+    np.testing.assert_allclose(found.state[:, -1], np.sin(label), atol=2e-4)
+    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.1)
+
+
+def test_other_fields_have_no_such_time():
+    """The waves of Camassa and Holm's equation and those that disperse are not carried alone."""
+    assert burgers.system.wave == ("3*m", "L")
+    assert not camassa_holm.system.wave
+    assert not kdv.system.wave

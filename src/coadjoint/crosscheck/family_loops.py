@@ -10,7 +10,7 @@ Read next: `coadjoint.crosscheck.families`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import localcontext
 from fractions import Fraction
 from functools import reduce
@@ -18,8 +18,15 @@ from itertools import combinations
 from operator import add
 from typing import Any
 
-from coadjoint.crosscheck.oracle import CONTEXT, Bounded, OutsideDomain, call, exact
-from coadjoint.lower.families import SUM, Loops, Part
+from coadjoint.crosscheck.oracle import (
+    CONTEXT,
+    Bounded,
+    BoundedEquations,
+    OutsideDomain,
+    call,
+    exact,
+)
+from coadjoint.lower.families import SUM, Loops, Part, Solve
 from coadjoint.lower.program import run
 
 
@@ -52,6 +59,21 @@ class _Members:
         for name in part.program.state[len(part.reads) :]:
             values[name] = sums[int(name.removeprefix(SUM))]
         return run(part.program, values, self.number, self.call)
+
+    def complete(self, solve: Solve) -> _Members:
+        """The same with what is solved for, by elimination and not by doubled shifts."""
+        factors, size = self.evaluate(solve.factors, 0), self.size
+        row = [self.number(Fraction(0))] * size
+        for place, a in [
+            (r * s, a) for r, a in enumerate(factors) for s in ((1, -1) if r else (1,))
+        ]:
+            row[place % size] += a
+        lower = [row[i - j] for i in range(size) for j in range(i + 1)]
+        equations, state, found = BoundedEquations(lower), self.arrays["state"], list[Any]()
+        for first in range(0, len(state), solve.blocks * size):
+            run_of = state[first : first + solve.blocks * size]
+            found += [*run_of, *equations.solve(run_of[solve.of * size :][:size])]
+        return replace(self, arrays={**self.arrays, "state": found})
 
     def add_up(self, terms: Iterable[list[Any]]) -> list[Any]:
         """Sums of terms, column by column."""
@@ -99,6 +121,8 @@ def evaluate_loops(
             known = {name: [exact(value) for value in rows] for name, rows in arrays.items()}
             known["sizes"] = [exact(float(size))]
             members = _Members(known, size, exact, call)
+            if loops.solve is not None:
+                members = members.complete(loops.solve)
             if loops.member is None:
                 return members.find_totals(loops)
             rows = zip(*members.find_members(loops), strict=True)

@@ -112,6 +112,8 @@ def _list_parts(loops: Loops) -> Iterator[tuple[str, Part]]:
         yield f"{loops.name}_terms_{n}", each.part
     if loops.finish is not None:
         yield f"{loops.name}_finish", loops.finish
+    if loops.solve is not None:
+        yield f"{loops.name}_factors", loops.solve.factors
 
 
 def _check_part(part: Part, found: _Text, wraps: bool, file: str, name: str) -> int:

@@ -109,6 +109,24 @@ class Totals:
 
 
 @dataclass(frozen=True)
+class Solve:
+    """Components that are solved for before a function begins.
+
+    Each run of ``blocks`` rows for each member that the function is given is followed by one more,
+    the solution of ``sum_r a_|r| u[i+r] = m[i]``; rows of parts are those of all together.
+
+    Attributes:
+        factors: ``a_0, a_1, ...``, of parameters and N.
+        blocks: Rows of a run for each member.
+        of: The place in a run of the right side.
+    """
+
+    factors: Part
+    blocks: int
+    of: int
+
+
+@dataclass(frozen=True)
 class Loops:
     """One function of a family.
 
@@ -117,6 +135,7 @@ class Loops:
         wraps: Whether member N-1 is followed by member 0 where neighbours are read.
         blocks: Rows of its first argument for each member.
         rows: Further rows of it, which all members share.
+        solve: What is solved for first, if anything.
         shape: Of a result that does not depend on N, else None.
         partners: Terms of the sums over partners, if there are any: of member i, then of member j.
         member: The rates of member i.
@@ -135,6 +154,7 @@ class Loops:
     totals: tuple[Totals, ...] = ()
     finish: Part | None = None
     rows: int = 0
+    solve: Solve | None = None
 
     @property
     def pair_sums(self) -> int:
@@ -151,6 +171,7 @@ class Loops:
         """All parts, in order."""
         listed = [self.partners, self.member, *(part for _, part in self.ends)]
         listed += [*(each.part for each in self.totals), self.finish]
+        listed += [] if self.solve is None else [self.solve.factors]
         return tuple(part for part in listed if part is not None)
 
     @property
@@ -186,7 +207,7 @@ def lower_family(family: Family) -> dict[str, Loops]:
     if held is not None:
         functions.append(_Lowering(held.family).rates("sided_rhs"))
         functions.append(_Lowering(held.family).kinks(held))
-    return {each.name: each for each in functions}
+    return {each.name: replace(each, solve=lowering.solve(each.name)) for each in functions}
 
 
 class _Names:
@@ -216,12 +237,19 @@ class _Lowering:
             symbol: Read(name="", array="parameters", rows=len(family.shared), blocks=n)
             for n, symbol in enumerate(family.indexed)
         }
+        solved = [each.symbol for each in family.solved]
+        assert len(solved) <= 1, "one equation"
+        assert not (solved and (family.noise or family.sides or family.pair_sums)), "no more"
+        rows |= {
+            symbol: Read(name="", array="state", rows=0, blocks=len(family.states) + n)
+            for n, symbol in enumerate(solved)
+        }
         before = len(family.shared_inputs)
         rows |= {
             symbol: Read(name="", array="inputs", rows=before, blocks=n)
             for n, symbol in enumerate(family.indexed_inputs)
         }
-        alike, below = len(family.shared_noise), len(family.states)
+        alike, below = len(family.shared_noise), len(family.states) + len(solved)
         rows |= {
             symbol: Read(name="", array="state", rows=alike, blocks=below + n)
             for n, symbol in enumerate((*family.indexed_noise, *family.sides))
@@ -281,6 +309,14 @@ class _Lowering:
         }
 
     # -- functions ----------------------------------------------------------------------
+
+    def solve(self, name: str) -> Solve | None:
+        """What is solved for before a function; None where the family has no such component."""
+        family = self.family
+        for each in family.solved:
+            factors = self._part(f"{name}_factors", each.factors, {})
+            return Solve(factors, len(family.states), family.states.index(each.of))
+        return None
 
     def rates(self, name: str) -> Loops:
         """The rates, or their derivative along a vector.

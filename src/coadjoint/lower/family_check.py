@@ -43,6 +43,10 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
         for part, trees, sums in _list_parts(family, loops, symbols):
             compared += len(trees)
             _check_part(loops.name, part, trees, symbols, sums)
+        for solve, each in zip([loops.solve] * bool(family.solved), family.solved, strict=True):
+            assert solve is not None, loops.name
+            assert family.states[solve.of] == each.of, loops.name
+            _check_part(loops.name, solve.factors, each.factors, symbols, ())
         assert compared, loops.name
     if "kinks" in functions:
         check_sides(family, functions["sided_rhs"], functions["kinks"])
@@ -78,11 +82,12 @@ class _Symbols:
 
     def __init__(self, family: Family) -> None:
         self._family = family
+        self.components = (*family.states, *(each.symbol for each in family.solved))
         self.vector = {
             each: sympy.Symbol(f"h {each}")
             for each in (
-                *family.states,
-                *(s for (c, _), s in family.neighbours.items() if c in family.states),
+                *self.components,
+                *(s for (c, _), s in family.neighbours.items() if c in self.components),
                 *(s for c, s in family.partners.items() if c in family.states),
             )
         }
@@ -90,7 +95,7 @@ class _Symbols:
     def find(self, read: Read, function: str) -> Symbol:
         """The symbol that stands in the row of a name."""
         family = self._family
-        count = len(family.states)
+        count = len(self.components)
         if function == "noise_vector" and read.blocks >= count:
             if read.shift is None:
                 assert (read.array, read.blocks) == ("state", count), read
@@ -109,7 +114,7 @@ class _Symbols:
             return self._place(indexed[read.blocks], read)
         assert read.rows == 0, read
         below, row = divmod(read.blocks, count)
-        symbol = self._place(family.states[row], read)
+        symbol = self._place(self.components[row], read)
         return self.vector[symbol] if below else symbol
 
     def _place(self, component: Symbol, read: Read) -> Symbol:

@@ -22,8 +22,10 @@ from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
 from coadjoint.derive.fields.grid import Grid
+from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
+from coadjoint.exact import element_text
 from coadjoint.families import Family, Strand
 from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
@@ -173,7 +175,24 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
     ]
     lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
-    return replace(context, routes=tuple(routes), equations=tuple(lines), strand=find_strand(spec))
+    wave = tell_wave(first)
+    told = replace(context, routes=tuple(routes), equations=tuple(lines))
+    return replace(told, strand=find_strand(spec), wave=wave)
+
+
+def tell_wave(first: Equations) -> tuple[str, ...]:
+    """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``; else ()."""
+    setting, jets, space = first.setting, jets_of(first.setting), first.spec.space
+    assert space is not None, first.spec.name
+    if len(setting.state) > 1:
+        return ()
+    (m,), (rate,), field = setting.state, first.exact.rates, setting.field
+    speed, steepness = -field.derivative(rate, jets.towers[m][1]), field[jets.towers[m][1]]
+    others = {*jets.orders} - {m}
+    if field.reach(speed) & others or not field.is_zero(rate + speed * steepness):
+        return ()
+    is_moving = not field.is_zero(field.derivative(speed, m))
+    return (element_text(field, speed), space.length) if is_moving else ()
 
 
 def find_strand(spec: Spec) -> Strand | None:

@@ -17,13 +17,14 @@ Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.grid import make_grid
-from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
+from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, solved
 from coadjoint.derive.fields.operators import Operator, Term, apply, order_of, skew_defects
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.fields.symbol import look_at_symbol
@@ -57,7 +58,7 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
 
 def _about_bracket(first: Equations) -> Iterator[Examined]:
     """The bracket of the fields: antisymmetric, and a Poisson bracket."""
-    setting, jets = first.setting, jets_of(first.setting)
+    setting, jets = first.setting, jets_of(first.setting).only(first.setting.state)
     operator = field_operator(setting)
     yield (
         "the bracket of the fields is antisymmetric: P + P^* = 0 by integration by parts",
@@ -245,9 +246,11 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
     """Whether the rates of densities are total derivatives, with the fluxes."""
     setting, jets = equations.setting, jets_of(equations.setting)
     rates = dict(zip(setting.state, equations.exact.rates, strict=True))
-    texts = list[str]()
+    texts, moved = list[str](), solved(setting.spec)
+    if moved:  # both fields are functions of one, the velocity
+        jets = jets.only(moved)
     for part in parts:
-        rate = jets.rate(part, rates)
+        rate = _find_rate(equations, part, rates)
         decision = decide_zero([*jets.variation(rate).values()], setting.field)
         if decision.verdict is not Verdict.PROVED:
             method = f"{decision.method} of the variational derivative of its rate"
@@ -263,6 +266,15 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
     return Decision(
         verdict=Verdict.PROVED, method=f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}"
     )
+
+
+def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:
+    """The rate of a density, or one with the same integral where A u = m."""
+    setting, jets = equations.setting, jets_of(equations.setting)
+    if not solved(setting.spec):
+        return jets.rate(part, rates)
+    terms = (circle.vary(setting, part, name) * rate for name, rate in rates.items())
+    return circle.close(setting, setting.field.sum(terms))
 
 
 def _about_pair(

@@ -71,14 +71,16 @@ def _differences(grid: Grid, ring: Equations) -> list[Element]:
     }
     values = {name: field[name] for name in ring.setting.parameters}
     values[grid.count] = field.number(size)
+    known_at = {(c, k): field[name] for (c, k), name in names.items()}
+    known_at |= grid.velocities[size]
     found = list[Element]()
     for k in range(size):
         seen = {
-            name_at(c, r): field[names[c, (k + r) % size]]
+            name_at(c, r): known_at[c, (k + r) % size]
             for c in grid.lattice.components
             for r in range(-reach, reach + 1)
         }
-        for c, rate in zip(grid.lattice.components, grid.rates, strict=True):
+        for c, rate in zip(grid.equations.setting.state, grid.rates, strict=True):
             value = lattice.evaluate(rate, {**values, **seen}, field.number, field.call)
             found.append(value - own[names[c, k]])
     return found

@@ -95,6 +95,15 @@ class TotalsText:
 
 
 @dataclass(frozen=True)
+class SolveText:
+    """What is solved for before a function begins, as `Solve` has it."""
+
+    factors: PartText
+    blocks: int
+    of: int
+
+
+@dataclass(frozen=True)
 class FamilyFunction:
     """A function of a family as the templates read it.
 
@@ -110,6 +119,7 @@ class FamilyFunction:
         ends_after: Such members at the end.
         partners: As `Loops` has it; likewise ``pair_sums``, ``member``, ``ends``, ``totals`` and
             ``finish``.
+        solve: What is solved for first.
         sums: How many sums there are in a function of sums.
     """
 
@@ -128,6 +138,7 @@ class FamilyFunction:
     ends: tuple[tuple[int, PartText], ...]
     totals: tuple[TotalsText, ...]
     finish: PartText | None
+    solve: SolveText | None
     sums: int
 
 
@@ -248,8 +259,17 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
             for each, first in zip(loops.totals, firsts, strict=True)
         ),
         finish=finish,
+        solve=_arrange_solve(loops, target),
         sums=count,
     )
+
+
+def _arrange_solve(loops: Loops, target: str) -> SolveText | None:
+    """What is solved for first."""
+    solve = loops.solve
+    if solve is None:
+        return None
+    return SolveText(_arrange(solve.factors, loops.wraps, target, ""), solve.blocks, solve.of)
 
 
 def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
@@ -313,6 +333,8 @@ class FamilyContext:
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
         strand: The strain of a strand and its matrices.
+        wave: Of a field that is carried by itself, the speed of its waves and the name of the
+            length of its circle; empty for others.
     """
 
     name: str
@@ -342,6 +364,7 @@ class FamilyContext:
     kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
     pair_kinks: tuple[str, ...] = ()
     strand: Strand | None = None
+    wave: tuple[str, ...] = ()
 
     @property
     def held(self) -> Loops:
@@ -404,6 +427,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "licence": tell_licence(context.license),
         "id": identity,
         "lanes": LANES,
+        "solves": any(loops.solve for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "inputs": inputs,
@@ -448,6 +472,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
                 [f"pair_kinks={tuple_text(map(quote, context.pair_kinks))}"]
                 * bool(context.pair_kinks)
             ),
+            *([f"wave={tuple_text(map(quote, context.wave))}"] * bool(context.wave)),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["strand=STRAND"] * bool(context.strand)),

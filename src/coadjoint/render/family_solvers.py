@@ -106,6 +106,7 @@ class FamilySolverText:
         functions: Elementary functions that are called, with their arguments, sqrt left out.
         orders: Whether factors k are read.
         branches: Whether rates have branch points or jumps.
+        solves: Whether something is solved for first, so that there are no recurrences.
     """
 
     partners: PartText | None
@@ -125,10 +126,13 @@ class FamilySolverText:
     functions: tuple[tuple[str, str], ...]
     orders: bool
     branches: bool
+    solves: bool
 
     @property
     def parts(self) -> tuple[PartText, ...]:
-        """All of them, in order."""
+        """All of them, in order; none where there are no recurrences."""
+        if self.solves:
+            return ()
         pairs = () if self.partners is None else (self.partners,)
         return (*pairs, self.member, *(part for _, part in self.ends))
 
@@ -181,6 +185,7 @@ def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
         wraps=rates.wraps,
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         orders="_orders[_m]" in read,
+        solves=rates.solve is not None,
         branches=any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls),
     )
 

@@ -57,6 +57,8 @@ class FamilySystem(System):
         kinks: What is zero at the kinks of member i, and of members at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
         strand: The strain of a strand and its matrices, if the members are points of one.
+        wave: Of a field that is carried by itself, the speed of waves and the name of the length.
+        own_state: Components of a member.
     """
 
     stepwise = "steps of many equal members are recorded by their twin"
@@ -87,11 +89,13 @@ class FamilySystem(System):
         kinks: Mapping[int | None, tuple[str, ...]] = MappingProxyType({}),
         pair_kinks: tuple[str, ...] = (),
         strand: Strand | None = None,
+        wave: tuple[str, ...] = (),
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
-        self.kinks, self.pair_kinks = kinks, pair_kinks
+        self.kinks, self.pair_kinks, self.wave = kinks, pair_kinks, wave
         self.strand = strand
+        self.own_state = [name for each in state.values() for name in each.components]
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -239,6 +243,7 @@ class FamilySystem(System):
             kinks=self.kinks,
             pair_kinks=self.pair_kinks,
             strand=self.strand,
+            wave=self.wave,
         )
         made.levels = self.levels
         return made

@@ -509,6 +509,8 @@ def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_a
     """
     if not (system.folder / "solver.py").is_file():
         return "its folder was generated without series: run `coadjoint regenerate`"
+    if system.series.has("SOLVES"):
+        return "it needs rates of all orders, and these contain the solution of a linear equation"
     own, pairs = system.count_series(order, members)
     most = SHARE * find_memory()
     if own + pairs > most:

@@ -50,6 +50,7 @@ from coadjoint.solve.request import (
     prefers_dop853,
     take_ends_of_steps,
 )
+from coadjoint.solve.shocks import warn_of_shock
 from coadjoint.solve.solution import Solution
 from coadjoint.solve.surroundings import Driven, Surroundings
 
@@ -166,6 +167,7 @@ def simulate(
     check_steps(request)
     if has_noise(system):
         check_samples(request)
+    warn_of_shock(system, request)
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
     _check_alone(system, request, obstacle)

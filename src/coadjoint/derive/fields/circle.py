@@ -9,15 +9,22 @@ integral of :math:`\langle m, \delta u \rangle`, :math:`m = \partial l/\partial 
 
 with the Euler operator by eta, and the cocycle of Virasoro's algebra for a central charge c
 (Khesin and Wendt 2009, The Geometry of Infinite-Dimensional Groups, section II.2).
-Comes in: a Setting with a Lagrangian. Goes out: Equations in jets of m.
+A Lagrangian with derivatives, :math:`l = \tfrac12 \sum a_k (\partial_s^k u)^2`, makes m a
+differential operator of u, :math:`m = A u` with :math:`A = \sum (-1)^k a_k \partial_s^{2k}`. Then
+both are symbols with their derivatives, and equations hold as polynomials in these. Where a law
+needs the equation between them, m is replaced by A u.
+Comes in: a Setting with a Lagrangian. Goes out: Equations in jets of m, and of u with such an A.
 Read next: `coadjoint.derive.fields.structure`, where the bracket is.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
+
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.emission import emit_fields
-from coadjoint.derive.fields.jets import Jets, depth, jets_of
+from coadjoint.derive.fields.jets import Jets, depth, jets_of, solved
 from coadjoint.derive.fields.structure import central_charge
 from coadjoint.derive.records import write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting, fault, once
@@ -75,19 +82,97 @@ def _name(setting: Setting) -> str:
 
 
 def _slope(setting: Setting) -> Element:
-    """``dl/du``."""
-    return setting.field.derivative(setting.lagrangian, _name(setting))
+    """``dl/du``, with all derivatives of u."""
+    if not solved(setting.spec):
+        return setting.field.derivative(setting.lagrangian, _name(setting))
+    return jets_of(setting).euler(setting.lagrangian, _name(setting))
+
+
+@once
+def inertia(setting: Setting) -> Mapping[int, Element]:
+    """The coefficients of ``d^k/ds^k`` in the operator A with m = A u; empty without derivatives.
+
+    Raises:
+        DerivationError: The Lagrangian is no sum of squares with constant positive factors.
+    """
+    if not solved(setting.spec):
+        return {}
+    field, formula, name = setting.field, setting.spec.lagrangian, _name(setting)
+    assert formula is not None, "the reader asks for a Lagrangian on this route"
+    jets, slope = jets_of(setting), _slope(setting)
+    found = {n: x for n, x in enumerate(jets.slopes(slope, name)) if not field.is_zero(x)}
+    jet_names = {*jets.orders}
+    is_linear = not any(field.reach(x) & jet_names for x in found.values())
+    whole = field.sum(x * field[jets.towers[name][n]] for n, x in found.items())
+    if not is_linear or not field.is_zero(slope - whole):
+        message = (
+            f"the momentum dl/d{name} is no linear operator of {name} with constant factors; "
+            f"expected a sum of squares of {name} and its derivatives."
+        )
+        raise fault(setting, formula, message, formula.text)
+    for n, x in {0: field.zero, **found}.items():
+        at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** (n // 2)
+        if at <= 0:
+            square = jets.towers[name][n // 2]
+            message = (
+                f"the factor of {square}^2 is {at / 2} at the defaults of the parameters; expected "
+                f"a positive one, so that the momentum determines {name}."
+            )
+            raise fault(setting, formula, message, formula.text)
+    return found
+
+
+def vary(setting: Setting, density: Element, name: str) -> Element:
+    """The variational derivative by a field, the velocity being a function of the momentum.
+
+    Where A u = m, a density that names u has the part ``A^-1 (dh/du)`` in addition, which is c u
+    for ``dh/du = c m``.
+
+    Raises:
+        DerivationError: ``dh/du`` is anything else.
+    """
+    field, jets = setting.field, jets_of(setting)
+    found = jets.euler(density, name)
+    if not inertia(setting):
+        return found
+    u, through = _name(setting), jets.euler(density, _name(setting))
+    factor = field.derivative(through, name)
+    if field.reach(factor) & {*jets.orders} or not field.is_zero(through - factor * field[name]):
+        message = (
+            f"a density names {u} such that its derivative by {u} is no multiple of {name}; "
+            f"expected one of {name} and its derivatives, or the energy."
+        )
+        formula = setting.spec.lagrangian
+        assert formula is not None, "the reader asks for a Lagrangian on this route"
+        raise fault(setting, formula, message, formula.text)
+    return found + factor * field[u]
+
+
+def close(setting: Setting, element: Element) -> Element:
+    """An element in derivatives of u alone where m = A u; else itself."""
+    operator, field, jets = inertia(setting), setting.field, jets_of(setting)
+    if not operator:
+        return element
+    (m,), tower = setting.state, jets.towers[_name(setting)]
+    values = {
+        symbol: field.sum(x * field[tower[n + k]] for n, x in operator.items())
+        for k, symbol in enumerate(jets.towers[m])
+        if symbol in field.reach(element)
+    }
+    return field.substitute(element, values)
 
 
 @once
 def velocity(setting: Setting) -> Element:
-    """The velocity in terms of the momentum.
+    """The velocity in terms of the momentum, or itself where A u = m.
 
     Raises:
         DerivationError: It is no function of the momentum at each point.
     """
     field, name, formula = setting.field, _name(setting), setting.spec.lagrangian
     assert formula is not None, "the reader asks for a Lagrangian on this route"
+    if inertia(setting):
+        return field[name]
     slope = _slope(setting)
     named = {c for each in setting.spec.jets for c in each.components}
     mass = field.derivative(slope, name)
@@ -106,6 +191,8 @@ def velocity(setting: Setting) -> Element:
 
 @once
 def energy(setting: Setting) -> Element:
-    """The density of the energy, ``m u - l``."""
+    """The density of the energy, ``m u - l``; where A u = m, ``m u/2``, which has this integral."""
     u, (m,) = velocity(setting), setting.elements(setting.state)
+    if inertia(setting):
+        return m * u / 2
     return m * u - setting.field.substitute(setting.lagrangian, {_name(setting): u})

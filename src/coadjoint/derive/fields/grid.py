@@ -32,10 +32,12 @@ import sympy
 
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.fields.jets import Jets, jets_of, narrow
+from coadjoint.derive.fields import circle
+from coadjoint.derive.fields.jets import Jets, jets_of, narrow, solved
 from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
 from coadjoint.derive.fields.operators import Operator
 from coadjoint.derive.fields.profiles import sample_profiles
+from coadjoint.derive.fields.solved import find_factors, solve_ring, write_solved
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.records import Exact, Kept
@@ -60,6 +62,10 @@ class Grid:
         declared: What is known of the other points.
         rates: Rates of the generic point in a field that has symbols for its neighbours.
         lattice: That field, and the symbols.
+        momenta: Where A u = m, the momentum at the generic point in the velocities around it, by
+            its name; empty without.
+        velocities: Likewise, of each ring by its number of points what is solved for in the
+            momenta, by its name and point; empty without.
         brackets: In this field, of two fields and how many points further the second one is, the
             bracket of both times the spacing.
     """
@@ -72,6 +78,8 @@ class Grid:
     rates: tuple[Element, ...]
     lattice: LatticeField
     brackets: Mapping[tuple[str, str, int], Element]
+    momenta: Mapping[str, Element]
+    velocities: Mapping[int, Mapping[tuple[str, int], Element]]
 
 
 @once
@@ -96,6 +104,7 @@ class _Maker:
         self.operator: Operator = field_operator(self.setting)
         (self.count,) = choose_names(self.spec, ["N"])
         self.order = self.space.order
+        self.velocities = dict[int, dict[tuple[str, int], Element]]()
 
     # -- densities ------------------------------------------------------------------------
 
@@ -106,9 +115,25 @@ class _Maker:
 
     @cached_property
     def slopes(self) -> list[list[Element]]:
-        """Derivatives of the density of the energy by each field and its derivatives."""
+        """Derivatives of the density of the energy by each field and its derivatives.
+
+        Where A u = m with a symmetric matrix A, half the sum of m u has the gradient u.
+        """
         energy = self.densities["energy"]
-        return [self.jets.slopes(energy, name) for name in self.setting.state]
+        return [self._find_slopes(energy, name) for name in self.setting.state]
+
+    def _find_slopes(self, density: Element, name: str) -> list[Element]:
+        if not solved(self.spec):
+            return self.jets.slopes(density, name)
+        own = self.jets.slopes(density, name) or [self.setting.field.zero]
+        whole = circle.vary(self.setting, density, name)
+        through = whole - self.jets.euler(density, name)
+        return [own[0] + through, *own[1:]]
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What has a value at each point: the fields, and what is solved for."""
+        return (*self.setting.state, *solved(self.spec))
 
     @cached_property
     def stencil_reach(self) -> int:
@@ -116,6 +141,7 @@ class _Maker:
         orders = {t.order for row in self.operator for entry in row for t in entry}
         for value in self.densities.values():
             orders |= {len(self.jets.slopes(value, name)) - 1 for name in self.setting.state}
+        orders |= circle.inertia(self.setting).keys()
         return max(width_of(k, self.order) for k in orders if k >= 0)
 
     # -- at points, in any arithmetic -------------------------------------------------------
@@ -190,11 +216,11 @@ class _Maker:
     def lattice(self) -> LatticeField:
         """An exact field for what is proved of the generic point."""
         reach = 4 * self.reach
-        symbols = [name_at(c, r) for c in self.setting.state for r in range(-reach, reach + 1)]
+        symbols = [name_at(c, r) for c in self.components for r in range(-reach, reach + 1)]
         rest = [*self.setting.parameters, self.count]
         slots = len(self.setting.field.adjoined)
         positive = [*(self.setting.field.positive & {*rest}), self.count]
-        return LatticeField(Field([*symbols, *rest], slots, positive), self.setting.state, reach)
+        return LatticeField(Field([*symbols, *rest], slots, positive), self.components, reach)
 
     def _calculus_in(self, field: Field, inverse: Element) -> Calculus:
         return Calculus(self.order, inverse, field.number)
@@ -237,6 +263,38 @@ class _Maker:
         rates = [f(0) for f in self.motion(calculus, place)]
         return rates, {name: place(value)(0) for name, value in self.densities.items()}
 
+    # -- what is solved for -------------------------------------------------------------------
+
+    @cached_property
+    def momenta(self) -> dict[str, Element]:
+        """The momentum at the generic point in the velocities around it; empty without A."""
+        if not solved(self.spec):
+            return {}
+        (m,), (u,), field = self.setting.state, solved(self.spec), self.lattice.field
+        factors = self._find_factors(field, field[self.count] / field[self.space.length])
+        return {m: field.sum(a * field[name_at(u, r)] for r, a in factors.items())}
+
+    def _find_factors(self, field: Field, inverse: Element) -> dict[int, Element]:
+        """The factors of the equation for the velocity in a field."""
+        convert = self.converter(field)
+        return find_factors(
+            self.setting, self.order, inverse, field.number, lambda x: convert(x, {})
+        )
+
+    def _solve(
+        self, field: Field, inverse: Element, size: int, names: Mapping[tuple[str, int], str]
+    ) -> dict[tuple[str, int], Element]:
+        """The velocities of a ring, by their name and point."""
+        if not solved(self.spec):
+            return {}
+        (m,), (u,), factors = (
+            self.setting.state,
+            solved(self.spec),
+            self._find_factors(field, inverse),
+        )
+        found = solve_ring(factors, field, [field[names[m, i]] for i in range(size)])
+        return {(u, i): value for i, value in enumerate(found)}
+
     @cached_property
     def family(self) -> Family:
         """The generic point as loops are made of it."""
@@ -273,6 +331,7 @@ class _Maker:
             small=2 * self.stencil_reach + 1,
             wraps=True,
             count=(count,),
+            solved=write_solved(self.setting, self.order, count / length),
         )
 
     # -- rings of a few points ----------------------------------------------------------------
@@ -291,8 +350,11 @@ class _Maker:
             for c, own in zip(v.components, _write_point(v, k).components, strict=True)
         }
 
+        velocities = self.velocities[size] = self._solve(field, inverse, size, names)
+
         def value(name: str, i: int) -> Element:
-            return field[names[name, i % size]]
+            place = name, i % size
+            return velocities[place] if place in velocities else field[names[place]]
 
         place = self.placer(calculus, value, self.converter(field))
         totals = {
@@ -411,6 +473,8 @@ class _Maker:
             rates=tuple(rates),
             lattice=self.lattice,
             brackets=self.brackets,
+            momenta=self.momenta,
+            velocities=self.velocities,
         )
 
     # -- what differences keep ------------------------------------------------------------------
@@ -425,6 +489,8 @@ class _Maker:
         """The variation of the rate of the sum of a density; zeros if the sum is kept."""
         rates, densities = self.exact_point
         lattice, field = self.lattice, self.lattice.field
+        if self.momenta:
+            return self._change_by_velocities(component)
         density, parts = densities[component], list[Element]()
         for name, rate in zip(self.setting.state, rates, strict=True):
             for r in range(-self.reach, self.reach + 1):
@@ -432,6 +498,24 @@ class _Maker:
                 if slope:
                     parts.append(slope * lattice.shift(rate, r))
         return lattice.vary(field.sum(parts))
+
+    def _change_by_velocities(self, component: str) -> dict[str, Element]:
+        """The same where A u = m: all is a function of the velocities."""
+        calculus, place = self._place_exactly()
+        field, parts = self.lattice.field, list[Element]()
+        rates, _ = self.exact_point
+        for name, rate in zip(self.setting.state, rates, strict=True):
+            slopes = self._find_slopes(self.densities[component], name)
+            parts.append(calculus.vary([place(x) for x in slopes])(0) * rate)
+        whole = field.sum(parts)
+        for m, value in self.momenta.items():
+            known = {
+                name_at(m, r): self.lattice.shift(value, r)
+                for r in range(-self.lattice.reach, self.lattice.reach + 1)
+                if name_at(m, r) in field.reach(whole)
+            }
+            whole = field.substitute(whole, known)
+        return replace(self.lattice, components=solved(self.spec)).vary(whole)
 
 
 def _write_point(of: Variable, place: int) -> Variable:

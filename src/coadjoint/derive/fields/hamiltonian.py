@@ -27,7 +27,7 @@ def field_equations(setting: Setting, route: str) -> Equations:
         DerivationError: Neither a Hamiltonian nor an invertible Legendre transform is there.
     """
     jets, operator, h = jets_of(setting), field_operator(setting), density(setting)
-    slopes = [jets.euler(h, name) for name in setting.state]
+    slopes = [circle.vary(setting, h, name) for name in setting.state]
     rates = apply(operator, slopes, jets.total)
     space = setting.spec.space
     assert space is not None, setting.spec.name

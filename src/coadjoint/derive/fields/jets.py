@@ -29,6 +29,7 @@ from itertools import pairwise
 from coadjoint.derive.setting import Setting, list_components, once
 from coadjoint.exact import Element, Field
 from coadjoint.spec import Spec
+from coadjoint.spec.core.tree import Name, walk
 from coadjoint.spec.sections.space import jet_name
 
 #: The symbol by which degrees are counted.
@@ -48,6 +49,16 @@ def depth(spec: Spec) -> int:
     return 2 * (order + 2 * order + _OPERATOR) + 1
 
 
+def solved(spec: Spec) -> tuple[str, ...]:
+    """The velocity on the circle, if a linear equation along all of it gives it: m = A u."""
+    if spec.diffeomorphisms is None or spec.lagrangian is None:
+        return ()
+    (velocity,) = spec.having_role("velocity")
+    named = {node.name for node in walk(spec.lagrangian.tree) if isinstance(node, Name)}
+    jets = {each.name for each in spec.jets if each.of.name == velocity.name}
+    return (velocity.name,) if named & jets else ()
+
+
 def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the derivatives beyond those that formulas name, and the symbol of degrees."""
     if spec.space is None:
@@ -55,7 +66,7 @@ def symbols(spec: Spec) -> tuple[str, ...]:
     declared = {name for each in spec.jets for name in each.components}
     names = [
         jet_name(name, spec.space.name, order)
-        for name in list_components(spec.state)
+        for name in (*list_components(spec.state), *solved(spec))
         for order in range(1, depth(spec) + 1)
     ]
     return (*(name for name in names if name not in declared), DEGREE)
@@ -72,6 +83,10 @@ class Jets:
 
     field: Field
     towers: Mapping[str, tuple[str, ...]]
+
+    def only(self, names: Sequence[str]) -> Jets:
+        """Of some of the fields."""
+        return Jets(self.field, {name: self.towers[name] for name in names})
 
     @cached_property
     def orders(self) -> dict[str, tuple[str, int]]:
@@ -173,10 +188,10 @@ def jets_of(setting: Setting) -> Jets:
     """The fields of a spec, and their derivatives."""
     space = setting.spec.space
     assert space is not None, setting.spec.name
-    orders = range(depth(setting.spec) + 1)
+    orders, names = range(depth(setting.spec) + 1), (*setting.state, *solved(setting.spec))
     return Jets(
         setting.field,
-        {name: tuple(jet_name(name, space.name, n) for n in orders) for name in setting.state},
+        {name: tuple(jet_name(name, space.name, n) for n in orders) for name in names},
     )
 
 

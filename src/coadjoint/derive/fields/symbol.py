@@ -77,6 +77,7 @@ class Seen:
 
 def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
     """The roots of the principal symbol at some points; none where it calls functions."""
+    jets = jets.only(setting.state)
     order, points = max((_order(jets, rate) for rate in rates), default=0), 0
     if not order:
         return Seen(order, points)

@@ -56,10 +56,12 @@ def _derive_fields(setting: Setting, rates: tuple[Element, ...]) -> Equations:
     ]
     *steps, _ = _steps(setting, rates)
     turn = "+" if setting.sign == 1 else "-"
-    law = sign_text(setting.sign, "ad*_xi mu + ad*_Xi nu + dl/da <> a")
+    turned = not all(each.strain for each in setting.advected)  # by something else than strains
+    law = sign_text(setting.sign, "ad*_xi mu + ad*_Xi nu" + " + dl/da <> a" * turned)
     law_latex = sign_text(
         setting.sign,
-        r"\mathrm{ad}^*_\xi \mu + \mathrm{ad}^*_\Xi \nu + (\partial l / \partial a) \diamond a",
+        r"\mathrm{ad}^*_\xi \mu + \mathrm{ad}^*_\Xi \nu"
+        + r" + (\partial l / \partial a) \diamond a" * turned,
     )
     steps.append(
         write_step(

@@ -1,0 +1,74 @@
+"""Linear equations around a ring in kernels: a wrong text is seen by a rung of the ladder."""
+
+import pytest
+
+from coadjoint import pipeline
+from coadjoint.crosscheck import families as ladder
+from coadjoint.crosscheck.families import crosscheck_family
+from coadjoint.crosscheck.family_text import check_family_text
+from coadjoint.errors import CrossCheckError
+from coadjoint.solve.folders import load_texts
+from tests.specs import shipped
+
+#: What is spoiled in which file, the targets that are compared, and how it is seen.
+WRONG = [
+    ("kernel.py", "(-a[r] if r % 2 else a[r])", "a[r]", ("numpy",), "rung 4"),
+    ("kernel.py", "range(-len(a) + 1, len(a))", "range(len(a))", ("numpy",), "rung 4"),
+    ("kernel.py", "step = 2 * step % size", "step = 2 * step", ("numpy",), ""),
+    ("kernel.py", "rows += [run, _solve(", "rows += [run, 2 * _solve(", ("numpy",), "rung 4"),
+    ("kernel.py", "2.0**-60", "2.0**-20", ("numpy",), "rung 4"),
+    ("kernel_python.py", "u[(i - r * step) % size]", "u[i]", ("numpy", "python"), "rung 4"),
+    (
+        "kernel.c",
+        "behind = u + (first + size - shift)",
+        "behind = u + (first + shift)",
+        ("c",),
+        "wrong kernel",
+    ),
+    ("kernel.c", "high = size - low;", "high = low;", ("c",), "wrong kernel"),
+]
+
+
+@pytest.fixture(scope="module")
+def rendered():
+    """The shipped system up to its texts."""
+    return pipeline.render(shipped("camassa_holm"))
+
+
+def climb(rendered, texts, targets):
+    """All rungs for some targets."""
+    own = rendered.family
+    with load_texts(texts) as system:
+        given = own.windows, own.declared, own.family, own.context
+        crosscheck_family(*given, texts, texts, system, targets)
+
+
+@pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG)
+def test_the_ladder_sees_wrong_solutions(rendered, monkeypatch, file, old, new, targets, seen):
+    """One that is right although it takes larger numbers for places passes."""
+    texts = dict(rendered.texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    monkeypatch.setattr(ladder, "POINTS", 2)
+    monkeypatch.setattr(ladder, "compare_steps", lambda *_: None)
+    if not seen:
+        climb(rendered, texts, targets)
+        return
+    with pytest.raises(CrossCheckError, match=seen):
+        climb(rendered, texts, targets)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("kernel.py", "alpha = parameters[0]", "alpha = parameters[1]"),
+        ("kernel.py", "u_m1 = state[size + (i - 1) % size]", "u_m1 = state[(i - 1) % size]"),
+    ],
+)
+def test_a_wrong_factor_does_not_read_back(rendered, file, old, new):
+    """Factors are parts as rates are, and what is solved for has rows below the state."""
+    texts = dict(rendered.texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    with pytest.raises(CrossCheckError):
+        check_family_text(rendered.family.context, texts, texts)
