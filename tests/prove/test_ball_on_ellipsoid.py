@@ -16,15 +16,15 @@ invariance = "right"
 
 [variables]
 omega = { role = "velocity", unit = "1/s", default = ["0.5", 0, 1] }
-c     = { role = "coordinate", shape = [3], unit = "m", default = [0, 0, 2], doc = "centre of the ball" }
+c     = { role = "coordinate", shape = [3], unit = "m", default = [0, 0, 2] }
 v     = { role = "velocity", of = "c", unit = "m/s" }
-X     = { role = "contact", unit = "m", default = [0, 0, 1], doc = "point of contact" }
+X     = { role = "contact", unit = "m", default = [0, 0, 1] }
 
 [parameters]
 I = { positive = true, default = "0.4", unit = "kg m^2" }
 m = { positive = true, default = 1, unit = "kg" }
-r = { positive = true, default = 1, unit = "m", doc = "radius of the ball" }
-a = { shape = [3], positive = true, default = [3, 2, 1], unit = "m", doc = "semi-axes of the ellipsoid" }
+r = { positive = true, default = 1, unit = "m" }
+a = { shape = [3], positive = true, default = [3, 2, 1], unit = "m" }
 g = { default = "9.81", unit = "m/s^2" }
 
 [lagrangian]
