@@ -1,4 +1,4 @@
-"""A single ball on an ellipsoid: contact that no closed form gives, on a surface without symmetry."""
+"""A ball on an ellipsoid: contact without a closed form, on a surface without symmetry."""
 
 import pytest
 
