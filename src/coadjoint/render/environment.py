@@ -73,8 +73,6 @@ def environment() -> _Environment:
     """The environment of kernels, with the filters of all targets."""
     made = make_environment(autoescape=False)  # code, not HTML; `refuse_unsafe` guards each value
     made.filters["python_call"] = python_call
-    # What c/methods/spheres.c.j2 adds for Newton's method only where a template asks for it.
-    made.globals["has_slopes"] = False
     for target in TARGETS.values():
         made.filters |= target.filters
     return made
