@@ -42,7 +42,7 @@ def whole(name):
 
 ON_ALGEBRAS = [name for name in SYSTEMS if shipped(name).algebra is not None]
 #: Those that take as long as ten others, and use nothing that no other uses.
-LONG = ("orbiting_body", "veselova_so4")
+LONG = ("orbiting_body", "veselova_so4", "zeitlin_su_4")
 #: Balls of one moment of inertia: I omega x omega is zero, so that the side says nothing.
 ALIKE = ("ball_in_sphere", "ball_on_turntable")
 BY_SIDE = [

@@ -38,6 +38,7 @@ from coadjoint.crosscheck.oracle import (
     exact,
     oracle,
 )
+from coadjoint.crosscheck.replay import Replayed
 from coadjoint.crosscheck.solver_objects import NOISY
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
 from coadjoint.derive.mechanics.turning import turning_residuals
@@ -93,6 +94,7 @@ class _Window:
 
     Attributes:
         reference: Its Equations.
+        replayed: The same, for many points.
         size: Its number of members.
         state: Names of its components in the order of a family: component after component.
         parameters: Likewise.
@@ -105,6 +107,7 @@ class _Window:
     """
 
     reference: Reference
+    replayed: Replayed
     size: int
     state: tuple[str, ...]
     parameters: tuple[str, ...]
@@ -136,8 +139,10 @@ class _Window:
         def alike(names: Sequence[str]) -> tuple[str, ...]:
             return tuple(c for each in names for c in known[each].components)
 
+        reference = Reference(equations)
         return cls(
-            reference=Reference(equations),
+            reference=reference,
+            replayed=Replayed(reference),
             size=size,
             state=rows(declared.variables),
             parameters=(*alike(declared.shared), *rows(declared.indexed)),
@@ -175,7 +180,7 @@ class _Window:
             return self._move_by_noise(inputs, state[len(self.state) :].tolist())
         if function == "sided_rhs":  # at the signs that are those of the point
             function = "rhs"
-        values = oracle(self.reference, function, inputs)
+        values = oracle(self.replayed, function, inputs)
         if function in ("rhs", "jacobian_vector", "projection"):
             by_name = dict(zip(own, values, strict=True))
             values = [by_name[name] for name in self.state]

@@ -12,6 +12,7 @@ import ast
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import product
 
 from coadjoint.crosscheck.family_series import check_series_text
@@ -217,7 +218,12 @@ def _evaluate(text: str, values: Mapping[str, int]) -> int:
                 return (value(i) + sign * value(places)) % value(size)
         raise failure(f"{text!r} is no row", text)
 
-    return value(ast.parse(text, mode="eval").body)
+    return value(_parse(text))
+
+
+@lru_cache(maxsize=1024)  # the same text is asked for all members
+def _parse(text: str) -> ast.expr:
+    return ast.parse(text, mode="eval").body
 
 
 # -- C ----------------------------------------------------------------------------------------

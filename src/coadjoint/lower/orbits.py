@@ -158,8 +158,36 @@ def _expand(rows: Sequence[Sequence[Residue]], columns: Sequence[int]) -> Residu
     return sum(signed[1:], signed[0])
 
 
-#: Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k`` by i and j, as entries by k.
-Brackets = Mapping[tuple[int, int], Mapping[int, Fraction]]
+class _Brackets:
+    """Brackets of basis vectors ``{x_i, x_j} = c_ij^k x_k``, as entries by k, when asked for.
+
+    Most algebras are none of so(3) and se(3) by their first few.
+
+    Args:
+        program: The product of the bracket with a vector, which stands behind the state.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.size = len(program.state) // 2
+        self._program = program
+        self._zeros = dict.fromkeys(program.names, Fraction(0))
+        self._columns: dict[int, list[dict[int, Fraction]]] = {}
+
+    def __call__(self, i: int, j: int) -> Mapping[int, Fraction]:
+        if j not in self._columns:
+            self._columns[j] = self._multiply(j)
+        return self._columns[j][i]
+
+    def _multiply(self, j: int) -> list[dict[int, Fraction]]:
+        """The product with the vector j, at each basis state, by rows."""
+        state, along = self._program.state[: self.size], self._program.state[self.size + j]
+        rows: list[dict[int, Fraction]] = [{} for _ in state]
+        for k, at in enumerate(state):
+            point = self._zeros | {along: Fraction(1), at: Fraction(1)}
+            for row, value in zip(rows, run(self._program, point, Fraction, _refuse), strict=True):
+                if value:
+                    row[k] = value
+        return rows
 
 
 def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
@@ -172,19 +200,18 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
         programs: The functions of a kernel that moves on coadjoint orbits, by name.
     """
     program = programs["bracket_vector"]
-    n = len(program.state) // 2
     if {*program.parameters, *program.inputs, *program.time} & program.names_used():
         return ()
-    brackets = _find_brackets(program, n)
-    found, place = list[Sphere](), 0
+    brackets = _Brackets(program)
+    n, found, place = brackets.size, list[Sphere](), 0
     while place < n:
         for sphere, size in _list_spheres(place, n):
-            if _is_sphere(brackets, sphere, range(place, place + size), n):
+            if _is_sphere(brackets, sphere, range(place, place + size)):
                 found.append(sphere)
                 place += size
                 break
         else:
-            if any(place in pair and entries for pair, entries in brackets.items()):
+            if any(brackets(place, j) or brackets(j, place) for j in range(n)):
                 return ()
             place += 1
     return tuple(found)
@@ -201,20 +228,6 @@ def find_noisy_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
     return find_spheres(still)
 
 
-def _find_brackets(program: Program, n: int) -> Brackets:
-    """All brackets of basis vectors: the product with each vector, at each basis state."""
-    brackets: dict[tuple[int, int], dict[int, Fraction]] = {}
-    state, vector = program.state[:n], program.state[n:]
-    zeros = dict.fromkeys(program.names, Fraction(0))
-    for j, along in enumerate(vector):
-        for k, at in enumerate(state):
-            rows = run(program, zeros | {along: Fraction(1), at: Fraction(1)}, Fraction, _refuse)
-            for i, value in enumerate(rows):
-                if value:
-                    brackets.setdefault((i, j), {})[k] = value
-    return brackets
-
-
 def _refuse(function: str, *_: Fraction) -> Fraction:
     """A bracket that is linear in the state calls no functions of it."""
     raise NotLinearError(function)
@@ -227,10 +240,10 @@ def _list_spheres(place: int, n: int) -> list[tuple[Sphere, int]]:
     return [*larger, (Sphere(first), 3)] if place + 3 <= n else []
 
 
-def _is_sphere(brackets: Brackets, sphere: Sphere, rows: range, n: int) -> bool:
+def _is_sphere(brackets: _Brackets, sphere: Sphere, rows: range) -> bool:
     """Whether the brackets of some rows are those of a factor, and vanish with all others."""
     own, turning = sphere.rows, sphere.tangent or sphere.rows
-    scale = brackets.get((turning[0], turning[1]), {}).get(turning[2])
+    scale = brackets(turning[0], turning[1]).get(turning[2])
     if not scale:
         return False
     expected: dict[tuple[int, int], dict[int, Fraction]] = {}
@@ -240,8 +253,7 @@ def _is_sphere(brackets: Brackets, sphere: Sphere, rows: range, n: int) -> bool:
             if sphere.tangent:
                 expected[turning[i], own[j]] = expected[own[i], turning[j]] = {own[c]: sign}
     return all(
-        brackets.get((i, j), {}) == expected.get((i, j), {})
-        and brackets.get((j, i), {}) == expected.get((j, i), {})
+        brackets(i, j) == expected.get((i, j), {}) and brackets(j, i) == expected.get((j, i), {})
+        for j in range(brackets.size)
         for i in rows
-        for j in range(n)
     )

@@ -20,7 +20,6 @@ import numpy as np
 
 from coadjoint.solve.arrays import pack_parameters
 from coadjoint.solve.family import FamilySystem
-from coadjoint.solve.formulas import Formula
 
 if TYPE_CHECKING:
     from coadjoint.solve.request import Request
@@ -33,6 +32,8 @@ class ShockWarning(UserWarning):
 
 def find_shock(system: FamilySystem, request: Request) -> float:
     """How long after the beginning the first shock of a trajectory comes; inf for never."""
+    from coadjoint.solve.formulas import Formula  # it reads specs, which few runs need
+
     text, length = system.wave
     state = request.state.reshape(system.size, -1)  # (N, members)
     given = pack_parameters(system, request.parameters).reshape(system.PARAMETERS.size, -1)

@@ -97,7 +97,13 @@ def peaks_of(equations: Equations) -> Peaks:
     state, count = equations.setting.state, len(equations.setting.state) // 2
     slots = 2 * (count + 1) ** 2  # cosh and sinh of differences of places, on both sides of each
     field = Field([PLACE, *state, "alpha", "L"], slots, ["alpha", "L"])
-    return Peaks(field, tuple(state[:count]), tuple(state[count:]), "L", "alpha")
+    return Peaks(
+        field=field,
+        places=tuple(state[:count]),
+        momenta=tuple(state[count:]),
+        length="L",
+        decay="alpha",
+    )
 
 
 def read_in_order(peaks: Peaks, equations: Equations, element: Element) -> Element:
