@@ -13,7 +13,8 @@ from scipy.linalg import solve_circulant
 from scipy.special import ellipj, ellipk
 
 from coadjoint.derive import Equations, derive
-from coadjoint.derive.fields.grid import Grid, generic_point, make_grid
+from coadjoint.derive.fields.generic import GenericPoint
+from coadjoint.derive.fields.grid import Grid, make_grid
 from coadjoint.families import Family
 from coadjoint.spec import read_spec_text
 from tests.specs import emitted, shipped
@@ -36,7 +37,7 @@ def fields_by_order(name: str, order: int) -> Equations:
 
 def family_by_order(name: str, order: int) -> Family:
     """The generic point of a shipped system with differences of an order."""
-    return generic_point(fields_by_order(name, order))
+    return GenericPoint(fields_by_order(name, order)).family
 
 
 def compile_rates(family: Family):

@@ -1,0 +1,326 @@
+r"""Generic point: the rates of fields at one point of a grid, as loops are made of them.
+
+Differences are applied to expressions, which are written without being multiplied out, and to
+elements of a field that has symbols for the neighbours, in which it is decided what differences
+keep.
+Comes in: Equations of fields. Goes out: a `Family`, and brackets, rates and densities of the point.
+Read next: `coadjoint.derive.fields.rings`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import sympy
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields import circle
+from coadjoint.derive.fields.jets import Jets, jets_of, narrow, solved
+from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
+from coadjoint.derive.fields.operators import Operator
+from coadjoint.derive.fields.solved import find_factors, solve_ring, write_solved
+from coadjoint.derive.fields.stencils import stencil, width_of
+from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.symbols import choose_names
+from coadjoint.exact import Element, Field
+from coadjoint.families import Family, Sum, Total
+
+
+class GenericPoint:
+    """The motion of fields at one point of a grid, by that of its neighbours.
+
+    Args:
+        equations: Of the fields.
+    """
+
+    def __init__(self, equations: Equations) -> None:
+        assert equations.spec.space is not None, equations.spec.name
+        self.equations, self.spec = equations, equations.spec
+        self.space, self.setting = equations.spec.space, equations.setting
+        self.jets: Jets = jets_of(self.setting)
+        self.operator: Operator = field_operator(self.setting)
+        (self.count,) = choose_names(self.spec, ["N"])
+        self.order = self.space.order
+
+    # -- densities ------------------------------------------------------------------------
+
+    @cached_property
+    def densities(self) -> dict[str, Element]:
+        """The energy and the observables, by component."""
+        return {name: narrow(self.jets, value) for name, value in self.equations.exact.observables}
+
+    @cached_property
+    def slopes(self) -> list[list[Element]]:
+        """Derivatives of the density of the energy by each field and its derivatives.
+
+        Where A u = m with a symmetric matrix A, half the sum of m u has the gradient u.
+        """
+        energy = self.densities["energy"]
+        return [self._find_slopes(energy, name) for name in self.setting.state]
+
+    def _find_slopes(self, density: Element, name: str) -> list[Element]:
+        if not solved(self.spec):
+            return self.jets.slopes(density, name)
+        own = self.jets.slopes(density, name) or [self.setting.field.zero]
+        whole = circle.vary(self.setting, density, name)
+        through = whole - self.jets.euler(density, name)
+        return [own[0] + through, *own[1:]]
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What has a value at each point: the fields, and what is solved for."""
+        return (*self.setting.state, *solved(self.spec))
+
+    @cached_property
+    def stencil_reach(self) -> int:
+        """The widest difference."""
+        orders = {t.order for row in self.operator for entry in row for t in entry}
+        for value in self.densities.values():
+            orders |= {len(self.jets.slopes(value, name)) - 1 for name in self.setting.state}
+        orders |= circle.inertia(self.setting).keys()
+        return max(width_of(k, self.order) for k in orders if k >= 0)
+
+    # -- at points, in any arithmetic -------------------------------------------------------
+
+    def motion(self, calculus: Calculus, place: Callable[[Element], Lattice]) -> list[Lattice]:
+        """The rates of the fields at points."""
+        slopes = [calculus.vary([place(x) for x in own]) for own in self.slopes]
+        entries = [
+            [[(place(t.left), t.order, place(t.right)) for t in entry] for entry in row]
+            for row in self.operator
+        ]
+        return calculus.compose(entries, slopes)
+
+    def placer(
+        self,
+        calculus: Calculus,
+        value: Callable[[str, int], Any],
+        convert: Callable[[Element, Mapping[str, Any]], Any],
+    ) -> Callable[[Element], Lattice]:
+        """How an expression in jets is evaluated at points.
+
+        Args:
+            calculus: The differences.
+            value: A component at a point.
+            convert: An expression with values for jets.
+        """
+        orders = self.jets.orders
+
+        def jet(symbol: str) -> Lattice:
+            name, n = orders[symbol]
+            return calculus.differentiate(lambda i: value(name, i), n)
+
+        def place(element: Element) -> Lattice:
+            named = sorted(self.setting.field.reach(element) & orders.keys())
+            values = {symbol: jet(symbol) for symbol in named}
+            known = dict[int, Any]()
+
+            def at(i: int) -> Any:
+                if i not in known:
+                    known[i] = convert(element, {x: f(i) for x, f in values.items()})
+                return known[i]
+
+            return at
+
+        return place
+
+    # -- the generic point ------------------------------------------------------------------
+
+    @cached_property
+    def written(self) -> tuple[list[sympy.Expr], dict[str, sympy.Expr]]:
+        """Rates and densities of the generic point as expressions that are not multiplied out."""
+        field = self.setting.field
+        inverse = sympy.Symbol(self.count) / sympy.Symbol(self.space.length)
+        calculus = Calculus(self.order, inverse, _rational, sympy.factor_terms)
+
+        def convert(element: Element, values: Mapping[str, Any]) -> Any:
+            new = {sympy.Symbol(name): value for name, value in values.items()}
+            return field.to_sympy(element).xreplace(new)
+
+        place = self.placer(calculus, lambda name, i: sympy.Symbol(name_at(name, i)), convert)
+        rates = [f(0) for f in self.motion(calculus, place)]
+        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    @cached_property
+    def reach(self) -> int:
+        """How far the neighbours are that rates and densities read."""
+        rates, densities = self.written
+        named = {s.name for each in (*rates, *densities.values()) for s in each.free_symbols}
+        return max(abs(shift) for _, shift in map(_read_place, named))
+
+    @cached_property
+    def lattice(self) -> LatticeField:
+        """An exact field for what is proved of the generic point."""
+        reach = 4 * self.reach
+        symbols = [name_at(c, r) for c in self.components for r in range(-reach, reach + 1)]
+        rest = [*self.setting.parameters, self.count]
+        slots = len(self.setting.field.adjoined)
+        positive = [*(self.setting.field.positive & {*rest}), self.count]
+        return LatticeField(Field([*symbols, *rest], slots, positive), self.components, reach)
+
+    def calculus_in(self, field: Field, inverse: Element) -> Calculus:
+        """Differences of elements of a field, with one over the spacing."""
+        return Calculus(self.order, inverse, field.number)
+
+    def converter(self, field: Field) -> Callable[[Element, Mapping[str, Any]], Any]:
+        """Expressions in jets as elements of another field."""
+        own = self.setting.field
+
+        def convert(element: Element, values: Mapping[str, Any]) -> Any:
+            known = {name: field[name] for name in own.reach(element) if name not in values}
+            return own.evaluate(element, {**known, **values}, field.number, field.call)
+
+        return convert
+
+    def _place_exactly(self) -> tuple[Calculus, Callable[[Element], Lattice]]:
+        """Differences and expressions in the exact field of the lattice."""
+        field = self.lattice.field
+        calculus = self.calculus_in(field, field[self.count] / field[self.space.length])
+        convert = self.converter(field)
+        return calculus, self.placer(calculus, lambda c, i: field[name_at(c, i)], convert)
+
+    @cached_property
+    def brackets(self) -> dict[tuple[str, str, int], Element]:
+        """``h {u_a(i), u_b(i + r)}`` by a, b and r."""
+        calculus, place = self._place_exactly()
+        found = dict[tuple[str, str, int], list[Element]]()
+        for a, entries in zip(self.setting.state, self.operator, strict=True):
+            for b, entry in zip(self.setting.state, entries, strict=True):
+                for term in entry:
+                    left, right = place(term.left), place(term.right)
+                    for r, c in stencil(term.order, self.order).items():
+                        weight = calculus.inverse**term.order * c
+                        found.setdefault((a, b, r), []).append(left(0) * right(r) * weight)
+        return {key: self.lattice.field.sum(parts) for key, parts in found.items()}
+
+    @cached_property
+    def exact_point(self) -> tuple[list[Element], dict[str, Element]]:
+        """Rates and densities of the generic point in the exact field of the lattice."""
+        calculus, place = self._place_exactly()
+        rates = [f(0) for f in self.motion(calculus, place)]
+        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    # -- what is solved for -------------------------------------------------------------------
+
+    @cached_property
+    def momenta(self) -> dict[str, Element]:
+        """The momentum at the generic point in the velocities around it; empty without A."""
+        if not solved(self.spec):
+            return {}
+        (m,), (u,), field = self.setting.state, solved(self.spec), self.lattice.field
+        factors = self._find_factors(field, field[self.count] / field[self.space.length])
+        return {m: field.sum(a * field[name_at(u, r)] for r, a in factors.items())}
+
+    def _find_factors(self, field: Field, inverse: Element) -> dict[int, Element]:
+        """The factors of the equation for the velocity in a field."""
+        convert = self.converter(field)
+        return find_factors(
+            self.setting, self.order, inverse, field.number, lambda x: convert(x, {})
+        )
+
+    def solve(
+        self, field: Field, inverse: Element, size: int, names: Mapping[tuple[str, int], str]
+    ) -> dict[tuple[str, int], Element]:
+        """The velocities of a ring, by their name and point."""
+        if not solved(self.spec):
+            return {}
+        (m,), (u,), factors = (
+            self.setting.state,
+            solved(self.spec),
+            self._find_factors(field, inverse),
+        )
+        found = solve_ring(factors, field, [field[names[m, i]] for i in range(size)])
+        return {(u, i): value for i, value in enumerate(found)}
+
+    @cached_property
+    def family(self) -> Family:
+        """The generic point as loops are made of it."""
+        rates, densities = self.written
+        symbols = {s for each in (*rates, *densities.values()) for s in each.free_symbols}
+        states = tuple(map(sympy.Symbol, self.setting.state))
+        neighbours = {
+            (sympy.Symbol(name), shift): symbol
+            for symbol in sorted(symbols, key=lambda s: (_read_place(s.name)[1], s.name))
+            for name, shift in [_read_place(symbol.name)]
+            if shift
+        }
+        count, length = map(sympy.Symbol, (self.count, self.space.length))
+        totals = tuple(
+            Total(
+                name=name,
+                formula=length * sympy.Symbol(f"{name}_sum") / count,
+                sums=(Sum(symbol=sympy.Symbol(f"{name}_sum"), term=term),),
+            )
+            for name, term in densities.items()
+        )
+        return Family(
+            index=self.space.index,
+            states=states,
+            shifts=tuple(sorted({shift for _, shift in neighbours})),
+            neighbours=neighbours,
+            shared=tuple(map(sympy.Symbol, self.setting.parameters)),
+            indexed=(),
+            partners={},
+            rates=tuple(rates),
+            pair_sums=(),
+            ends={},
+            totals=totals,
+            small=2 * self.stencil_reach + 1,
+            wraps=True,
+            count=(count,),
+            solved=write_solved(self.setting, self.order, count / length),
+        )
+
+    # -- what differences keep ------------------------------------------------------------------
+
+    def is_kept(self, name: str) -> bool:
+        """Whether the sum of an observable over the points is kept exactly."""
+        (each,) = (x for x in self.equations.exact.emitted if x.name == name)
+        field = self.lattice.field
+        return all(field.is_zero(x) for c in each.components for x in self.change(c).values())
+
+    def change(self, component: str) -> dict[str, Element]:
+        """The variation of the rate of the sum of a density; zeros if the sum is kept."""
+        rates, densities = self.exact_point
+        lattice, field = self.lattice, self.lattice.field
+        if self.momenta:
+            return self._change_by_velocities(component)
+        density, parts = densities[component], list[Element]()
+        for name, rate in zip(self.setting.state, rates, strict=True):
+            for r in range(-self.reach, self.reach + 1):
+                slope = field.derivative(density, name_at(name, r))
+                if slope:
+                    parts.append(slope * lattice.shift(rate, r))
+        return lattice.vary(field.sum(parts))
+
+    def _change_by_velocities(self, component: str) -> dict[str, Element]:
+        """The same where A u = m: all is a function of the velocities."""
+        calculus, place = self._place_exactly()
+        field, parts = self.lattice.field, list[Element]()
+        rates, _ = self.exact_point
+        for name, rate in zip(self.setting.state, rates, strict=True):
+            slopes = self._find_slopes(self.densities[component], name)
+            parts.append(calculus.vary([place(x) for x in slopes])(0) * rate)
+        whole = field.sum(parts)
+        for m, value in self.momenta.items():
+            known = {
+                name_at(m, r): self.lattice.shift(value, r)
+                for r in range(-self.lattice.reach, self.lattice.reach + 1)
+                if name_at(m, r) in field.reach(whole)
+            }
+            whole = field.substitute(whole, known)
+        return replace(self.lattice, components=solved(self.spec)).vary(whole)
+
+
+def _rational(value: Fraction) -> sympy.Rational:
+    return sympy.Rational(value.numerator, value.denominator)
+
+
+def _read_place(name: str) -> tuple[str, int]:
+    """A component and how many points away it is, by the name of both."""
+    component, _, rest = name.partition("[")
+    return component, int(rest.removesuffix("]") or 0)
