@@ -8,12 +8,30 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.lower import shared_frames
 from coadjoint.lower.check import check_programs
 from coadjoint.lower.lowering import lower
+from coadjoint.lower.program import run
 from coadjoint.lower.shared_frames import name_frames
 from coadjoint.lower.shared_frames import shared_frames as relations_of
 from coadjoint.resources import derivations_folder
 from tests.specs import spec
 
 BODY = (derivations_folder() / "orbiting_body.toml").read_text(encoding="utf-8")
+#: The torque of gravity's gradient on a satellite, by its quaternion.
+SATELLITE = """
+title = "A satellite by its quaternion"
+routes = ["euler-poincare"]
+[algebra]
+name = "so(3)"
+[variables]
+q = { role = "quaternion" }
+Omega = { role = "velocity" }
+Pi = { role = "momentum" }
+[parameters]
+I = { shape = [3], positive = true, default = [1, 2, 3] }
+[definitions]
+down = "rotate(conjugate(q), vector(0, 0, 1))"
+[lagrangian]
+l = "dot(Omega, diag(I)*Omega)/2 - dot(down, diag(I)*down)/2"
+"""
 NAMED = ["_y1", "_y2", "_y3", "_z1", "_z2", "_z3"]
 #: The same potential with y written out.
 PLAIN = (
@@ -79,3 +97,16 @@ def test_a_spoiled_remainder_is_caught(factor, monkeypatch):
     )
     with pytest.raises(CrossCheckError, match="lowering changed"):
         count(spec(BODY))
+
+
+@pytest.mark.parametrize("spoiled", [False, True])
+def test_no_terms_cancel_that_the_polynomial_does_not_have(spoiled, monkeypatch):
+    """The slope by q2 where q0 = q1 = 0 is 2 q2 (2 I2 q3^2 + I3 (q2^2 - q3^2)), without I1."""
+    if spoiled:
+        monkeypatch.setattr(shared_frames.SharedFrames, "_cancels", lambda *_: False)
+    program = lower(derive(spec(SATELLITE)))["energy_gradient"]
+    point = dict.fromkeys(program.names, 0.0) | {"q2": 0.7, "q3": 0.9, "I1": 1e9 / 3, "I2": 2.0}
+    point["I3"] = 3.0
+    found = run(program, point, float, None)[2]
+    expected = 1.4 * (4 * 0.9**2 + 3 * (0.7**2 - 0.9**2))
+    assert (abs(found - expected) < 1e-14) is not spoiled

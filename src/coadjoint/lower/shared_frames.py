@@ -6,7 +6,8 @@ pose, and are polynomials of the state and parameters, get names of their own he
 Groebner basis of the relations :math:`y_i - p_i(R, x)`, in an order that eliminates the state
 before y, the remainder of a polynomial that is one of y alone is that polynomial, whatever the
 state: then, :math:`q(p(R, x)) - g` is in the ideal for one g in y alone, since the p_i are
-independent. Other polynomials are left with fewer powers of the state, or as they were.
+independent. Other polynomials are left with fewer powers of the state, or as they were: a remainder
+whose terms would cancel one another, multiplied out, loses digits that the polynomial does not.
 Comes in: Equations. Goes out: the same with more definitions, and elements in their names.
 Read next: `coadjoint.lower.lowering`, which keeps them where they save operations.
 """
@@ -42,11 +43,14 @@ class SharedFrames:
         names: Of the state, of parameters and of the components, in the order of elimination.
         ring: Polynomials of these.
         basis: A Groebner basis of the relations.
+        sizes: Of the components, by their places in the ring, the polynomials that they are, with
+            positive coefficients.
     """
 
     names: tuple[str, ...]
     ring: PolyRing
     basis: tuple[Any, ...]
+    sizes: Mapping[int, Any]
 
     def rewrite(self, field: Field, element: Element) -> Element:
         """An element whose numerators are remainders; the same where that has not fewer terms."""
@@ -70,9 +74,20 @@ class SharedFrames:
         total = field.zero
         for outer, terms in parts.items():
             factor = prod((field[name] ** e for name, e in outer), start=field.one)
-            rest = self.ring.from_dict(terms).rem(list(self.basis))
-            total += factor * self._element(field, rest)
+            whole = self.ring.from_dict(terms)
+            rest = whole.rem(list(self.basis))
+            total += factor * self._element(field, whole if self._cancels(rest, whole) else rest)
         return total / prod((d**e for d, e in written.divisors), start=field.one)
+
+    def _cancels(self, rest: Any, whole: Any) -> bool:
+        """Whether terms of a remainder, multiplied out, are larger than those of the polynomial."""
+        total = self.ring.zero
+        for powers, c in rest.terms():
+            own = {n: e for n, e in enumerate(powers) if e and n in self.sizes}
+            outer = tuple(0 if n in own else e for n, e in enumerate(powers))
+            term = self.ring.from_dict({outer: abs(c)})
+            total += prod((self.sizes[n] ** e for n, e in own.items()), start=term)
+        return any(c > abs(whole.get(powers, 0)) for powers, c in total.terms())
 
     def _element(self, field: Field, polynomial: Any) -> Element:
         """A polynomial of the ring in the field."""
@@ -116,7 +131,7 @@ def _relate(equations: Equations, values: Mapping[str, Element]) -> SharedFrames
     own = (*equations.setting.state, *equations.setting.parameters)
     names = (*(name for name in own if name in reached), *reversed(tuple(values)))
     ring = PolyRing(names, QQ, lex)
-    relations = []
+    relations, sizes = [], {}
     for name, value in values.items():
         (written,) = field.quotients(value)
         terms = {}
@@ -124,8 +139,10 @@ def _relate(equations: Equations, values: Mapping[str, Element]) -> SharedFrames
             powers = dict(monomial.powers)
             number = QQ(monomial.number.numerator, monomial.number.denominator)
             terms[tuple(powers.get(each, 0) for each in names)] = number
-        relations.append(ring.from_dict(terms) - ring.gens[names.index(name)])
-    return SharedFrames(names, ring, tuple(groebner(relations, ring)))
+        place = names.index(name)
+        relations.append(ring.from_dict(terms) - ring.gens[place])
+        sizes[place] = ring.from_dict({powers: abs(c) for powers, c in terms.items()})
+    return SharedFrames(names=names, ring=ring, basis=tuple(groebner(relations, ring)), sizes=sizes)
 
 
 @once
