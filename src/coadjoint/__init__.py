@@ -17,7 +17,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from coadjoint.errors import CoadjointError, KinkWarning
+from coadjoint.errors import CoadjointError, KinkWarning, ShockWarning
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra, algebra_by_name
@@ -39,6 +39,7 @@ __all__ = [
     "KinkWarning",
     "LieAlgebra",
     "PoissonStructure",
+    "ShockWarning",
     "Spec",
     "System",
     "algebra_by_name",

@@ -236,3 +236,7 @@ class KinkWarning(UserWarning):
 
     `warnings.simplefilter("error", coadjoint.KinkWarning)` refuses such runs.
     """
+
+
+class ShockWarning(UserWarning):
+    """A run goes on beyond the time at which the waves of a field break."""

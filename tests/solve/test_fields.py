@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_circulant
 
-from coadjoint.errors import CoadjointError, KernelArgumentError
-from coadjoint.solve.shocks import ShockWarning
+from coadjoint.errors import CoadjointError, KernelArgumentError, ShockWarning
 from coadjoint.systems import (
     burgers,
     camassa_holm,

@@ -14,20 +14,17 @@ Read next: `coadjoint.solve.simulate`.
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from coadjoint.errors import ShockWarning
 from coadjoint.solve.arrays import pack_parameters
-from coadjoint.solve.family import FamilySystem
 
 if TYPE_CHECKING:
+    from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
-
-
-class ShockWarning(UserWarning):
-    """A run goes on beyond the time at which waves break."""
 
 
 def find_shock(system: FamilySystem, request: Request) -> float:
@@ -49,9 +46,12 @@ def find_shock(system: FamilySystem, request: Request) -> float:
 
 def warn_of_shock(system: System, request: Request) -> None:
     """Say when the shock comes, if it comes before the end of a run."""
-    if not isinstance(system, FamilySystem) or not system.wave:
+    if not system.wave:  # but for some families, there is none
         return
-    after, end = find_shock(system, request), float(request.times[-1]) - request.start
+    after, end = (
+        find_shock(cast("FamilySystem", system), request),
+        float(request.times[-1]) - request.start,
+    )
     if after < end:
         warnings.warn(
             f"{system.name} has a shock at t = {request.start + after:.6g}, before the end of the "
