@@ -85,6 +85,19 @@ ZEROS = [
     "sin(x + 2*atan(number(1))) - cos(x)",
     "sin(4*atan(number(1))/3)**2 - 3/number(4)",
     "8*cos(4*atan(number(1))/9)**3 - 6*cos(4*atan(number(1))/9) - 1",
+    "2*cos(8*atan(number(1))/5) - (sqrt(number(5)) - 1)/2",
+    "sqrt(3 + 2*sqrt(number(2))) - 1 - sqrt(number(2))",
+    "sqrt(sqrt(number(4) / 9) + 1/number(3)) - 1",
+    "sqrt((5 + sqrt(number(5)))/8) - sin(8*atan(number(1))/5)",
+    "1/(sqrt(number(5)) + 2*cos(8*atan(number(1))/5)) - 2/(3*sqrt(number(5)) - 1)",
+    "exp(log(number(2))/3)**3 - 2",
+    "exp(log(number(2))/3)*exp(log(number(4))/3) - 2",
+    "exp(log(number(4))/3) - exp(log(number(2))/3)**2",
+    "sqrt(x*(3 + 2*sqrt(number(2)))) - sqrt(x)*sqrt(3 + 2*sqrt(number(2)))",
+    "sqrt(5*x) - sqrt(number(5))*sqrt(x) + 4*cos(8*atan(number(1))/5) + 1 - sqrt(number(5))",
+    "sqrt((1 - sqrt(1 + sqrt(number(2))))**2) - sqrt(1 + sqrt(number(2))) + 1",
+    "sin(x + 8*atan(number(1))/5)*4 - sin(x)*(sqrt(number(5)) - 1)"
+    " - cos(x)*sqrt(10 + 2*sqrt(number(5)))",
 ]
 
 #: What looks like them and is not zero.
@@ -112,6 +125,12 @@ OTHERS = [
     "sign(x + y) - sign(x)",
     "exp(log(x)*(y + 1)) - exp(log(x)*y)",
     "cos(8*atan(number(1))/7) - 5/number(8)",
+    "2*cos(8*atan(number(1))/5) + (sqrt(number(5)) + 1)/2",
+    "sqrt(3 + 2*sqrt(number(2))) + 1 - sqrt(number(2))",
+    "sqrt(3 - 2*sqrt(number(2))) - 1 + sqrt(number(2))",
+    "exp(log(number(2))/3)**3 - 3",
+    "exp(log(number(2))/3)*exp(log(number(4))/3) + 2",
+    "sqrt(5*x) - sqrt(number(5))*sqrt(x) + 4*cos(8*atan(number(1))/5) + 1 + sqrt(number(5))",
 ]
 
 

@@ -155,6 +155,34 @@ def test_hidden_zeros_are_supported_numerically_and_say_so():
     assert "50-digit" in decision.method
 
 
+@pytest.mark.parametrize(
+    ("claimed", "holds"),
+    [
+        ("(1 + sqrt(2))*q^4 + (sqrt(5) + 1)*q^2/8", True),
+        ("(1 - sqrt(2))*q^4 + (sqrt(5) + 1)*q^2/8", False),
+        ("(1 + sqrt(2))*q^4 + (sqrt(5) - 1)*q^2/8", False),
+    ],
+)
+def test_roots_and_cosines_of_numbers_are_related_in_formulas(claimed, holds):
+    """``sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)`` and ``4 cos(pi/5) = sqrt(5) + 1``; no other sign."""
+    text = f"""
+title = "Oscillator"
+source = "exercise"
+routes = ["canonical"]
+[variables]
+q = {{ role = "coordinate" }}
+p = {{ role = "momentum", of = "q" }}
+[hamiltonian]
+h = "p^2/2 + sqrt(3 + 2*sqrt(2))*q^4 + cos(pi/5)*q^2/2"
+[claims]
+conserved = ["p^2/2 + {claimed}"]
+"""
+    certificate = prove_claims(spec(text))
+    assert next(c.verdict for c in certificate.claims if claimed in c.statement) is (
+        Verdict.PROVED if holds else Verdict.REFUTED
+    )
+
+
 def test_casimirs_are_judged_by_the_bracket_alone():
     """The energy is conserved, but it is no Casimir."""
     setting = make_setting(spec())

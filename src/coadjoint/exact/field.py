@@ -95,6 +95,8 @@ class Field(Rationals):
         self._plain: set[str] = set()
         #: What `coadjoint.exact.relations` knows of functions, by their generators.
         self.relations: dict[frozenset[str], object] = {}
+        #: Algebraic numbers that were looked for, by how they are written.
+        self.constants: dict[tuple[str, ...], Numbers | None] = {}
         self._slopes: dict[str, list[Element]] = {}
         self._derivatives: dict[tuple[str, str], Element] = {}
         #: The order in which functions were adjoined, and what they reach.

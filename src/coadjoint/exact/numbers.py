@@ -68,6 +68,7 @@ class Numbers:
 
     Args:
         written: The numbers; rational multiples of pi and rational numbers may be among them.
+        largest: The largest degree that is taken.
 
     Attributes:
         domain: The field; the rationals where nothing else was written.
@@ -83,7 +84,7 @@ class Numbers:
     'sqrt(3)/3'
     """
 
-    def __init__(self, written: Iterable[Written]) -> None:
+    def __init__(self, written: Iterable[Written], largest: int = ALGEBRAIC_DEGREE) -> None:
         self.domain = QQ
         self._written = list(written)
         self._expressions = [_real(each) for each in self._written]
@@ -97,7 +98,7 @@ class Numbers:
             if self._has(expression):
                 continue
             degree = irrational[expression] * (self.domain.mod.degree() if generators else 1)
-            if degree > ALGEBRAIC_DEGREE:
+            if degree > largest:
                 raise OverflowError(str(degree))
             generators.append(expression)
             self.domain = QQ.algebraic_field(*generators)
@@ -133,19 +134,27 @@ class Numbers:
         while self._span.rank < self.degree:
             factors = next(products)
             value = reduce(mul, (x for _, x in factors), self.domain.one)
-            if self._span.coordinates(self._row(value)) is None:
-                self._span.add(self._row(value))
+            if self._span.coordinates(self.powers(value)) is None:
+                self._span.add(self.powers(value))
                 self.basis.append(value)
                 self._products.append(tuple(each for each, _ in factors))
 
-    def _row(self, number: Any) -> Mapping[int, Fraction]:
+    def powers(self, number: Any) -> Mapping[int, Fraction]:
         """Coordinates of a number along the powers of the field's generator."""
         digits = [number] if self.domain.is_QQ else reversed(number.to_list())
         return {n: _fraction(c) for n, c in enumerate(digits) if c}
 
+    @property
+    def minimal(self) -> list[Fraction]:
+        """The minimal polynomial of the field's generator, monic, the highest power first."""
+        if self.domain.is_QQ:
+            return [Fraction(1), Fraction(0)]
+        highest, *rest = map(_fraction, self.domain.mod.to_list())
+        return [Fraction(1), *(c / highest for c in rest)]
+
     def coordinates(self, number: Any) -> dict[int, Fraction]:
         """The rational coordinates of a number along the basis; zeros left out."""
-        result = self._span.coordinates(self._row(number))
+        result = self._span.coordinates(self.powers(number))
         assert result is not None, number
         return {n: Fraction(x) for n, x in result.items()}
 

@@ -8,14 +8,11 @@ Read next: `coadjoint.exact.relations`, which rewrites the functions of a field 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from operator import mul
-
-import sympy
-from sympy.polys.numberfields.minpoly import minimal_polynomial
 
 from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import (
@@ -64,7 +61,7 @@ class Products:
         self.ring, self._free, self._exponent_of = ring, list(free), exponent_of
         self._positive = set(ring.positive)
         self._squares: dict[str, Element] = {}
-        self._minimal: dict[str, list[Fraction]] = {}
+        self._minimal: dict[str, Sequence[Fraction]] = {}
         self._radicals: list[Radical] = []
         self._signs: dict[Factor, Element] = {}
         self._logarithms: dict[Factor, Element] = {}
@@ -92,14 +89,17 @@ class Products:
         self._radicals.append(Radical(sine, self.factor(1 - cosine**2), signed=True))
         return cosine, sine
 
-    def cosine_of_part(self, parts: int) -> Element:
-        """``cos(pi/n)``, a new generator that is a root of its minimal polynomial."""
-        cosine = self.new()
-        (name,) = self.ring.names_in(cosine)
-        symbol = sympy.Symbol("x")
-        minimal = minimal_polynomial(sympy.cos(sympy.pi / parts), symbol, polys=True).monic()
-        self._minimal[name] = [Fraction(int(c.p), int(c.q)) for c in minimal.all_coeffs()]
-        return cosine
+    def algebraic(self, minimal: Sequence[Fraction]) -> Element:
+        """A new generator that is a root of a monic polynomial, the highest power first."""
+        result = self.new()
+        (name,) = self.ring.names_in(result)
+        self._minimal[name] = minimal
+        return result
+
+    def know_root(self, root: Element, radicand: Element) -> None:
+        """Take an element, which is not negative, for the root of a positive one."""
+        square = self.factor(radicand)
+        self._radicals.append(Radical(root, square))
 
     def normalize(self, element: Element, values: Mapping[str, Element] | None = None) -> Element:
         """An element with squares replaced, and signs that are known."""

@@ -3,7 +3,8 @@
 Comes in: the functions of a field that occur in an element. Goes out: for each of them an element
 of another ring, so that hidden zeros become the polynomial 0: ``exp(a + b) = exp(a) exp(b)``, sines
 and cosines of sums and multiples, ``sqrt(a) sqrt(b) = sqrt(a b)``, ``sqrt(a^2) = |a|``,
-``log(a b) = log|a| + log|b|``. Nothing depends on the order in which functions were adjoined.
+``log(a b) = log|a| + log|b|``. Algebraic numbers are polynomials in one of them
+(`coadjoint.exact.constants`). Nothing depends on the order in which functions were adjoined.
 
 - Arguments of exponentials, and of sines, generate a lattice over the integers. Its basis gives the
   generators; each function is a product, or a sum by the addition theorem, of theirs.
@@ -27,6 +28,7 @@ from math import lcm, prod
 from sympy.polys.rings import PolyElement
 
 from coadjoint.elementary import Arithmetic, evaluate
+from coadjoint.exact.constants import find_constants, minimal_of_cosine
 from coadjoint.exact.element import Element, numerator
 from coadjoint.exact.factors import Factor, factors_of
 from coadjoint.exact.field import Adjoined, Field, refuse_call
@@ -80,14 +82,19 @@ class Relations:
         self._angles = Lattice(field, [known.argument for known in angles])
         self._lonely = [n for n, row in enumerate(self._angles.rows) if _terms(row) > EXPANDED]
         count = len(self._exponents.basis) + 2 * len(self._angles.basis) + 2 * len(self._lonely)
-        count += sum(SPARE + len(_polynomial_factors(field, known.argument)) for known in products)
+        count += 1 + sum(
+            SPARE + len(_polynomial_factors(field, known.argument)) for known in products
+        )
         count += len(called) - len(powers) - len(angles) - len(products)  # one for each other
         free = [f"__{n + 1}" for n in range(count)]
         self.ring = Field([*field.names, *free], positive=field.positive)
         self.products = Products(self.ring, free, self._exponent_of)
         self._images: dict[str, Element] = {}
+        self._has_numbers = False
         self._powers = [self.products.new(positive=True) for _ in self._exponents.basis]
         self._turns = [half_turns(field, each) for each in self._angles.basis]
+        parts = [lcm(2, turn.denominator) for turn in self._turns if turn is not None]
+        self._take_numbers(called, max([each for each in parts if each <= PARTS], default=0))
         self._circles = [
             self.products.circle() if turn is None else self._part_of_turn(turn)
             for turn in self._turns
@@ -96,7 +103,8 @@ class Relations:
         self._exponents_of = {known.generator: n for n, known in enumerate(powers)}
         self._alone: dict[tuple[Fraction, ...], tuple[Element, Element]] = {}
         for known in called:
-            self._images[known.generator] = self._image_of(known)
+            if known.generator not in self._images:
+                self._images[known.generator] = self._image_of(known)
         for condition in field.region.conditions:
             if condition.element and field.functions_in(condition.element) <= self.names:
                 self.products.note_positive(self.products.factor(self._image(condition.element)))
@@ -116,7 +124,7 @@ class Relations:
     def are_any(self) -> bool:
         """Whether a function is more than a generator of its own."""
         angles = set(self._angles.vectors)
-        if any(turn is not None for turn in self._turns):
+        if self._has_numbers or any(turn is not None for turn in self._turns):
             return True
         if len(self._exponents.rows) + len(angles) > len(self._powers) + len(self._circles):
             return True
@@ -130,6 +138,27 @@ class Relations:
         return len(plain) < len(products)
 
     # -- images ---------------------------------------------------------------------------
+
+    def _take_numbers(self, called: Sequence[Adjoined], parts: int) -> None:
+        """Algebraic numbers by one of them; ``parts`` of a half turn have a cosine that occurs."""
+        self._cosine = self.ring.one
+        constants = find_constants(self.field, called, parts)
+        if constants is None:
+            if parts:
+                self._cosine = self.products.algebraic(minimal_of_cosine(parts))
+            return
+        number = self.products.algebraic(constants.numbers.minimal)
+        values = [
+            self.ring.sum(number**n * c for n, c in constants.powers_of(place).items())
+            for place in range(len(constants.roots) + bool(parts))
+        ]
+        self._images |= dict(zip(constants.roots, values, strict=False))
+        self._cosine = values[-1]
+        self._has_numbers = True
+        for generator in constants.roots:
+            known = self.field.adjoined[generator]
+            if known.function == "sqrt":
+                self.products.know_root(self._images[generator], self._image(known.argument))
 
     def _image(self, element: Element) -> Element:
         """An element in the new ring, as one quotient."""
@@ -169,8 +198,8 @@ class Relations:
         parts = lcm(2, turn.denominator)
         if parts > PARTS:
             return self.products.circle()
-        cosine, count = self.products.cosine_of_part(parts), int(turn * parts)
-        both = (cosine_of_multiple(self.ring, cosine, n) for n in (count, parts // 2 - count))
+        count = int(turn * parts)
+        both = (cosine_of_multiple(self.ring, self._cosine, n) for n in (count, parts // 2 - count))
         first, second = map(self.products.normalize, both)
         return first, second
 
