@@ -477,7 +477,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         rtol=1e-9,
         atol=1e-12,
         size=step,
-        max_steps=1000,
+        max_steps=60,
         seed=1,
         bound=2.0,
         remembered=choice.count_memory(system.STATE.size, searches=False),
