@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 JOBS   ?= 2
 
-.PHONY: help setup regenerate check test test-all bench docs clean
+.PHONY: help setup regenerate check test test-all bench docs site clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 14
@@ -39,6 +39,10 @@ bench: setup  ## measure every figure; a peer that is not installed is a line th
 
 docs: regenerate  ## write docs/specs.md, docs/pictures, and build/docs with schema and derivations
 	$(BIN)/python -P docs/make.py
+
+site: setup  ## build the site into build/site: documents, gallery, explorers, reference
+	$(BIN)/python -P -m pip install --quiet --disable-pip-version-check --editable '.[site]'
+	$(BIN)/python -P site/build.py
 
 clean:  ## remove what was built; .venv, and whatever git ignores below it, go too
 	rm -rf build dist $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -14,7 +14,8 @@ import coadjoint
 
 def main() -> dict[float, float]:
     """How far the momentum leaves the middle axis, for several momenta of the rotor."""
-    gyrostat = coadjoint.load(Path(__file__).with_name("gyrostat.toml"))
+    here = Path(main.__code__.co_filename)  # a gallery runs this without a name of the file
+    gyrostat = coadjoint.load(here.with_name("gyrostat.toml"))
     strayed = {}
     for L in (0.0, 0.2, 0.4, 0.6):
         motion = gyrostat.simulate({"Pi": [0.01, 1.0, 0.01], "L": L}, (0.0, 100.0))

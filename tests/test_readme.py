@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 import coadjoint
+from coadjoint.build.compiler import find_compiler
 from coadjoint.cli import main
 from coadjoint.cli.program import COMMANDS
 from coadjoint.limits import EXAMINED_GENERATORS
@@ -20,6 +22,11 @@ from tests.conftest import FAMILIES, FIELDS, SYSTEMS
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGES = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "docs").glob("*.md")}
+GUIDES = {
+    path.stem: path.read_text(encoding="utf-8")
+    for path in sorted((ROOT / "docs" / "howto").glob("*.md"))
+    if path.stem != "README"
+}
 SPECS, DRIVEN = PAGES["specs"], PAGES["driven"]
 
 
@@ -55,7 +62,44 @@ def test_python_of_the_readme_runs(folder):
     assert names["motion"]["Pi2"].min() > 0.9
 
 
-@pytest.mark.parametrize("page", ["python", "simulation", "events", "algebras", "theory"])
+@pytest.mark.parametrize("guide", GUIDES)
+def test_a_guide_does_what_it_says(guide, folder):
+    """Its specs are files by the name that the text gives them, and its Python runs."""
+    text, names = GUIDES[guide], {}
+    for spec in blocks("toml", text):
+        (name,) = set(re.findall(r"With this text in `(\w+\.toml)`", text))
+        (folder / name).write_text(spec, encoding="utf-8")
+    assert blocks("python", text)
+    for block in blocks("python", text):
+        exec(compile(block, f"{guide}.md", "exec"), names)
+
+
+def test_the_guide_to_c_prints_what_python_prints(folder):
+    """Its program is compiled with the options it names, and ends where the library does."""
+    text = GUIDES["export"]
+    (words,) = (shlex.split(line) for block in blocks("sh", text) for line in block.splitlines())
+    assert CliRunner().invoke(main, words[1:]).exit_code == 0
+    (program,) = blocks("c", text)
+    (folder / "program.c").write_text(program, encoding="utf-8")
+    options = re.search(r"`cc (.*?)`", text)[1]
+    compiler = find_compiler().command
+    subprocess.run([*compiler, *shlex.split(options), "-o", "program"], check=True)
+    printed = subprocess.run([str(folder / "program")], check=True, capture_output=True, text=True)
+    names = {}
+    exec(compile(blocks("python", text)[0], "export.md", "exec"), names)
+    assert [float(word) for word in printed.stdout.split()] == names["run"]["Pi"][:, -1].tolist()
+
+
+def test_every_guide_is_listed():
+    """The first page of the guides links each of them."""
+    page = (ROOT / "docs" / "howto" / "README.md").read_text(encoding="utf-8")
+    assert len(GUIDES) >= 5
+    assert set(re.findall(r"\]\((\w+)\.md\)", page)) == set(GUIDES)
+
+
+@pytest.mark.parametrize(
+    "page", ["python", "simulation", "events", "algebras", "theory", "tutorial"]
+)
 def test_python_of_a_page_runs(page, folder):
     """The Python blocks of a page run one after the other, in the folder of the gyrostat."""
     names = {}
@@ -101,9 +145,10 @@ def test_commands_of_the_readme_work(folder):
 
 
 def test_the_example_of_a_spec_is_the_one_that_ships():
-    """The walk-through and `examples/gyrostat.toml` are one text."""
+    """The README, the tutorial and `examples/gyrostat.toml` have one text."""
     spec, *_ = blocks("toml")
-    assert spec == (ROOT / "examples" / "gyrostat.toml").read_text(encoding="utf-8")
+    (walked,) = blocks("toml", PAGES["tutorial"])
+    assert walked == spec == (ROOT / "examples" / "gyrostat.toml").read_text(encoding="utf-8")
 
 
 def test_what_a_command_prints_is_what_it_printed():

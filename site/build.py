@@ -1,0 +1,245 @@
+"""Build the site: lay out docs, a page for each system and the reference; then run Sphinx.
+
+    python site/build.py [--systems heavy_top,kepler] [--output build/site]       (or `make site`)
+
+What a page of a system shows is what commands of coadjoint print. It is made once for each state of
+the engine and of the spec, and kept in build/site-made. Any warning is an error: a link without an
+end, an anchor that is not there, an example that fails.
+"""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+import coadjoint
+from coadjoint.cli.arguments import shipped_names, spec_path
+from coadjoint.fingerprint import digest, engine_fingerprint
+from coadjoint.spec import read_spec
+
+ROOT = Path(__file__).resolve().parents[1]
+MADE = ROOT / "build" / "site-made"
+SOURCE = ROOT / "build" / "site-source"
+
+#: What is made of each system: the file, and the command that writes it.
+PARTS = {
+    "picture.png": ["simulate", "{name}", "--plot", "{path}"],
+    "document.html": ["show", "{name}", "--format", "html", "--output", "{path}"],
+    "explorer.html": ["explore", "{name}", "--output", "{path}"],
+}
+
+
+@dataclass(frozen=True)
+class Made:
+    """What was made of a system.
+
+    Attributes:
+        name: Of the system.
+        title: Of its spec.
+        about: What its spec says of it.
+        source: Where it comes from.
+        routes: That derive it.
+        folder: Where the parts are.
+        parts: Those that the commands could make.
+    """
+
+    name: str
+    title: str
+    about: str
+    source: str
+    routes: Sequence[str]
+    folder: Path
+    parts: frozenset[str]
+
+
+def make_parts(name: str) -> Made:
+    """Run the commands of a system, unless nothing has changed since."""
+    path = spec_path(name)
+    spec = read_spec(path)
+    key = digest({"engine": engine_fingerprint(), "spec": path.read_text(encoding="utf-8")})
+    folder = MADE / name / key[:16]
+    if not (folder / "done").is_file():
+        shutil.rmtree(MADE / name, ignore_errors=True)
+        folder.mkdir(parents=True)
+        for part, words in PARTS.items():
+            given = [word.format(name=name, path=folder / part) for word in words]
+            run = subprocess.run(
+                [sys.executable, "-P", "-m", "coadjoint.cli", *given],
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            if run.returncode not in (0, 1, 2):  # 1: a run that ended early; 2: it does not apply
+                raise click.ClickException(f"{' '.join(given)}: {run.stderr}")
+            if run.returncode:
+                (folder / f"{part}.txt").write_text(run.stderr, encoding="utf-8")
+        (folder / "done").touch()
+    parts = frozenset(part for part in PARTS if (folder / part).is_file())
+    about = " ".join(spec.description.split())
+    return Made(name, spec.title, about, spec.source, spec.routes, folder, parts)
+
+
+def make_all(names: Sequence[str]) -> Iterator[Made]:
+    """The same of many systems, two at a time, with progress."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        made = pool.map(make_parts, names)
+        with click.progressbar(made, length=len(names), label="systems", file=sys.stderr) as shown:
+            yield from shown
+
+
+# -- pages ----------------------------------------------------------------------------------
+
+
+def write_system(made: Made) -> str:
+    """The page of a system."""
+    lines = [f"# {made.title}", ""]
+    if made.about:
+        lines += [made.about, ""]
+    if "picture.png" in made.parts:
+        lines += [f"![A motion of {made.title}](../_static/pictures/{made.name}.png)", ""]
+    links = []
+    if "document.html" in made.parts:
+        links.append(f'<a href="../documents/{made.name}.html">Derivation and proofs</a>')
+    if "explorer.html" in made.parts:
+        links.append(f'<a href="../explorers/{made.name}.html">Explorer</a>')
+    if links:
+        lines += ["<p>" + " &middot; ".join(links) + "</p>", ""]
+    lines += [
+        f"Source: {made.source}. Routes: {', '.join(f'`{each}`' for each in made.routes)}.",
+        "",
+        "```python",
+        f"from coadjoint.systems import {made.name}",
+        "```",
+        "",
+        "## Declaration",
+        "",
+        "```toml",
+        spec_path(made.name).read_text(encoding="utf-8").strip(),
+        "```",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def list_groups(names: Iterable[str]) -> list[tuple[str, list[str]]]:
+    """Groups of docs/systems.md, with the systems among some names."""
+    chosen, groups = set(names), []
+    for line in (ROOT / "docs" / "systems.md").read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if line.startswith("| ") and len(cells) == 2 and "`" in cells[1]:
+            own = [each.strip(" `") for each in cells[1].split(",")]
+            if found := [each for each in own if each in chosen]:
+                groups.append((cells[0], found))
+    return groups
+
+
+def write_index(systems: Sequence[Made]) -> str:
+    """The gallery: a picture of each system that leads to its page."""
+    known = {made.name: made for made in systems}
+    lines = ["# Systems", "", "Each picture leads to its declaration, derivation and explorer.", ""]
+    for title, names in list_groups(known):
+        lines += [f"## {title[0].upper()}{title[1:]}", "", '<div class="systems">']
+        for name in names:
+            image = ""
+            if "picture.png" in known[name].parts:
+                image = f'<img src="../_static/pictures/{name}.png" alt="" loading="lazy">'
+            label = html.escape(known[name].title)
+            lines.append(f'<a href="{name}.html">{image}<span>{label}</span></a>')
+        lines += ["</div>", ""]
+    listed = "\n".join(sorted(known))
+    lines += ["```{toctree}", ":hidden:", "", listed, "```", ""]
+    return "\n".join(lines)
+
+
+def write_reference() -> str:
+    """The page of the public names."""
+    lines = ["# Python", "", "The public names of `coadjoint`, with their signatures.", ""]
+    for name in coadjoint.__all__:
+        value = getattr(coadjoint, name)
+        kind = "autoclass" if isinstance(value, type) else "autofunction"
+        lines += ["```{eval-rst}", f".. {kind}:: coadjoint.{name}", "```", ""]
+    lines += ["## Solutions", "", "```{eval-rst}"]
+    lines += [".. autoclass:: coadjoint.solve.solution.Solution", "```", ""]
+    return "\n".join(lines)
+
+
+def lay_out(systems: Sequence[Made]) -> None:
+    """The sources of Sphinx: the repository's own pages where they are, and those made here."""
+    shutil.rmtree(SOURCE, ignore_errors=True)
+    leave_out = shutil.ignore_patterns("*.in.md", "make.py", "__pycache__")
+    shutil.copytree(ROOT / "docs", SOURCE / "docs", ignore=leave_out)
+    shutil.copytree(ROOT / "examples", SOURCE / "examples", ignore=leave_out)
+    specs = SOURCE / "docs" / "specs.md"
+    specs.write_text(_below_one_title(specs.read_text(encoding="utf-8")), encoding="utf-8")
+    for path in (SOURCE / "examples").glob("*.py"):
+        path.write_text(_with_title(path.read_text(encoding="utf-8")), encoding="utf-8")
+    for folder in ("docs/howto", "docs/decisions"):  # what their first pages list as tables
+        with (SOURCE / folder / "README.md").open("a", encoding="utf-8") as page:
+            page.write("\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n")
+    for name in ("README.md", "CHANGELOG.md", "LICENSE", "CITATION.cff"):
+        shutil.copy(ROOT / name, SOURCE / name)
+    for name in ("index.md", "conf.py"):
+        shutil.copy(ROOT / "site" / name, SOURCE / name)
+    shutil.copy(ROOT / "site" / "examples.rst", SOURCE / "examples" / "GALLERY_HEADER.rst")
+    (SOURCE / "_static" / "pictures").mkdir(parents=True)
+    shutil.copy(ROOT / "site" / "site.css", SOURCE / "_static" / "site.css")
+    for folder in ("_made/documents", "_made/explorers", "systems", "reference"):
+        (SOURCE / folder).mkdir(parents=True)
+    for made in systems:
+        for part, place in (
+            ("picture.png", f"_static/pictures/{made.name}.png"),
+            ("document.html", f"_made/documents/{made.name}.html"),
+            ("explorer.html", f"_made/explorers/{made.name}.html"),
+        ):
+            if part in made.parts:
+                shutil.copy(made.folder / part, SOURCE / place)
+        _write(f"systems/{made.name}.md", write_system(made))
+    _write("systems/index.md", write_index(systems))
+    _write("reference/api.md", write_reference())
+
+
+def _below_one_title(page: str) -> str:
+    """A page of several parts as parts of the first: a contents then lists it once."""
+    first, rest = page.split("\n## ", 1)
+    parts = re.split(r"(^```.*?^```)", f"\n## {rest}", flags=re.DOTALL | re.MULTILINE)
+    parts[::2] = [re.sub(r"^#", "##", part, flags=re.MULTILINE) for part in parts[::2]]
+    return first + "".join(parts)
+
+
+def _with_title(script: str) -> str:
+    """A script whose first line is the title of its page in the gallery."""
+    prose, code = script.removeprefix('"""').split('"""', 1)
+    first, rest = prose.replace("|", r"\|").split("\n", 1)
+    return f'r"""{first.rstrip(".")}\n{"=" * len(first)}\n{rest}"""{code}'
+
+
+def _write(name: str, text: str) -> None:
+    (SOURCE / name).write_text(text, encoding="utf-8")
+
+
+@click.command()
+@click.option("--systems", default="", help="Some systems, with commas; all without it.")
+@click.option("--output", type=click.Path(path_type=Path), default=ROOT / "build" / "site")
+def main(systems: str, output: Path) -> None:
+    """Build the site."""
+    names = systems.split(",") if systems else list(shipped_names())
+    lay_out(list(make_all(names)))
+    words = ["-m", "sphinx", "--fail-on-warning", "--keep-going", "-q", "-j", "auto"]
+    run = subprocess.run([sys.executable, *words, str(SOURCE), str(output)], check=False)
+    if run.returncode:
+        raise click.ClickException("the site has warnings, which are errors: see above")
+    click.echo(f"open {output / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()
