@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
-from tempfile import mkdtemp
 
 from coadjoint.derive import Equations, derive
 from coadjoint.lower.lowering import lower
@@ -14,6 +12,7 @@ from coadjoint.solve.folders import load_folder
 from coadjoint.solve.system import System
 from tests.constrained import SLEIGH
 from tests.specs import spec
+from tests.trees_of_files import folder_until_exit
 
 #: A ball whose centre of mass is at chi; s, from the contact to there, is an expression to replace.
 BALL = """
@@ -70,7 +69,7 @@ def derived(text: str, *changes: tuple[str, str]) -> Equations:
 def built(text: str, *changes: tuple[str, str]) -> System:
     """The System of a text, in a folder of its own."""
     equations = derived(text, *changes)
-    folder = Path(mkdtemp(prefix="coadjoint-test-")) / "sample"
+    folder = folder_until_exit() / "sample"
     folder.mkdir()
     for name, content in render_system(kernel_context(equations, lower(equations))).items():
         (folder / name).write_text(content)

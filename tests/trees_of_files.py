@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+
+
+def folder_until_exit() -> Path:
+    """A folder for what a process makes once for all of its tests; it goes when that ends."""
+    folder = Path(tempfile.mkdtemp(prefix="coadjoint-test-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 def copy_source(folder: Path, *systems: str) -> Path:

@@ -12,8 +12,6 @@ import sys
 import time
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 
@@ -25,6 +23,7 @@ from coadjoint.solve.folders import load_folder
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import heavy_top
 from tests.programs import FOLLOWED
+from tests.trees_of_files import folder_until_exit
 
 BATCH = np.random.default_rng(5).normal(size=(6, 43))
 #: On the circle of radius 1.
@@ -81,7 +80,7 @@ RUNS = {
 def followed():
     """An oscillator whose path is reconstructed, without its domain, which it would leave soon."""
     programs = tuple(each for each in FOLLOWED.programs if each.name != "domain")
-    folder = Path(mkdtemp(prefix="coadjoint-test-"))
+    folder = folder_until_exit()
     for file, text in render_system(replace(FOLLOWED, programs=programs, domain=())).items():
         (folder / file).write_text(text)
     return load_folder(folder)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from functools import cache
-from pathlib import Path
 
 from coadjoint.solve.folders import load_folder
 from coadjoint.solve.system import System
 from tests.specs import render_claims, spec
+from tests.trees_of_files import folder_until_exit
 
 #: A stone above the ground, which it reaches from rest after sqrt(2 h/g).
 STONE = """
@@ -133,7 +132,7 @@ wheels = "dot(a, Omega) == 0"
 @cache
 def built(text: str, *changes: tuple[str, str]) -> System:
     """The System of a spec, proved but not compiled: use the target ``numpy``."""
-    folder = Path(tempfile.mkdtemp(prefix="coadjoint-domain-"))
+    folder = folder_until_exit()
     for name, content in render_claims(spec(text, *changes)).texts.items():
         (folder / name).write_text(content)
     return load_folder(folder)
