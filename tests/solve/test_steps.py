@@ -12,6 +12,7 @@ from scipy.integrate import DOP853
 from coadjoint.lower.tableau import END, FIFTH, STAGES, THIRD, dop853, load_dop853
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.steps import rough_log2, rough_power
+from coadjoint.systems import heavy_top, heisenberg_lattice
 from tests.kernels import COMPILER, STRICT
 from tests.programs import BOUNDED, HEAVY_TOP, PENDULUM
 from tests.solve.systems import EMPTYING
@@ -204,3 +205,31 @@ def run_under(sanitizers, name, main, folder):
     environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # leaks need ptrace
     done = subprocess.run([str(folder / "main")], check=False, env=environment, capture_output=True)
     return done.returncode
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize("method", ["rk4", "midpoint", "splitting4"])
+def test_steps_of_one_length_are_all_equal(method, target):
+    """0.15 and 3*0.05 are different doubles, and three steps lead to both; 1e-12 more is a part."""
+    start, ends = [0.4, 0.9, 1.2, 0.6, 0.0, 0.8], (0.15, 3 * 0.05, 0.15 * (1 + 1e-12))
+    one, same, other = (
+        heavy_top.simulate(start, (0, end), method=method, step=0.05, samples=2, target=target)
+        for end in ends
+    )
+    assert one.time[-1] != same.time[-1]
+    assert (one.state[:, -1] == same.state[:, -1]).all()
+    assert (one.state[:, -1] != other.state[:, -1]).any()
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+def test_steps_of_equal_members_are_all_equal(target):
+    """The same of a family."""
+    spins = {"S": np.random.default_rng(0).normal(size=(3, 1000))}
+    given = {"method": "midpoint", "step": 0.05, "samples": 2, "target": target}
+    lattice = heisenberg_lattice.system.resize({"i": 1000})
+    one, same, other = (
+        lattice.simulate(spins, (0, end), **given).state[:, -1]
+        for end in (0.15, 3 * 0.05, 0.15 * (1 + 1e-12))
+    )
+    assert (one == same).all()
+    assert (one != other).any()

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coadjoint.solve.limits import NEAR, NONE, Limits, Step
-from coadjoint.solve.steps import Lanes, add_low
+from coadjoint.solve.steps import Lanes, add_low, reaches_end
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -373,7 +373,7 @@ class Ensemble:
         """The time after a step, and what rounding takes of it."""
         late = np.zeros(took.shape) if self.late is None else self.late[going]
         time, late = add_low(lanes.time, late, took)
-        ends = took == lanes.end - lanes.time
+        ends = reaches_end(lanes, took)
         return np.where(ends, lanes.end, time), np.where(ends, 0.0, late)
 
     def _record(

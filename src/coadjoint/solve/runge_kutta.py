@@ -66,7 +66,7 @@ class RungeKutta4:
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `Method.try_step`."""
         x, none = lanes.state, np.zeros(lanes.time.shape)
-        h = find_fixed_step(self.size, lanes.end - lanes.time)
+        h = find_fixed_step(lanes, self.size)
         half = h * 0.5
         first = self.rates(lanes, none, x)
         k = self.rates(lanes, half, x + half * first)

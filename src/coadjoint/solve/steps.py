@@ -318,13 +318,24 @@ def _norm(rows: Array) -> Array:
 def find_step(lanes: Lanes, size: float, asked: Array, most: Array) -> Array:
     """A fixed step, if it has a size, or one that is asked for, rounded so that time is exact."""
     if size > 0:
-        return find_fixed_step(size, most)
+        return find_fixed_step(lanes, size)
     return smaller((lanes.time + asked) - lanes.time, most)
 
 
-def find_fixed_step(size: float, most: Array) -> Array:
-    """A fixed step, a little longer where it would leave next to nothing."""
-    return np.where(most < size * 1.000001, most, size)
+def find_fixed_step(lanes: Lanes, size: float) -> Array:
+    """A fixed step; what is left where that is shorter, or longer by next to nothing.
+
+    Where rounding of times alone tells the two apart, it is the fixed step: all steps are equal.
+    """
+    most, whole = lanes.end - lanes.time, np.full(lanes.time.shape, size)
+    return np.where((most < size * 1.000001) & ~reaches_end(lanes, whole), most, whole)
+
+
+def reaches_end(lanes: Lanes, took: Array) -> Mask:
+    """Whether a step ends where its trajectory does, but for rounding of times."""
+    times = larger(np.abs(lanes.end), np.abs(lanes.time))
+    rounding = smaller(times * 2.0**-50, took * 2.0**-20)
+    return np.asarray(np.abs(took - (lanes.end - lanes.time)) <= rounding)
 
 
 def larger(a: Array, b: Array) -> Array:

@@ -129,7 +129,7 @@ class Heun(_Noisy):
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
-        h = find_fixed_step(self.size, lanes.end - lanes.time)
+        h = find_fixed_step(lanes, self.size)
         rates = self.move(lanes, h)
         first = rates(np.zeros(h.shape), lanes.state)
         later = rates(h, lanes.state + h * first)
@@ -142,7 +142,7 @@ class Midpoint(_Noisy):
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
-        h = find_fixed_step(self.size, lanes.end - lanes.time)
+        h = find_fixed_step(lanes, self.size)
         rates, half, middle = self.move(lanes, h), h * 0.5, lanes.state
         done, solved = np.zeros(h.shape, bool), np.zeros(h.shape, bool)
         last, kept = np.full(h.shape, np.inf), self.prepare(lanes.state)

@@ -58,7 +58,7 @@ class Maps:
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
-        h = find_fixed_step(self.size, lanes.end - lanes.time)
+        h = find_fixed_step(lanes, self.size)
         end = lanes.state.copy()
         memory = None
         if self.is_compensated and lanes.memory is not None:

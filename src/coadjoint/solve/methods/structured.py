@@ -59,7 +59,7 @@ class Structured:
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
-        h, start = find_fixed_step(self.size, lanes.end - lanes.time), lanes.state
+        h, start = find_fixed_step(lanes, self.size), lanes.state
         assert lanes.memory is not None
         found, memory, solved, sweeps = self.method.advance(lanes, h, start, lanes.memory)
         end = np.where(solved, found, start)
