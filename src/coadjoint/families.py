@@ -109,17 +109,20 @@ class Solved:
     """A component that follows from another one by a linear equation around a ring.
 
     ``sum_r a_|r| u[i+r] = m[i]``, with the same factors for every member; the matrix is symmetric
-    and positive.
+    and positive. A level component has the mean 0: the matrix is then this one times that of ``2
+    u[i] - u[i-1] - u[i+1]``, which takes constants to 0, and m is taken without its mean.
 
     Attributes:
         symbol: What is solved for, of member i.
         of: The component on the right side.
         factors: ``a_0, a_1, ...``, in symbols of shared parameters and of N.
+        level: Whether it is level.
     """
 
     symbol: Symbol
     of: Symbol
     factors: tuple[Tree, ...]
+    level: bool = False
 
 
 @dataclass(frozen=True)

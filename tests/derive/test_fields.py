@@ -221,7 +221,7 @@ def test_lagrangians_of_strands_that_are_refused(old, new, message):
         ("L", "no kinetic energy"),
         ("u^2/2 + u*u_s^2", "no linear operator"),
         ("u^2/2 - u_s^2/2", "factor of u_s^2 is -1/2 at the defaults"),
-        ("u_s^2/2", "factor of u^2 is 0 at the defaults"),
+        ("(c - 121/250000)*u^2 + u_s^2/2", "factor of u^2 is 0 at the defaults"),
     ],
 )
 def test_lagrangians_of_the_circle_that_are_refused(l, message):  # noqa: E741

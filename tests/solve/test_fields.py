@@ -11,12 +11,20 @@ from coadjoint.errors import CoadjointError, KernelArgumentError, ShockWarning
 from coadjoint.systems import (
     burgers,
     camassa_holm,
+    hunter_saxton,
     kdv,
     landau_lifshitz,
     spin_chain,
     spin_chain_chiral,
 )
-from tests.fields import cnoidal_wave, helix, precessing_wave, smooth_length, smooth_wave
+from tests.fields import (
+    breaking_wave,
+    cnoidal_wave,
+    helix,
+    precessing_wave,
+    smooth_length,
+    smooth_wave,
+)
 
 #: Systems with their exact waves, lengths and parameters.
 WAVES = {
@@ -34,6 +42,7 @@ WAVES = {
         smooth_length(),
         {"L": smooth_length(), "alpha": 0.9},
     ),
+    "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}),
 }
 
 
@@ -66,6 +75,7 @@ def test_waves_travel_as_they_should(name):
         (spin_chain_chiral.system, {"energy", "P", "M"}, None),
         (kdv.system, {"energy", "M"}, None),
         (camassa_holm.system, {"energy", "M"}, {"L": 1, "alpha": 0.02}),
+        (hunter_saxton.system, {"energy", "M"}, {"L": 60}),
     ],
     ids=lambda each: getattr(each, "name", ""),
 )
@@ -123,6 +133,21 @@ def test_the_energy_of_camassa_and_holm_solves_its_equation(N, alpha):
     found = camassa_holm.system.resize({"s": N}).evaluate("energy", m, [alpha, L], target="numpy")
     condition = 1 + 16 / 3 * weight  # of the matrix, whose entries are rounded
     np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-15 * (10 + condition))
+
+
+@pytest.mark.parametrize("N", [5, 6, 40, 257])
+def test_a_level_velocity_solves_its_equation(N):
+    """L/N sum m u/2 with u from the pseudoinverse of the matrix -D_2, m having any mean."""
+    m, L = np.random.default_rng(N).normal(size=N), 3.0
+    matrix = sum(
+        c * (np.roll(np.eye(N), r, axis=1) + np.roll(np.eye(N), -r, axis=1))
+        for r, c in ((0, 5 / 4), (1, -4 / 3), (2, 1 / 12))
+    )
+    u = np.linalg.pinv(matrix, rcond=1e-9) @ m * (L / N) ** 2
+    small = hunter_saxton.system.resize({"s": N})
+    for target in ("numpy", "c"):
+        found = small.evaluate("energy", m, [L], target=target)
+        np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-15 * N**2)
 
 
 def test_trajectories_of_a_batch_are_solved_as_each_alone():

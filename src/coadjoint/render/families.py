@@ -101,6 +101,7 @@ class SolveText:
     factors: PartText
     blocks: int
     of: int
+    level: bool
 
 
 @dataclass(frozen=True)
@@ -269,7 +270,8 @@ def _arrange_solve(loops: Loops, target: str) -> SolveText | None:
     solve = loops.solve
     if solve is None:
         return None
-    return SolveText(_arrange(solve.factors, loops.wraps, target, ""), solve.blocks, solve.of)
+    factors = _arrange(solve.factors, loops.wraps, target, "")
+    return SolveText(factors, solve.blocks, solve.of, solve.level)
 
 
 def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
@@ -428,6 +430,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "id": identity,
         "lanes": LANES,
         "solves": any(loops.solve for loops in context.loops.values()),
+        "level": any(loops.solve and loops.solve.level for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "inputs": inputs,

@@ -22,7 +22,13 @@ from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import Jets, jets_of, narrow, solved
 from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
 from coadjoint.derive.fields.operators import Operator
-from coadjoint.derive.fields.solved import find_factors, solve_ring, write_solved
+from coadjoint.derive.fields.solved import (
+    find_factors,
+    is_level,
+    multiply_out,
+    solve_ring,
+    write_solved,
+)
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.symbols import choose_names
@@ -213,6 +219,8 @@ class GenericPoint:
             return {}
         (m,), (u,), field = self.setting.state, solved(self.spec), self.lattice.field
         factors = self._find_factors(field, field[self.count] / field[self.space.length])
+        if is_level(self.setting):
+            factors = multiply_out(factors)
         return {m: field.sum(a * field[name_at(u, r)] for r, a in factors.items())}
 
     def _find_factors(self, field: Field, inverse: Element) -> dict[int, Element]:
@@ -233,7 +241,8 @@ class GenericPoint:
             solved(self.spec),
             self._find_factors(field, inverse),
         )
-        found = solve_ring(factors, field, [field[names[m, i]] for i in range(size)])
+        momenta, level = [field[names[m, i]] for i in range(size)], is_level(self.setting)
+        found = solve_ring(factors, field, momenta, level=level)
         return {(u, i): value for i, value in enumerate(found)}
 
     @cached_property
