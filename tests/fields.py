@@ -143,9 +143,9 @@ def smooth_length():
 def breaking_wave(s, t, length=7.0):
     """Hunter and Saxton's equation from A (sin ks + e cos 2ks), with u of mean 0: m, and dm/dt.
 
-    Particles have ds/dx = (cos bt + w sin bt)^2 with w = u0'/(2b) and 4 b^2 the mean of u0'^2 (Lenells
-    2007, J. Geom. Phys. 57, 2049), where u(0) = 0; m (ds/dx)^2 is that of the beginning. The frame with
-    the mean 0 has moved on by what was the mean of u.
+    Particles have ds/dx = (cos bt + w sin bt)^2 with w = u0'/(2b) and 4 b^2 the mean of u0'^2
+    (Lenells 2007, J. Geom. Phys. 57, 2049), where u(0) = 0; m (ds/dx)^2 is that of the beginning.
+    The frame with the mean 0 has moved on by what was the mean of u.
     """
     k, A, e = 2 * np.pi / length, 0.4, 0.1
     b = A * k * np.sqrt((1 + 4 * e**2) / 8)

@@ -62,7 +62,7 @@ def is_level(setting: Setting) -> bool:
 
 
 def _divide(factors: Mapping[int, Fraction]) -> dict[int, Fraction]:
-    """b with ``sum a_r E^r = (2 - E - E^-1) sum b_r E^r``, of a symmetric a with the sum 0.
+    """The b with ``sum a_r E^r = (2 - E - E^-1) sum b_r E^r``, of a symmetric a with the sum 0.
 
     >>> {r: str(b) for r, b in _divide(stencil(2, 4)).items()}
     {-1: '1/12', 0: '-7/6', 1: '1/12'}
