@@ -238,5 +238,9 @@ class KinkWarning(UserWarning):
     """
 
 
+class PeriodicityWarning(UserWarning):
+    """A field that is differentiated by Fourier series jumps at the ends of its circle."""
+
+
 class ShockWarning(UserWarning):
     """A run goes on beyond the time at which the waves of a field break."""

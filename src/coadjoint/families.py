@@ -69,6 +69,33 @@ class Strand:
         self.size, self.matrices = size, matrices
 
 
+class Spectral:
+    """What fields compute at each time where derivatives are those of Fourier series.
+
+    Args:
+        length: The parameter that is the length of the circle.
+        derivatives: By its symbol, the field or product that is differentiated, and how often.
+        products: By their names texts in fields, parameters, derivatives and earlier products'
+            derivatives, in the order in which they are computed.
+        rates: Texts by component.
+        densities: Of the totals, the energy and the observables, texts by their names.
+        solved: Of a velocity that follows from m = A u, its name, m, and the factors of derivatives
+            in A as texts by their order; A takes constants to 0 without that of order 0.
+    """
+
+    def __init__(
+        self,
+        length: str,
+        derivatives: Mapping[str, tuple[str, int]],
+        products: Mapping[str, str],
+        rates: Mapping[str, str],
+        densities: Mapping[str, str],
+        solved: Mapping[str, tuple[str, Mapping[int, str]]],
+    ) -> None:
+        self.length, self.derivatives, self.products = length, derivatives, products
+        self.rates, self.densities, self.solved = rates, densities, solved
+
+
 @dataclass(frozen=True)
 class Sum:
     """A sum over the members, or over the pairs of them.

@@ -177,7 +177,7 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
     wave = tell_wave(first)
     told = replace(context, routes=tuple(routes), equations=tuple(lines))
-    return replace(told, strand=find_strand(spec), wave=wave)
+    return replace(told, strand=find_strand(spec), wave=wave, spectral=grid.spectral)
 
 
 def tell_wave(first: Equations) -> tuple[str, ...]:

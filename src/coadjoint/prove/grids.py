@@ -39,6 +39,11 @@ def about_grid(grid: Grid) -> Iterator[Examined]:
         lambda: _compare_rings(grid),
     )
     yield f"the energy is conserved, {where}", "conserved", lambda: _decide_energy(grid)
+    yield (
+        "the energy is conserved, at N points, with Fourier derivatives",
+        "conserved",
+        lambda: _decide_by_parts(grid),
+    )
     yield from _about_sums(grid, where)
     yield _about_jacobi(grid, where)
 
@@ -104,6 +109,16 @@ def _decide_energy(grid: Grid) -> Decision:
     method = (
         f"{decision.method}: the matrix of the bracket is antisymmetric at the generic point, and "
         "rates are this matrix times the gradient of the energy"
+    )
+    return replace(decision, method=method)
+
+
+def _decide_by_parts(grid: Grid) -> Decision:
+    """The matrix of the bracket is antisymmetric whatever D_k are, if they sum by parts."""
+    decision = decide_zero(list(grid.defects), grid.lattice.field)
+    method = (
+        f"{decision.method}: terms f D_k g of the bracket are minus those of its adjoint, and the "
+        "matrix of D_k is real and has the transpose (-1)^k D_k"
     )
     return replace(decision, method=method)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index, Strand
+from coadjoint.families import Index, Spectral, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -335,6 +335,7 @@ class FamilyContext:
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
         strand: The strain of a strand and its matrices.
+        spectral: Of fields, what is computed where derivatives are those of Fourier series.
         wave: Of a field that is carried by itself, the speed of its waves and the name of the
             length of its circle; empty for others.
     """
@@ -367,6 +368,7 @@ class FamilyContext:
     pair_kinks: tuple[str, ...] = ()
     strand: Strand | None = None
     wave: tuple[str, ...] = ()
+    spectral: Spectral | None = None
 
     @property
     def held(self) -> Loops:
@@ -479,12 +481,14 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["strand=STRAND"] * bool(context.strand)),
+            *(["spectral=SPECTRAL"] * bool(context.spectral)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
         "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
         "strand": _tell_strand(context.strand),
+        "spectral": _tell_spectral(context.spectral),
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -554,6 +558,26 @@ def _tell_strand(strand: Strand | None) -> list[str]:
         return []
     names = map(quote, (strand.name, strand.side, strand.length))
     return [*names, str(strand.size), *(map(str, strand.matrices))]
+
+
+def _tell_spectral(spectral: Spectral | None) -> dict[str, Any]:
+    """The texts of Fourier derivatives, as a generated package declares them; empty without."""
+
+    def tell(value: Any) -> str:
+        match value:
+            case str():
+                return quote(value)
+            case tuple():
+                return f"({', '.join(map(tell, value))})"
+            case Mapping():
+                return "{" + ", ".join(f"{tell(k)}: {tell(x)}" for k, x in value.items()) + "}"
+        return repr(value)
+
+    if spectral is None:
+        return {}
+    length, *rest = vars(spectral).items()
+    told = {name: {tell(k): tell(x) for k, x in value.items()} for name, value in rest}
+    return {length[0]: tell(length[1]), **told}
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

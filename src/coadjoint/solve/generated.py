@@ -65,6 +65,8 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
         target: As `System.simulate` takes it.
         reconstruct: Likewise.
     """
+    if system.obstacle:
+        return system.obstacle
     kinds = list_kinds(system.functions)
     wanted = kinds if is_asked(reconstruct) else kinds[:1]
     if not system.stepwise and not all(map(system._solvers.has_files, wanted)):

@@ -168,6 +168,10 @@ def simulate(
     if has_noise(system):
         check_samples(request)
     warn_of_shock(system, request)
+    if system.obstacle:  # else there is nothing to load
+        from coadjoint.solve.spectral import warn_of_jump
+
+        warn_of_jump(system, request)
     if not request.method.startswith(SCIPY):
         return generated.simulate(system, request)
     _check_alone(system, request, obstacle)

@@ -125,6 +125,22 @@ class System(Functions):
             found=list(sizes),
         )
 
+    def with_derivatives(self, derivatives: str) -> System:
+        """Fields by ``"differences"``, which the spec declares, or by ``"fourier"`` derivatives.
+
+        Fourier derivatives are exact for smooth periodic fields but for rounding, as soon as there
+        are enough points. Python leads the steps between transforms of SciPy, so that methods
+        ``scipy:NAME`` alone apply, to one trajectory; generated solvers need differences.
+
+        Raises:
+            KernelArgumentError: Another name, or a system without fields.
+        """
+        if derivatives == "differences" and not self.obstacle:  # what most are asked for
+            return self
+        from coadjoint.solve.spectral import use_derivatives
+
+        return use_derivatives(self, derivatives)
+
     # -- functions --------------------------------------------------------------------------------
 
     def rows(self, function: str) -> Quantities:

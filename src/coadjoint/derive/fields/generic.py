@@ -141,7 +141,7 @@ class GenericPoint:
         """Rates and densities of the generic point as expressions that are not multiplied out."""
         field = self.setting.field
         inverse = sympy.Symbol(self.count) / sympy.Symbol(self.space.length)
-        calculus = Calculus(self.order, inverse, _rational, sympy.factor_terms)
+        calculus = Calculus(self.order, inverse, rational, sympy.factor_terms)
 
         def convert(element: Element, values: Mapping[str, Any]) -> Any:
             new = {sympy.Symbol(name): value for name, value in values.items()}
@@ -202,6 +202,24 @@ class GenericPoint:
                         weight = calculus.inverse**term.order * c
                         found.setdefault((a, b, r), []).append(left(0) * right(r) * weight)
         return {key: self.lattice.field.sum(parts) for key, parts in found.items()}
+
+    @cached_property
+    def defects(self) -> list[Element]:
+        """What vanishes if the bracket is antisymmetric for all derivatives that sum by parts.
+
+        Of a matrix D_k with the transpose (-1)^k D_k a term ``f D_k g`` is, at the points i and j,
+        f(i) g(j) times its entry there: so is the term that is minus its adjoint.
+        """
+        _, place = self._place_exactly()
+        found = dict[tuple[int, int, int], list[Element]]()
+        for i, entries in enumerate(self.operator):
+            for j, entry in enumerate(entries):
+                for term in entry:
+                    left, right = place(term.left), place(term.right)
+                    other, sign = min(term.order, 1), (-1) ** term.order  # D_0 is the identity
+                    found.setdefault((i, j, term.order), []).append(left(0) * right(other))
+                    found.setdefault((j, i, term.order), []).append(left(other) * right(0) * sign)
+        return [self.lattice.field.sum(parts) for parts in found.values()]
 
     @cached_property
     def exact_point(self) -> tuple[list[Element], dict[str, Element]]:
@@ -325,7 +343,8 @@ class GenericPoint:
         return replace(self.lattice, components=solved(self.spec)).vary(whole)
 
 
-def _rational(value: Fraction) -> sympy.Rational:
+def rational(value: Fraction) -> sympy.Rational:
+    """A number of SymPy."""
     return sympy.Rational(value.numerator, value.denominator)
 
 

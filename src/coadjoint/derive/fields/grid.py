@@ -29,10 +29,11 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import LatticeField
 from coadjoint.derive.fields.rings import Rings
+from coadjoint.derive.fields.spectral import write_spectral
 from coadjoint.derive.records import Kept
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
-from coadjoint.families import Family
+from coadjoint.families import Family, Spectral
 from coadjoint.spec.model import Windows
 
 
@@ -52,6 +53,9 @@ class Grid:
             its name; empty without.
         velocities: Likewise, of each ring by its number of points what is solved for in the
             momenta, by its name and point; empty without.
+        spectral: What is computed where derivatives are those of Fourier series.
+        defects: In the field of the lattice, what vanishes if the bracket is antisymmetric for all
+            derivatives that sum by parts, those of Fourier series among them.
         brackets: In this field, of two fields and how many points further the second one is, the
             bracket of both times the spacing.
     """
@@ -66,6 +70,8 @@ class Grid:
     brackets: Mapping[tuple[str, str, int], Element]
     momenta: Mapping[str, Element]
     velocities: Mapping[int, Mapping[tuple[str, int], Element]]
+    spectral: Spectral
+    defects: tuple[Element, ...]
 
 
 @once
@@ -93,4 +99,6 @@ def make_grid(equations: Equations) -> Grid:
         brackets=point.brackets,
         momenta=point.momenta,
         velocities=rings.velocities,
+        spectral=write_spectral(point),
+        defects=tuple(point.defects),
     )
