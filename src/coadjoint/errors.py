@@ -238,6 +238,10 @@ class KinkWarning(UserWarning):
     """
 
 
+class StabilityWarning(UserWarning):
+    """A fixed step is longer than the one up to which an explicit method is stable."""
+
+
 class PeriodicityWarning(UserWarning):
     """A field that is differentiated by Fourier series jumps at the ends of its circle."""
 

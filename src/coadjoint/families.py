@@ -69,6 +69,24 @@ class Strand:
         self.size, self.matrices = size, matrices
 
 
+class PrincipalSymbol:
+    """The principal symbol of fields: by what the highest derivatives move them.
+
+    Args:
+        length: The parameter that is the length of the circle.
+        order: The highest derivative n in the rates.
+        largest: The most by which its difference times the n-th power of the spacing multiplies a
+            wave.
+        matrix: Of the rate of a field, its derivatives by the n-th derivatives of fields, as texts
+            by their names, zeros left out.
+    """
+
+    def __init__(
+        self, length: str, order: int, largest: float, matrix: Mapping[str, Mapping[str, str]]
+    ) -> None:
+        self.length, self.order, self.largest, self.matrix = length, order, largest, matrix
+
+
 class Spectral:
     """What fields compute at each time where derivatives are those of Fourier series.
 

@@ -206,7 +206,7 @@ def test_before_its_shock_the_motion_is_that_of_characteristics():
     for _ in range(60):
         label -= (label + 3 * t * np.sin(label) - s) / (1 + 3 * t * np.cos(label))
     np.testing.assert_allclose(found.state[:, -1], np.sin(label), atol=2e-4)
-    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.1)
+    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.02)
 
 
 def test_other_fields_have_no_such_time():

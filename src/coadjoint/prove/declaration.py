@@ -23,10 +23,12 @@ from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
 from coadjoint.derive.fields.grid import Grid
 from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.stencils import find_largest
+from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.exact import element_text
-from coadjoint.families import Family, Strand
+from coadjoint.families import Family, PrincipalSymbol, Strand
 from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
@@ -177,7 +179,23 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
     wave = tell_wave(first)
     told = replace(context, routes=tuple(routes), equations=tuple(lines))
-    return replace(told, strand=find_strand(spec), wave=wave, spectral=grid.spectral)
+    return replace(
+        told, strand=find_strand(spec), wave=wave, spectral=grid.spectral, symbol=tell_symbol(first)
+    )
+
+
+def tell_symbol(first: Equations) -> PrincipalSymbol | None:
+    """The principal symbol of fields for differences of the declared order."""
+    setting, space = first.setting, first.spec.space
+    assert space is not None, first.spec.name
+    order, matrix = find_matrix(setting, jets_of(setting), first.exact.rates)
+    if not order:
+        return None
+    rows = {
+        a: {b: element_text(setting.field, x) for b, x in zip(setting.state, row, strict=True) if x}
+        for a, row in zip(setting.state, matrix, strict=True)
+    }
+    return PrincipalSymbol(space.length, order, find_largest(order, space.order), rows)
 
 
 def tell_wave(first: Equations) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index, Spectral, Strand
+from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -336,6 +336,7 @@ class FamilyContext:
         pair_kinks: What is zero at the kinks of the terms of pairs.
         strand: The strain of a strand and its matrices.
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
+        symbol: Of fields, their principal symbol.
         wave: Of a field that is carried by itself, the speed of its waves and the name of the
             length of its circle; empty for others.
     """
@@ -369,6 +370,7 @@ class FamilyContext:
     strand: Strand | None = None
     wave: tuple[str, ...] = ()
     spectral: Spectral | None = None
+    symbol: PrincipalSymbol | None = None
 
     @property
     def held(self) -> Loops:
@@ -482,13 +484,15 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["strand=STRAND"] * bool(context.strand)),
             *(["spectral=SPECTRAL"] * bool(context.spectral)),
+            *(["symbol=SYMBOL"] * bool(context.symbol)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
         "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
         "strand": _tell_strand(context.strand),
-        "spectral": _tell_spectral(context.spectral),
+        "spectral": _tell_texts(context.spectral),
+        "symbol": _tell_texts(context.symbol),
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -560,8 +564,8 @@ def _tell_strand(strand: Strand | None) -> list[str]:
     return [*names, str(strand.size), *(map(str, strand.matrices))]
 
 
-def _tell_spectral(spectral: Spectral | None) -> dict[str, Any]:
-    """The texts of Fourier derivatives, as a generated package declares them; empty without."""
+def _tell_texts(record: Spectral | PrincipalSymbol | None) -> dict[str, Any]:
+    """A record with texts of fields, as a generated package declares it; empty without."""
 
     def tell(value: Any) -> str:
         match value:
@@ -573,11 +577,12 @@ def _tell_spectral(spectral: Spectral | None) -> dict[str, Any]:
                 return "{" + ", ".join(f"{tell(k)}: {tell(x)}" for k, x in value.items()) + "}"
         return repr(value)
 
-    if spectral is None:
-        return {}
-    length, *rest = vars(spectral).items()
-    told = {name: {tell(k): tell(x) for k, x in value.items()} for name, value in rest}
-    return {length[0]: tell(length[1]), **told}
+    return {
+        name: {tell(k): tell(x) for k, x in value.items()}
+        if isinstance(value, Mapping)
+        else tell(value)
+        for name, value in ({} if record is None else vars(record)).items()
+    }
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

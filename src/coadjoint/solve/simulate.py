@@ -52,6 +52,7 @@ from coadjoint.solve.request import (
 )
 from coadjoint.solve.shocks import warn_of_shock
 from coadjoint.solve.solution import Solution
+from coadjoint.solve.stability import is_of_waves, watch_waves
 from coadjoint.solve.surroundings import Driven, Surroundings
 
 if TYPE_CHECKING:
@@ -163,6 +164,7 @@ def simulate(
         seed=None if seed is None else int(seed),
         chosen=chosen,
         newton=bool(newton),
+        of_waves=is_of_waves(system),
     )
     check_steps(request)
     if has_noise(system):
@@ -173,7 +175,10 @@ def simulate(
 
         warn_of_jump(system, request)
     if not request.method.startswith(SCIPY):
-        return generated.simulate(system, request)
+        speeds = watch_waves(system, request)
+        solution = generated.simulate(system, request)
+        speeds(solution)
+        return solution
     _check_alone(system, request, obstacle)
     return _simulate_alone(system, request)
 

@@ -194,6 +194,29 @@ class _Waves:
         return found
 
 
+def solve_velocities(
+    system: FamilySystem, parameters: Mapping[str, Array], fields: Mapping[str, Array]
+) -> dict[str, Array]:
+    """Velocities that follow from m = A u at points ``(N, ...)``; empty where there are none."""
+    found: dict[str, Array] = {}
+    own = system.spectral
+    if own is None:
+        return found
+    for u, (m, factors) in own.solved.items():
+        texts = (Formula(x, dict.fromkeys(parameters, ()), "a factor") for x in factors.values())
+        values = fields[m].reshape(system.size, -1)
+        shape = fields[m].shape[1:]
+
+        def spread(value: Any, shape: tuple[int, ...] = shape) -> Array:
+            return np.broadcast_to(value, shape).reshape(-1)
+
+        given = {name: spread(value) for name, value in parameters.items()}
+        parts = {k: text.evaluate(given)[0] for k, text in zip(factors, texts, strict=True)}
+        waves = _Waves(system.size, given[own.length])
+        found[u] = waves.solve(values, parts).reshape(fields[m].shape)
+    return found
+
+
 def use_derivatives(system: System, derivatives: str) -> System:
     """The system with the derivatives that are asked for.
 
