@@ -46,7 +46,8 @@ def find_factors(
         number: How the arithmetic makes numbers.
         value: What an element of parameters is in it.
     """
-    found, level = dict[int, Any](), is_level(setting)
+    found: dict[int, Any] = {}
+    level = is_level(setting)
     for derivative, factor in circle.inertia(setting).items():
         known = stencil(derivative, order)
         for r, c in (_divide(known) if level else known).items():
@@ -89,7 +90,7 @@ def write_solved(setting: Setting, order: int, inverse: sympy.Expr) -> tuple[Sol
 
 def multiply_out(factors: Mapping[int, Any]) -> dict[int, Any]:
     """The factors of A by those of its other factor than ``2 - E - E^-1``."""
-    found = dict[int, Any]()
+    found: dict[int, Any] = {}
     for r, b in factors.items():
         for place, value in ((r, b * 2), (r - 1, -b), (r + 1, -b)):
             found[place] = found[place] + value if place in found else value
@@ -105,13 +106,13 @@ def solve_ring(
     """
     size = len(momenta)
     half = range(size // 2 + 1)  # of a symmetric column
-    row = [field.one * Fraction(level, size)] * size
+    mean = field.number(Fraction(level, size))
+    row = [mean] * size
     for r, a in (multiply_out(factors) if level else factors).items():
         row[r % size] += a
     folded = [[field.zero for _ in half] for _ in half]
     for i, j in product(half, range(size)):
         folded[i][min(j, size - j)] += row[(j - i) % size]
-    mean = field.one * Fraction(level, size)
     column = [each[0] - mean for each in inverse_of(tuple(map(tuple, folded)))]
     return [
         field.sum(column[min(r, size - r)] * momenta[i - r] for r in range(size))
