@@ -21,6 +21,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
+from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.stencils import find_largest
@@ -172,6 +173,8 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     spec, space = first.spec, first.spec.space
     assert space is not None, spec.name
     own = f"at N points of the circle, by differences of order {space.order}"
+    if space.has_ends:
+        own = f"at N points between {space.ends} ends, by differences of order {space.order}"
     routes = [
         f"Route {first.route} of fields along {space.name}, {own}.",
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
@@ -195,14 +198,17 @@ def tell_symbol(first: Equations) -> PrincipalSymbol | None:
         a: {b: element_text(setting.field, x) for b, x in zip(setting.state, row, strict=True) if x}
         for a, row in zip(setting.state, matrix, strict=True)
     }
-    return PrincipalSymbol(space.length, order, find_largest(order, space.order), rows)
+    largest = find_largest(order, space.order)
+    if space.has_ends:
+        largest = CLOSURES[space.order].largest
+    return PrincipalSymbol(space.length, order, largest, rows)
 
 
 def tell_wave(first: Equations) -> tuple[str, ...]:
     """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``; else ()."""
     setting, jets, space = first.setting, jets_of(first.setting), first.spec.space
     assert space is not None, first.spec.name
-    if len(setting.state) > 1:
+    if len(setting.state) > 1 or space.has_ends:
         return ()
     (m,), (rate,), field = setting.state, first.exact.rates, setting.field
     speed, steepness = -field.derivative(rate, jets.towers[m][1]), field[jets.towers[m][1]]
@@ -219,7 +225,9 @@ def find_strand(spec: Spec) -> Strand | None:
     if not strains or spec.algebra is None or spec.space is None or not spec.algebra.matrices:
         return None
     matrices, (strain,) = spec.algebra.matrices, strains
-    if not all(isinstance(x, int | Fraction) for each in matrices for x in each.values()):
+    if spec.space.has_ends or not all(
+        isinstance(x, int | Fraction) for each in matrices for x in each.values()
+    ):
         return None
     entries = (
         tuple((row, column, float(x)) for (row, column), x in sorted(each.items()))

@@ -103,7 +103,7 @@ def find_rates(system: FamilySystem, states: Array, parameters: Array) -> Array:
     fields = dict(zip(system.own_state, states.reshape(-1, *shape), strict=True))
     rows = parameters.reshape(len(parameters), *parameters.shape[1:], 1)
     known = dict(zip(system.PARAMETERS.components, rows, strict=True))
-    spacing = known[symbol.length] / system.size
+    spacing = known[symbol.length] / (system.size - (not system.index.periodic))
     velocities = solve_velocities(system, known, fields)  # by Fourier series, which are near enough
     speeds = _find_speeds(system, known | fields | velocities, shape)
     rates: Array = np.max(speeds, axis=0) * symbol.largest / spacing**symbol.order

@@ -53,7 +53,8 @@ class Grid:
             its name; empty without.
         velocities: Likewise, of each ring by its number of points what is solved for in the
             momenta, by its name and point; empty without.
-        spectral: What is computed where derivatives are those of Fourier series.
+        ends: In that field, rates of points near ends by their numbers; empty on a circle.
+        spectral: What is computed where derivatives are those of Fourier series; None with ends.
         defects: In the field of the lattice, what vanishes if the bracket is antisymmetric for all
             derivatives that sum by parts, those of Fourier series among them.
         brackets: In this field, of two fields and how many points further the second one is, the
@@ -70,7 +71,8 @@ class Grid:
     brackets: Mapping[tuple[str, str, int], Element]
     momenta: Mapping[str, Element]
     velocities: Mapping[int, Mapping[tuple[str, int], Element]]
-    spectral: Spectral
+    ends: Mapping[int, tuple[Element, ...]]
+    spectral: Spectral | None
     defects: tuple[Element, ...]
 
 
@@ -85,7 +87,7 @@ def make_grid(equations: Equations) -> Grid:
         for name, value in kept.items()
         if value is Kept.ALWAYS and not point.is_kept(name)
     }
-    size = 2 * point.reach + 1
+    size = point.least if point.space.has_ends else 2 * point.reach + 1
     windows = tuple(rings.make(n, kept) for n in (size, size + 1))
     rates, _ = point.exact_point
     return Grid(
@@ -99,6 +101,7 @@ def make_grid(equations: Equations) -> Grid:
         brackets=point.brackets,
         momenta=point.momenta,
         velocities=rings.velocities,
-        spectral=write_spectral(point),
+        ends=point.exact_ends,
+        spectral=None if point.space.has_ends else write_spectral(point),
         defects=tuple(point.defects),
     )
