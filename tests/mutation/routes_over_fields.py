@@ -59,4 +59,18 @@ FIELDS = (
         systems=("hunter_saxton", "spin_chain"),
         tests=(*WAVES,),
     ),
+    *core_of(
+        "lie-poisson",
+        "fields/spectral",
+        "_differentiate",
+        systems=(),
+        tests=("tests/derive/test_spectral.py",),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/ends",
+        "find_row find_place find_weight",
+        systems=(),
+        tests=("tests/derive/test_ends.py -k 'parts or polynomials or largest or matrices'",),
+    ),
 )
