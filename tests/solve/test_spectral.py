@@ -6,7 +6,9 @@ import warnings
 import numpy as np
 import pytest
 
+import coadjoint
 from coadjoint.errors import KernelArgumentError, PeriodicityWarning
+from coadjoint.resources import derivations_folder
 from coadjoint.solve.spectral import SpectralSystem, find_jump
 from coadjoint.solve.strands import transport
 from coadjoint.systems import (
@@ -47,6 +49,11 @@ WAVES = {
     ),
     "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}, (63, 64)),
 }
+
+
+def read_file(system):
+    """The spec of a shipped system."""
+    return (derivations_folder() / f"{system.name}.toml").read_text(encoding="utf-8")
 
 
 def fourier(system, N):
@@ -149,6 +156,16 @@ def test_a_batch_is_refused():
     """Methods of SciPy follow one trajectory."""
     with pytest.raises(KernelArgumentError, match="derivatives are those of Fourier series"):
         fourier(kdv.system, 32).simulate(np.zeros((32, 2)), (0, 1))
+
+
+@pytest.mark.campaign
+def test_a_spec_is_loaded_with_them(tmp_path):
+    """With a number of points."""
+    path = tmp_path / "waves.toml"
+    path.write_text(read_file(kdv.system), encoding="utf-8")
+    loaded = coadjoint.load(path, sizes={"s": 32}, derivatives="fourier")
+    assert isinstance(loaded, SpectralSystem)
+    assert loaded.size == 32
 
 
 def test_other_names_and_systems_are_refused():
