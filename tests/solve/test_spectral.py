@@ -149,7 +149,9 @@ def test_generated_solvers_are_refused_with_the_reason(options):
         own.simulate(np.zeros(32), (0, 1), **options)
     found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
     assert not found.state.any()
-    assert own.simulate(np.zeros(32), (0, 1), samples=2).settings["method"] == "scipy:DOP853"
+    settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
+    assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
+    assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
 
 
 def test_a_batch_is_refused():

@@ -54,6 +54,7 @@ class SpectralSystem(FamilySystem):
         system: The same fields by differences.
     """
 
+    derivatives = "fourier"
     obstacle = "its derivatives are those of Fourier series, between which Python leads the steps"
 
     def __init__(self, system: FamilySystem) -> None:
