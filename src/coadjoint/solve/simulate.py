@@ -24,6 +24,7 @@ from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import read_events
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.noisy import check_no_noise, check_samples, choose_noisy, has_noise
@@ -170,6 +171,10 @@ def simulate(
     if has_noise(system):
         check_samples(request)
     warn_of_shock(system, request)
+    if isinstance(system, FamilySystem) and system.spectral and system.spectral.solved:
+        from coadjoint.solve.spectral import check_means
+
+        check_means(system, request.state)
     if system.obstacle:  # else there is nothing to load
         from coadjoint.solve.spectral import warn_of_jump
 

@@ -45,6 +45,8 @@ FUNCTIONS: Final = ("rhs", "energy", "observables")
 #: How much larger than elsewhere a step across the ends is that is called a jump, and the least
 #: part of a field that is looked at.
 STEEP, SMALL = 10.0, 1e-6
+#: The part of a field that its mean may be where it is 0 but for rounding.
+MEAN: Final = 1e-9
 
 
 class SpectralSystem(FamilySystem):
@@ -245,6 +247,26 @@ def use_derivatives(system: System, derivatives: str) -> System:
             expected=["differences"],
         )
     return SpectralSystem(own)
+
+
+def check_means(system: FamilySystem, state: Array) -> None:
+    """The mean of a momentum is 0 where it is A u with an A that takes constants to 0.
+
+    Raises:
+        KernelArgumentError: It is not.
+    """
+    solved = {} if system.spectral is None else system.spectral.solved
+    for u, (m, factors) in solved.items():
+        field = state.reshape(len(system.own_state), system.size, -1)[system.own_state.index(m)]
+        means, sizes = np.mean(field, axis=0), np.max(np.abs(field), axis=0)
+        if 0 not in factors and (np.abs(means) > MEAN * sizes).any():
+            mean = float(means[np.argmax(np.abs(means) - MEAN * sizes)])
+            raise KernelArgumentError(
+                f"the mean of {m} of {system.name} is {mean:.6g} at the beginning; expected 0, "
+                f"since {m} is made of derivatives of {u}. Subtract the mean.",
+                found=mean,
+                expected=0.0,
+            )
 
 
 def warn_of_jump(system: System, request: Request) -> None:
