@@ -224,6 +224,22 @@ def test_before_its_shock_the_motion_is_that_of_characteristics():
     burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.02)
 
 
+@pytest.mark.parametrize("part", [0.9, 1.1])
+def test_hunter_and_saxton_break_when_books_say(part):
+    """The sine with u0' from -1 to 1: b = 1/sqrt(8), (pi/2 - arctan(sqrt(2)))/b = 1.7408."""
+    assert hunter_saxton.system.wave == ("u", "L")
+    breaks = (np.pi / 2 - np.arctan(2**0.5)) * 8**0.5
+    options = {"samples": 2, "target": "numpy", "method": "rk4", "step": 0.02}
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", ShockWarning)
+        hunter_saxton.system.simulate(None, (0, part * breaks), **options)
+    messages = [str(each.message) for each in told if each.category is ShockWarning]
+    assert len(messages) == (part > 1)
+    for each in messages:
+        said = float(re.search(r"shock at t = ([\d.]+)", each)[1])
+        np.testing.assert_allclose(said, breaks, rtol=1e-5)
+
+
 def test_other_fields_have_no_such_time():
     """The waves of Camassa and Holm's equation and those that disperse are not carried alone."""
     assert burgers.system.wave == ("3*m", "L")

@@ -21,9 +21,10 @@ from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
+from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
-from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.jets import jets_of, solved
 from coadjoint.derive.fields.stencils import find_largest
 from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.records import Emitted
@@ -205,13 +206,21 @@ def tell_symbol(first: Equations) -> PrincipalSymbol | None:
 
 
 def tell_wave(first: Equations) -> tuple[str, ...]:
-    """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``; else ()."""
+    """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``.
+
+    Of Hunter and Saxton's equation, ``m_t + u m_s + 2 u_s m = 0`` with m a multiple of u_ss, it is
+    u. Others have waves whose end is not known: ().
+    """
     setting, jets, space = first.setting, jets_of(first.setting), first.spec.space
     assert space is not None, first.spec.name
     if len(setting.state) > 1 or space.has_ends:
         return ()
     (m,), (rate,), field = setting.state, first.exact.rates, setting.field
     speed, steepness = -field.derivative(rate, jets.towers[m][1]), field[jets.towers[m][1]]
+    for u in solved(first.spec):
+        carried = field[u] * steepness + 2 * field[jets.towers[u][1]] * field[m]
+        is_level = {*circle.inertia(setting)} == {2} and field.is_zero(rate + carried)
+        return (u, space.length) if is_level else ()
     others = {*jets.orders} - {m}
     if field.reach(speed) & others or not field.is_zero(rate + speed * steepness):
         return ()

@@ -124,7 +124,7 @@ class SpectralKernel(Kernel):
         given = dict(zip(self._shared, parameters, strict=True))
         known, length = given | fields, given[self._spectral.length]
         with np.errstate(all="ignore"):
-            waves = _Waves(self._size, length)
+            waves = Waves(self._size, length)
             for u, (m, factors) in self._spectral.solved.items():
                 parts = {k: self._find(text, given, shape[1:]) for k, text in factors.items()}
                 known[u] = waves.solve(fields[m], parts)
@@ -159,7 +159,7 @@ class SpectralKernel(Kernel):
         return np.broadcast_to(value, (size,)).reshape(shape)
 
 
-class _Waves:
+class Waves:
     """The waves on a circle.
 
     Args:
@@ -215,7 +215,7 @@ def solve_velocities(
 
         given = {name: spread(value) for name, value in parameters.items()}
         parts = {k: text.evaluate(given)[0] for k, text in zip(factors, texts, strict=True)}
-        waves = _Waves(system.size, given[own.length])
+        waves = Waves(system.size, given[own.length])
         found[u] = waves.solve(values, parts).reshape(fields[m].shape)
     return found
 

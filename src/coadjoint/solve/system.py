@@ -65,7 +65,8 @@ class System(Functions):
         METHODS: Methods that keep structure, with what each keeps of this system.
         levels: How much compilers optimise, by stem and build, where that is less than they can;
             see `coadjoint.build.source.Source`.
-        wave: Of a field that is carried by itself, the speed of waves and the name of the length.
+        wave: Of a field whose waves break, their speed and the name of the length; see
+            `coadjoint.solve.shocks`.
     """
 
     levels: Mapping[tuple[str, str], int] = MappingProxyType({})
