@@ -23,6 +23,8 @@ NAMES = (
     "landau_lifshitz",
     "kdv",
     "camassa_holm",
+    "burgers",
+    "hunter_saxton",
     "sp2_strand",
     "two_time_body",
 )
