@@ -56,7 +56,11 @@ def find_rates(family: Family, fields, parameters) -> np.ndarray:
         row = np.zeros(count)
         for r, a in enumerate(each.factors):
             row[r] = row[-r] = a.xreplace(values)
-        known[each.symbol] = solve_circulant(row, known[each.of])
+        right = known[each.of]
+        if each.level:  # the whole matrix, and the mean added to it
+            row = 2 * row - np.roll(row, 1) - np.roll(row, -1) + 1 / count
+            right = right - np.mean(right)
+        known[each.symbol] = solve_circulant(row, right)
     near = [np.roll(known[c], -shift) for c, shift in family.neighbours]
     rates = compile_rates(family)(*given, *near, *parameters, float(count))
     return np.array([np.broadcast_to(rate, (count,)) for rate in rates])
@@ -134,3 +138,55 @@ def smooth_modes(alpha=0.9, speed=2.0, low=0.7, high=0.95):
 def smooth_length():
     """How long the wave is at the defaults of its numbers."""
     return 2 * np.pi * smooth_modes()[0].real
+
+
+def breaking_wave(s, t, length=7.0):
+    """Hunter and Saxton's equation from A (sin ks + e cos 2ks), with u of mean 0: m, and dm/dt.
+
+    Particles have ds/dx = (cos bt + w sin bt)^2 with w = u0'/(2b) and 4 b^2 the mean of u0'^2
+    (Lenells 2007, J. Geom. Phys. 57, 2049), where u(0) = 0; m (ds/dx)^2 is that of the beginning.
+    The frame with the mean 0 has moved on by what was the mean of u.
+    """
+    k, A, e = 2 * np.pi / length, 0.4, 0.1
+    b = A * k * np.sqrt((1 + 4 * e**2) / 8)
+
+    def waves(x):
+        """u0', its derivative and integral from 0, and the integral of its square."""
+        one, two = k * x, 2 * k * x
+        slope = A * k * (np.cos(one) - 2 * e * np.sin(two))
+        second = -A * k**2 * (np.sin(one) + 4 * e * np.cos(two))
+        u = A * (np.sin(one) + e * (np.cos(two) - 1))
+        squares = (one / 2 + np.sin(two) / 4) + 4 * e**2 * (one / 2 - np.sin(2 * two) / 8)
+        mixed = (1 - np.cos(3 * one)) / 6 + (1 - np.cos(one)) / 2
+        return slope, second, u, A**2 * k * (squares - 4 * e * mixed)
+
+    def place(x, t):
+        """Where a particle is, how fast, and d^2s/dx dt."""
+        cos, sin, (slope, _, u, square) = np.cos(b * t), np.sin(b * t), waves(x)
+        at = cos**2 * x + cos * sin * u / b + sin**2 * square / (4 * b**2)
+        speed = -2 * b * cos * sin * x + (cos**2 - sin**2) * u + sin * cos * square / (2 * b)
+        w = slope / (2 * b)
+        return at, speed, 2 * b * (cos + w * sin) * (w * cos - sin)
+
+    def stretch(x, t):
+        return (np.cos(b * t) + waves(x)[0] / (2 * b) * np.sin(b * t)) ** 2
+
+    def mean(t):
+        """The mean of u where u(0) = 0, by particles."""
+        x = np.arange(64) * length / 64
+        return np.mean(place(x, t)[1] * stretch(x, t))
+
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    shift = t / 2 * sum(w * mean(t / 2 * (1 + n)) for n, w in zip(nodes, weights, strict=True))
+    x = goal = np.asarray(s, dtype=float) + shift
+    for _ in range(40):
+        x = x - (place(x, t)[0] - goal) / stretch(x, t)
+    slope, second, _, _ = waves(x)
+    third = -A * k**3 * (np.cos(k * x) - 8 * e * np.sin(2 * k * x))
+    _, speed, mixed = place(x, t)
+    J, root = stretch(x, t), np.cos(b * t) + slope / (2 * b) * np.sin(b * t)
+    J_x = 2 * root * second / (2 * b) * np.sin(b * t)
+    moved = (mean(t) - speed) / J  # dx/dt where s stands still
+    m = -second / J**2
+    rate = (-third / J**2 + 2 * second * J_x / J**3) * moved + 2 * second * mixed / J**3
+    return m[None], rate[None]

@@ -17,7 +17,13 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from coadjoint.errors import CoadjointError, KinkWarning, ShockWarning
+from coadjoint.errors import (
+    CoadjointError,
+    KinkWarning,
+    PeriodicityWarning,
+    ShockWarning,
+    StabilityWarning,
+)
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra, algebra_by_name
@@ -38,9 +44,11 @@ __all__ = [
     "Examination",
     "KinkWarning",
     "LieAlgebra",
+    "PeriodicityWarning",
     "PoissonStructure",
     "ShockWarning",
     "Spec",
+    "StabilityWarning",
     "System",
     "algebra_by_name",
     "derive",

@@ -238,5 +238,13 @@ class KinkWarning(UserWarning):
     """
 
 
+class StabilityWarning(UserWarning):
+    """A fixed step is longer than the one up to which an explicit method is stable."""
+
+
+class PeriodicityWarning(UserWarning):
+    """A field that is differentiated by Fourier series jumps at the ends of its circle."""
+
+
 class ShockWarning(UserWarning):
     """A run goes on beyond the time at which the waves of a field break."""

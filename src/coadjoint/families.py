@@ -69,6 +69,51 @@ class Strand:
         self.size, self.matrices = size, matrices
 
 
+class PrincipalSymbol:
+    """The principal symbol of fields: by what the highest derivatives move them.
+
+    Args:
+        length: The parameter that is the length of the circle.
+        order: The highest derivative n in the rates.
+        largest: The most by which its difference times the n-th power of the spacing multiplies a
+            wave.
+        matrix: Of the rate of a field, its derivatives by the n-th derivatives of fields, as texts
+            by their names, zeros left out.
+    """
+
+    def __init__(
+        self, length: str, order: int, largest: float, matrix: Mapping[str, Mapping[str, str]]
+    ) -> None:
+        self.length, self.order, self.largest, self.matrix = length, order, largest, matrix
+
+
+class Spectral:
+    """What fields compute at each time where derivatives are those of Fourier series.
+
+    Args:
+        length: The parameter that is the length of the circle.
+        derivatives: By its symbol, the field or product that is differentiated, and how often.
+        products: By their names texts in fields, parameters, derivatives and earlier products'
+            derivatives, in the order in which they are computed.
+        rates: Texts by component.
+        densities: Of the totals, the energy and the observables, texts by their names.
+        solved: Of a velocity that follows from m = A u, its name, m, and the factors of derivatives
+            in A as texts by their order; A takes constants to 0 without that of order 0.
+    """
+
+    def __init__(
+        self,
+        length: str,
+        derivatives: Mapping[str, tuple[str, int]],
+        products: Mapping[str, str],
+        rates: Mapping[str, str],
+        densities: Mapping[str, str],
+        solved: Mapping[str, tuple[str, Mapping[int, str]]],
+    ) -> None:
+        self.length, self.derivatives, self.products = length, derivatives, products
+        self.rates, self.densities, self.solved = rates, densities, solved
+
+
 @dataclass(frozen=True)
 class Sum:
     """A sum over the members, or over the pairs of them.
@@ -109,17 +154,20 @@ class Solved:
     """A component that follows from another one by a linear equation around a ring.
 
     ``sum_r a_|r| u[i+r] = m[i]``, with the same factors for every member; the matrix is symmetric
-    and positive.
+    and positive. A level component has the mean 0: the matrix is then this one times that of ``2
+    u[i] - u[i-1] - u[i+1]``, which takes constants to 0, and m is taken without its mean.
 
     Attributes:
         symbol: What is solved for, of member i.
         of: The component on the right side.
         factors: ``a_0, a_1, ...``, in symbols of shared parameters and of N.
+        level: Whether it is level.
     """
 
     symbol: Symbol
     of: Symbol
     factors: tuple[Tree, ...]
+    level: bool = False
 
 
 @dataclass(frozen=True)

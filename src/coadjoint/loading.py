@@ -24,6 +24,7 @@ def load(
     path: str | PathLike[str],
     *,
     sizes: Mapping[str, int] = MappingProxyType({}),
+    derivatives: str = "differences",
     seconds: float | None = None,
     progress: Progress = lambda *_: None,
 ) -> System:
@@ -36,6 +37,8 @@ def load(
         path: A spec in TOML.
         sizes: How many members an index counts, by its name: ``{"i": 1000}``. Where kernels loop
             over the members they are the same for all sizes; else each size is derived.
+        derivatives: Those of fields along space: ``"differences"``, of the order that the spec
+            says, or ``"fourier"``, as in `System.with_derivatives`.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all.
@@ -63,4 +66,5 @@ def load(
     note_use(folder)
     system = load_folder(folder / source.stem)
     chosen = {} if own else sizes
-    return system.resize(chosen) if chosen or lacks_size(system) else system
+    system = system.resize(chosen) if chosen or lacks_size(system) else system
+    return system.with_derivatives(derivatives)

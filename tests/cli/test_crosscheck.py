@@ -33,6 +33,15 @@ def test_the_table_names_functions_targets_and_rungs(run):
     assert result.stdout.count("same bits at") == 16  # C and Python, each with NumPy
 
 
+def test_figures_of_fields(run):
+    """Kernels of many points are compared for some numbers of these."""
+    result = run("crosscheck", "hunter_saxton", "--json")
+    assert result.exit_code == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert set(report["figures"]) == {"rhs", "jacobian_vector", "energy", "observables"}
+    assert report["equal"]["rhs"]["c"] > 100
+
+
 def test_a_spoiled_kernel_is_caught(run, folder, monkeypatch):
     """A sign turned in a copy of the generated kernel ends with status 1 and names the function."""
     shutil.copytree(systems_folder(), folder / "generated")

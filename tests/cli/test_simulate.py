@@ -47,6 +47,17 @@ def test_the_default_state_has_vectors_of_unit_length(run):
         assert values == [n / math.sqrt(14) for n in direction]
 
 
+def test_fields_take_fourier_derivatives(run):
+    """KdV's energy alone is claimed to be kept, and a body has no fields."""
+    words = ("--derivatives", "fourier", "--time", "0.01", "--samples", "2", "--json")
+    result = run("simulate", "kdv", *words)
+    assert result.exit_code == 0, result.stderr
+    record = json.loads(result.stdout)
+    assert set(record["drift"]) == {"energy"}
+    assert record["drift"]["energy"] < 1e-13
+    assert run("simulate", "rigid_body", *words).exit_code == 2
+
+
 def test_a_start_off_the_constraints_ends_with_status_2(run):
     """With the constraint, its residual and where to begin instead."""
     result = run("simulate", "veselova", "--state", "Omega=1,2,3")

@@ -10,7 +10,8 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.solve.folders import load_texts
 from tests.specs import shipped
 
-#: What is spoiled in which file, the targets that are compared, and how it is seen.
+#: What is spoiled in which file, the targets that are compared, and how it is seen; of a velocity
+#: with the mean 0, below.
 WRONG = [
     ("kernel.py", "(-a[r] if r % 2 else a[r])", "a[r]", ("numpy",), "rung 4"),
     ("kernel.py", "range(-len(a) + 1, len(a))", "range(len(a))", ("numpy",), "rung 4"),
@@ -27,12 +28,27 @@ WRONG = [
     ),
     ("kernel.c", "high = size - low;", "high = low;", ("c",), "wrong kernel"),
 ]
+WRONG_LEVEL = [
+    ("kernel.py", "[-1] / size", "[-1] / (size + 1)", ("numpy",), "rung 4"),
+    ("kernel.py", "_level(-np.add", "_level(np.add", ("numpy",), "rung 4"),
+    ("kernel.py", "(slopes[-1:], slopes[:-1])", "(slopes[1:], slopes[:1])", ("numpy",), "rung 4"),
+    ("kernel_python.py", "slopes[-1:] + slopes[:-1]", "slopes", ("numpy", "python"), "rung 4"),
+    ("kernel.c", "right[0] = -total;", "right[0] = total;", ("c",), "wrong kernel"),
+    ("kernel.c", "total = total + slope;", "total = total - slope;", ("c",), "wrong kernel"),
+    ("kernel.c", "level(right, size);\n}", "}", ("c",), "wrong kernel"),
+]
 
 
 @pytest.fixture(scope="module")
 def rendered():
     """The shipped system up to its texts."""
     return pipeline.render(shipped("camassa_holm"))
+
+
+@pytest.fixture(scope="module")
+def rendered_level():
+    """That with a velocity of mean 0."""
+    return pipeline.render(shipped("hunter_saxton"))
 
 
 def climb(rendered, texts, targets):
@@ -56,6 +72,12 @@ def test_the_ladder_sees_wrong_solutions(rendered, monkeypatch, file, old, new, 
         return
     with pytest.raises(CrossCheckError, match=seen):
         climb(rendered, texts, targets)
+
+
+@pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG_LEVEL)
+def test_the_ladder_sees_wrong_means(rendered_level, monkeypatch, file, old, new, targets, seen):
+    """Sums of the wrong sign or in the wrong place, and rows that keep their mean."""
+    test_the_ladder_sees_wrong_solutions(rendered_level, monkeypatch, file, old, new, targets, seen)
 
 
 @pytest.mark.parametrize(

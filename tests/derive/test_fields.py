@@ -161,6 +161,17 @@ def test_korteweg_and_de_vries():
         assert derive(spec, route, setting=setting).exact.rates == (-3 * m * m_s - c * m_sss,)
 
 
+def test_a_velocity_has_a_mass_and_a_drift():
+    """With l = 3 u^2/2 + c u the velocity is (m - c)/3, by both routes: 2 u_s m + u m_s with it."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    text = text.replace('l = "u^2/2"', 'l = "3*u^2/2 + c*u"').replace('central = "c"', "")
+    setting = make_setting(spec_of(text.replace('"energy", "M", "J"', '"energy"')))
+    m, m_s, c = (setting.field[x] for x in ("m", "m_s", "c"))
+    for route in setting.spec.routes:
+        (rate,) = derive(setting.spec, route, setting=setting).exact.rates
+        assert rate == -(2 * m * m_s + m_s * (m - c)) / 3
+
+
 def test_advected_quantities_turn_along_a_strand():
     """Of a chain of tops the three routes agree, and the torque is l_Gamma x Gamma."""
     text = STRAND.replace(
@@ -221,7 +232,7 @@ def test_lagrangians_of_strands_that_are_refused(old, new, message):
         ("L", "no kinetic energy"),
         ("u^2/2 + u*u_s^2", "no linear operator"),
         ("u^2/2 - u_s^2/2", "factor of u_s^2 is -1/2 at the defaults"),
-        ("u_s^2/2", "factor of u^2 is 0 at the defaults"),
+        ("(c - 121/250000)*u^2 + u_s^2/2", "factor of u^2 is 0 at the defaults"),
     ],
 )
 def test_lagrangians_of_the_circle_that_are_refused(l, message):  # noqa: E741

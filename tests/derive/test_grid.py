@@ -14,6 +14,7 @@ from coadjoint.derive.reference import Reference
 from coadjoint.exact import Field
 from tests.families import family_of
 from tests.fields import (
+    breaking_wave,
     cnoidal_wave,
     family_by_order,
     fields_by_order,
@@ -76,6 +77,7 @@ def waves():
             (64, 128),
             (96, 128),
         ),
+        "hunter_saxton": (breaking_wave, 7.0, [7.0], (96, 192), (96, 128)),
     }
 
 
@@ -190,6 +192,37 @@ def test_a_wave_of_camassa_and_holm_is_one_by_fourier_series():
     slope = lambda f: np.fft.irfft(1j * k * np.fft.rfft(f), N)  # noqa: E731
     np.testing.assert_allclose(-(m * slope(u) + slope(m * u)), rate, atol=1e-13)
     assert np.ptp(m) > 0.3
+
+
+def test_a_wave_of_hunter_and_saxton_is_one_by_fourier_series():
+    """The wave by particles solves m_t = -(m u_s + (m u)_s) with u = m/k^2 of mean 0."""
+    N, L = 128, 7.0
+    (m,), (rate,) = breaking_wave(np.arange(N) * L / N, 0.3)
+    k = 2 * np.pi / L * np.fft.rfftfreq(N, 1 / N)
+    modes = np.fft.rfft(m)
+    assert abs(modes[0]) < 1e-12
+    u = np.fft.irfft(np.concatenate([[0], modes[1:] / k[1:] ** 2]), N)
+    slope = lambda f: np.fft.irfft(1j * k * np.fft.rfft(f), N)  # noqa: E731
+    np.testing.assert_allclose(-(m * slope(u) + slope(m * u)), rate, atol=1e-12)
+    assert np.ptp(m) > 0.3
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_a_level_velocity_is_that_of_the_whole_matrix(order):
+    """-D_2 u is m without its mean, and the mean of u is 0, for m that have one."""
+    grid = make_grid(fields_by_order("hunter_saxton", order))
+    (equation,), ring = grid.family.solved, grid.windows[0]
+    field, size = ring.setting.field, len(ring.setting.state)
+    weight = field.number(size) ** 2 / field["L"] ** 2
+    u = [grid.velocities[size]["u", i] for i in range(size)]
+    m = [field[name] for name in ring.setting.state]
+    mean = field.sum(m) * Fraction(1, size)
+    assert field.is_zero(field.sum(u))
+    for i in range(size):
+        terms = (u[(i + r) % size] * weight * c for r, c in stencil(2, order).items())
+        assert field.is_zero(field.sum(terms) + m[i] - mean)
+    assert equation.level
+    assert len(equation.factors) == order // 2
 
 
 @pytest.mark.parametrize("order", ORDERS)

@@ -9,8 +9,13 @@ from __future__ import annotations
 from tests.mutation.mutant import core_of
 
 STRANDS = ("spin_chain",)
+CIRCLES = ("burgers", "hunter_saxton", "camassa_holm")
 #: Signs that all routes share, and what books print.
 BOOKS = ("tests/derive/test_fields.py -k 'book or korteweg or landau or simo'",)
+#: Rates of exact waves, by differences and by Fourier derivatives, and what they keep.
+WAVES = ("tests/derive/test_grid.py -k 'exact_waves and (camassa or hunter)'",)
+RINGS = ("tests/derive/test_grid.py -k 'ring or level'",)
+REFUSED = ("tests/derive/test_fields.py -k 'refused or mass'",)
 #: The sign of a rate, which a certificate alone does not tell, shows in a flux.
 FLUX = ("tests/prove/test_fields.py -k 'fluxes'",)
 
@@ -32,5 +37,40 @@ FIELDS = (
         "euler rate _homotopy",
         systems=("kdv",),
         tests=(*BOOKS, *FLUX),
+    ),
+    *core_of(
+        "euler-poincare",
+        "fields/circle",
+        "inertia vary close velocity energy",
+        systems=CIRCLES,
+        tests=(*FLUX, *REFUSED, *WAVES),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/solved",
+        "find_factors _divide multiply_out solve_ring",
+        systems=("hunter_saxton",),
+        tests=(*RINGS, *WAVES),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/generic",
+        "_find_slopes defects",
+        systems=("hunter_saxton", "spin_chain"),
+        tests=(*WAVES,),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/spectral",
+        "_differentiate",
+        systems=(),
+        tests=("tests/derive/test_spectral.py",),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/ends",
+        "find_row find_place find_weight",
+        systems=(),
+        tests=("tests/derive/test_ends.py -k 'parts or polynomials or largest or matrices'",),
     ),
 )

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Term
@@ -22,6 +23,8 @@ NAMES = (
     "landau_lifshitz",
     "kdv",
     "camassa_holm",
+    "burgers",
+    "hunter_saxton",
     "sp2_strand",
     "two_time_body",
 )
@@ -195,7 +198,7 @@ def test_what_differences_keep_is_said_of_each_density():
         for s, d in found.items()
         if getattr(d, "verdict", None) is Verdict.PROVED and " is conserved" in s
     ]
-    assert kept == ["the energy", "M"]
+    assert kept == ["the energy", "the energy", "M"]  # by differences, and by Fourier derivatives
     assert any(s.startswith("J is conserved up to O(h^6)") for s in found)
     assert any("Jacobi identity of the bracket fails" in s for s in found)
 
@@ -214,8 +217,19 @@ def test_a_bracket_with_products_differentiated_loses_the_energy():
     (a, b, r) = next(key for key in brackets if key[2] == 1)
     brackets[a, b, r] = brackets[a, b, r] * 2
     found = statements(replace(grid, brackets=brackets))
-    (energy,) = (d for s, d in found.items() if s.startswith("the energy"))
+    (energy,) = (d for s, d in found.items() if s.startswith("the energy") and "differences" in s)
     assert energy.verdict is Verdict.REFUTED
+
+
+def test_fourier_derivatives_keep_the_energy_by_a_bracket_whose_terms_balance():
+    """With 2 m D + D m in the place of m D + D m the claim about all D is refuted, too."""
+    claim = "the energy is conserved, at N points, with Fourier derivatives"
+    assert statements(grid_of("kdv"))[claim].verdict is Verdict.PROVED
+    point = GenericPoint(emitted("kdv"))
+    ((one, *others),) = point.operator[0]
+    point.operator = (((Term(2 * one.left, one.order, one.right), *others),),)
+    found = statements(replace(grid_of("kdv"), defects=tuple(point.defects)))
+    assert found[claim].verdict is Verdict.REFUTED
 
 
 def test_a_wrong_rate_of_the_generic_point_is_seen_in_rings():

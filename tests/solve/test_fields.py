@@ -11,12 +11,20 @@ from coadjoint.errors import CoadjointError, KernelArgumentError, ShockWarning
 from coadjoint.systems import (
     burgers,
     camassa_holm,
+    hunter_saxton,
     kdv,
     landau_lifshitz,
     spin_chain,
     spin_chain_chiral,
 )
-from tests.fields import cnoidal_wave, helix, precessing_wave, smooth_length, smooth_wave
+from tests.fields import (
+    breaking_wave,
+    cnoidal_wave,
+    helix,
+    precessing_wave,
+    smooth_length,
+    smooth_wave,
+)
 
 #: Systems with their exact waves, lengths and parameters.
 WAVES = {
@@ -34,6 +42,7 @@ WAVES = {
         smooth_length(),
         {"L": smooth_length(), "alpha": 0.9},
     ),
+    "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}),
 }
 
 
@@ -66,6 +75,7 @@ def test_waves_travel_as_they_should(name):
         (spin_chain_chiral.system, {"energy", "P", "M"}, None),
         (kdv.system, {"energy", "M"}, None),
         (camassa_holm.system, {"energy", "M"}, {"L": 1, "alpha": 0.02}),
+        (hunter_saxton.system, {"energy", "M"}, {"L": 60}),
     ],
     ids=lambda each: getattr(each, "name", ""),
 )
@@ -74,6 +84,7 @@ def test_the_midpoint_keeps_what_is_quadratic(system, kept, parameters):
     small = system.resize({"s": 32})
     source = np.random.default_rng(3)
     state = source.normal(size=small.STATE.size) / 4
+    state -= np.mean(state) * (system is hunter_saxton.system)
     by = {}
     for method in ("midpoint", "rk4"):
         options = {"step": 0.01, "method": method, "target": "numpy", "samples": 2}
@@ -123,6 +134,35 @@ def test_the_energy_of_camassa_and_holm_solves_its_equation(N, alpha):
     found = camassa_holm.system.resize({"s": N}).evaluate("energy", m, [alpha, L], target="numpy")
     condition = 1 + 16 / 3 * weight  # of the matrix, whose entries are rounded
     np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-15 * (10 + condition))
+
+
+@pytest.mark.parametrize("N", [5, 6, 40, 257])
+def test_a_level_velocity_solves_its_equation(N):
+    """L/N sum m u/2 with u from the pseudoinverse of the matrix -D_2, m having any mean."""
+    m, L = np.random.default_rng(N).normal(size=N), 3.0
+    matrix = sum(
+        c * (np.roll(np.eye(N), r, axis=1) + np.roll(np.eye(N), -r, axis=1))
+        for r, c in ((0, 5 / 4), (1, -4 / 3), (2, 1 / 12))
+    )
+    u = np.linalg.pinv(matrix, rcond=1e-9) @ m * (L / N) ** 2
+    small = hunter_saxton.system.resize({"s": N})
+    for target in ("numpy", "c"):
+        found = small.evaluate("energy", m, [L], target=target)
+        np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-15 * N**2)
+
+
+def test_a_momentum_with_a_mean_has_no_level_velocity():
+    """Hunter and Saxton's m is a derivative; the advice is followed, for each of a batch."""
+    small = hunter_saxton.system.resize({"s": 16})
+    m = np.random.default_rng(0).normal(size=(16, 2)) + 1
+    m[:, 0] -= m[:, 0].mean()
+    options = {"target": "numpy", "samples": 2}
+    with pytest.raises(KernelArgumentError, match="mean of m of hunter_saxton is") as error:
+        small.simulate(m, (0, 0.1), **options)
+    assert error.value.found == pytest.approx(m[:, 1].mean())
+    assert "Subtract the mean" in str(error.value)
+    found = small.simulate(m - m.mean(axis=0), (0, 0.1), **options)
+    assert np.abs(found.state.mean(axis=0)).max() < 1e-12
 
 
 def test_trajectories_of_a_batch_are_solved_as_each_alone():
@@ -181,7 +221,23 @@ def test_before_its_shock_the_motion_is_that_of_characteristics():
     for _ in range(60):
         label -= (label + 3 * t * np.sin(label) - s) / (1 + 3 * t * np.cos(label))
     np.testing.assert_allclose(found.state[:, -1], np.sin(label), atol=2e-4)
-    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.1)
+    burgers.system.simulate(np.ones(N), (0, 1), samples=2, target="numpy", method="rk4", step=0.02)
+
+
+@pytest.mark.parametrize("part", [0.9, 1.1])
+def test_hunter_and_saxton_break_when_books_say(part):
+    """The sine with u0' from -1 to 1: b = 1/sqrt(8), (pi/2 - arctan(sqrt(2)))/b = 1.7408."""
+    assert hunter_saxton.system.wave == ("u", "L")
+    breaks = (np.pi / 2 - np.arctan(2**0.5)) * 8**0.5
+    options = {"samples": 2, "target": "numpy", "method": "rk4", "step": 0.02}
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", ShockWarning)
+        hunter_saxton.system.simulate(None, (0, part * breaks), **options)
+    messages = [str(each.message) for each in told if each.category is ShockWarning]
+    assert len(messages) == (part > 1)
+    for each in messages:
+        said = float(re.search(r"shock at t = ([\d.]+)", each)[1])
+        np.testing.assert_allclose(said, breaks, rtol=1e-5)
 
 
 def test_other_fields_have_no_such_time():

@@ -427,6 +427,58 @@ def test_b_7_2_the_vorticity_equation():
     assert curl(acceleration) != vorticity_rate(u)
 
 
+def plane_flow():
+    """The flow u = (-psi_y, psi_x) of an undetermined stream function, what is 0, and curl u."""
+    field = JetField([*SPACE], ["psi"], 4)
+    psi_x, psi_y = elements(field, "psi_x", "psi_y")
+    still = {name: field.zero for name in field.names if name.startswith("psi_") and "z" in name}
+    w = field.derivative(psi_x, "x") + field.derivative(psi_y, "y")
+    return VectorField(field, SPACE, (-psi_y, psi_x, field.zero)), still, w
+
+
+def test_b_7_2_plane_flows():
+    """The vorticity is Laplace psi, and its rate -{psi, Laplace psi} = psi_y w_x - psi_x w_y."""
+    u, still, w = plane_flow()
+    field = u.field
+    assert [field.substitute(x, still) for x in curl(u).components] == [0, 0, w]
+    w_x, w_y = (field.derivative(w, name) for name in ("x", "y"))
+    (psi_x, psi_y) = elements(field, "psi_x", "psi_y")
+    expected = psi_y * w_x - psi_x * w_y
+    assert [field.substitute(x, still) for x in vorticity_rate(u).components] == [0, 0, expected]
+
+
+@pytest.mark.parametrize(("second", "steady"), [((3, 4), True), ((3, 3), False)])
+def test_b_7_2_cellular_flows_are_steady(second, steady):
+    """Waves of one length, |k| = 5: Laplace psi = -25 psi; with another length they move."""
+    field = Field([*SPACE, "A", "B"], slots=2)
+    x, y, A, B = elements(field, "x", "y", "A", "B")
+    waves = [field.call("sin", 5 * x), field.call("sin", second[0] * x + second[1] * y)]
+    psi = A * waves[0] + B * waves[1]
+    psi_x, psi_y = (field.derivative(psi, name) for name in ("x", "y"))
+    u = VectorField(field, SPACE, (-psi_y, psi_x, field.zero))
+    assert divergence(u) == 0
+    assert (curl(u).components[2] + 25 * psi == 0) is steady
+    assert vorticity_rate(u).is_zero() is steady
+
+
+def test_b_7_2_energy_and_all_functions_of_the_vorticity_are_kept_in_the_plane():
+    """Rates are divergences: F(w)_t = -div(F(w) u) for F = w^2 and w^3, psi w_t = -div(psi w u).
+
+    The energy is -psi w/2 but for a divergence, and its rate -psi w_t.
+    """
+    u, still, w = plane_flow()
+    field, psi, (ux, uy, _) = u.field, u.field["psi"], u.components
+    rate = field.substitute(vorticity_rate(u).components[2], still)
+
+    def flow_out(density):
+        return field.derivative(density * ux, "x") + field.derivative(density * uy, "y")
+
+    for power in (2, 3):
+        assert power * w ** (power - 1) * rate == -flow_out(w**power)
+    assert psi * rate == -flow_out(psi * w)
+    assert psi * rate != flow_out(psi * w)
+
+
 def abc_flow(doubled):
     """The ABC flow; one amplitude of the third component may be doubled, to spoil it."""
     field = Field([*SPACE, "A", "B", "C"], slots=3)

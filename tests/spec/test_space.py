@@ -8,6 +8,7 @@ from coadjoint.spec import read_spec_text
 from tests.specs import RIGID_BODY, shipped
 
 STRAND = shipped("spin_chain").path.read_text(encoding="utf-8")
+MAGNET = shipped("landau_lifshitz").path.read_text(encoding="utf-8")
 KDV = shipped("kdv").path.read_text(encoding="utf-8")
 
 
@@ -46,6 +47,11 @@ def test_another_number_of_points_is_chosen_where_a_spec_is_loaded():
         (STRAND, 'length = "L"', 'length = "K"', "is no scalar", "Write K = "),
         (STRAND, "order = 4 }", 'order = 4 }\nr = { length = "L" }', "2 coordinates", "Remove"),
         (STRAND, "order = 4", "order = 3", "order", "2, 4, 6 or 8"),
+        (STRAND, "order = 4", 'order = 6, ends = "free"', "at free ends have the order 6", "Write order = 4"),
+        (STRAND, "order = 4", 'order = 4, ends = "open"', "ends", "'free'"),
+        (STRAND, "order = 4", 'order = 4, ends = "free"', "other densities flow", "Remove it"),
+        (MAGNET, "order = 4", 'order = 4, ends = "clamped"', "clamped ends, and no strain", 'Write ends = "periodic"'),
+        (STRAND.replace(', "P"]', ']\ncasimirs = ["Xi1"]'), "order = 4", 'order = 4, ends = "free"', "Casimirs are claimed", "Remove them"),
         (STRAND, "[claims]", "[forces]\nOmega = \"-Omega\"\n\n[claims]", "[space] and [forces]", "Remove"),
         (STRAND, '"P"]', '{ claim = "P", where = ["Xi1"] }]', "level set", "Remove where"),
         (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_ss, Xi_ss)/2", "Xi_ss", "Xi_s"),

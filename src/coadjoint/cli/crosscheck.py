@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,6 +20,9 @@ from coadjoint.cli.output import json_option, print_json, print_table, say
 from coadjoint.errors import OutputError
 from coadjoint.sandbox_child import prepared_by, report_progress
 
+if TYPE_CHECKING:
+    from coadjoint.spec import Spec
+
 
 @click.command("crosscheck")
 @system_argument
@@ -28,7 +31,8 @@ from coadjoint.sandbox_child import prepared_by, report_progress
     type=click.IntRange(1, 10_000_000),
     default=200_000,
     show_default=True,
-    help="Least number of points at which NumPy and C are compared bit for bit.",
+    help="Least number of points at which NumPy and C are compared bit for bit. Of equal members "
+    "and fields there are a few points for each of some numbers of members.",
 )
 @seconds_option
 @json_option
@@ -63,9 +67,11 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     from coadjoint.solver_kinds import FILES, list_kinds
     from coadjoint.spec import read_spec
 
-    folder = Path(argument["folder"])
+    folder, spec = Path(argument["folder"]), read_spec(Path(argument["path"]))
     report_progress("derive", 0, 2)
-    equations = derive(read_spec(Path(argument["path"])))
+    if spec.family is not None or spec.space is not None:
+        return _report_members(spec, folder)
+    equations = derive(spec)
     programs = lower(equations)
     missing = set(FILES).difference(*(kind.files for kind in list_kinds(programs)))
     files = [file for target in TARGETS.values() for file in target.files if file not in missing]
@@ -80,6 +86,21 @@ def report_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         maps=lower_maps(equations, programs["rhs"]).programs,
     )
     return report.as_record()
+
+
+def _report_members(spec: Spec, folder: Path) -> dict[str, Any]:
+    """The same of equal members or fields, for some numbers of these."""
+    from coadjoint import pipeline
+    from coadjoint.crosscheck.families import crosscheck_family
+    from coadjoint.solve.folders import load_folder
+
+    rendered = pipeline.render(spec)
+    own = rendered.family
+    assert own is not None, spec.name
+    texts = {file: _text(folder / file) for file in rendered.texts}
+    report_progress("compile and cross-check", 1, 2)
+    given = (own.windows, own.declared, own.family, own.context)
+    return crosscheck_family(*given, texts, own.printed, load_folder(folder)).as_record()
 
 
 def _text(path: Path) -> str:

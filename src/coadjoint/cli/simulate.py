@@ -124,6 +124,13 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     type=click.Path(path_type=Path),
     help="File that a generated solver keeps on its way. The same command goes on from it.",
 )
+@click.option(
+    "--derivatives",
+    type=click.Choice(["differences", "fourier"]),
+    default="differences",
+    show_default=True,
+    help="Derivatives of fields along space. By fourier, methods of SciPy alone apply.",
+)
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
     "--trace",
@@ -151,6 +158,7 @@ def command(
     trace: Path | None,
     table: Path | None,
     sizes: dict[str, int],
+    derivatives: str,
     seconds: int | None,
     as_json: bool,
     time: float,
@@ -162,7 +170,7 @@ def command(
     asked.check()
     if members is not None and (plot or trace):
         raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
-    loaded = load_system(system, seconds, sizes)
+    loaded = load_system(system, seconds, sizes).with_derivatives(derivatives)
     asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy

@@ -61,18 +61,26 @@ class _Members:
         return run(part.program, values, self.number, self.call)
 
     def complete(self, solve: Solve) -> _Members:
-        """The same with what is solved for, by elimination and not by doubled shifts."""
+        """The same with what is solved for, by elimination and not by doubled shifts.
+
+        A level one solves the equation of the whole matrix, to which the first factor times the sum
+        is added: that is 0.
+        """
         factors, size = self.evaluate(solve.factors, 0), self.size
-        row = [self.number(Fraction(0))] * size
-        for place, a in [
-            (r * s, a) for r, a in enumerate(factors) for s in ((1, -1) if r else (1,))
-        ]:
-            row[place % size] += a
+        every = [(r * s, a) for r, a in enumerate(factors) for s in ((1, -1) if r else (1,))]
+        row = [factors[0] if solve.level else self.number(Fraction(0))] * size
+        for place, a in every:
+            for shift, weight in ((0, 2), (1, -1), (-1, -1)) if solve.level else ((0, 1),):
+                row[(place + shift) % size] += a * self.number(Fraction(weight))
         lower = [row[i - j] for i in range(size) for j in range(i + 1)]
         equations, state, found = BoundedEquations(lower), self.arrays["state"], list[Any]()
         for first in range(0, len(state), solve.blocks * size):
             run_of = state[first : first + solve.blocks * size]
-            found += [*run_of, *equations.solve(run_of[solve.of * size :][:size])]
+            right = run_of[solve.of * size :][:size]
+            if solve.level:
+                mean = reduce(add, right) / self.number(Fraction(size))
+                right = [each + -mean for each in right]
+            found += [*run_of, *equations.solve(right)]
         return replace(self, arrays={**self.arrays, "state": found})
 
     def add_up(self, terms: Iterable[list[Any]]) -> list[Any]:

@@ -119,11 +119,13 @@ class Solve:
         factors: ``a_0, a_1, ...``, of parameters and N.
         blocks: Rows of a run for each member.
         of: The place in a run of the right side.
+        level: Whether it has the mean 0, as in `coadjoint.families.Solved`.
     """
 
     factors: Part
     blocks: int
     of: int
+    level: bool
 
 
 @dataclass(frozen=True)
@@ -315,7 +317,7 @@ class _Lowering:
         family = self.family
         for each in family.solved:
             factors = self._part(f"{name}_factors", each.factors, {})
-            return Solve(factors, len(family.states), family.states.index(each.of))
+            return Solve(factors, len(family.states), family.states.index(each.of), each.level)
         return None
 
     def rates(self, name: str) -> Loops:

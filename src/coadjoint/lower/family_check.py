@@ -46,6 +46,7 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
         for solve, each in zip([loops.solve] * bool(family.solved), family.solved, strict=True):
             assert solve is not None, loops.name
             assert family.states[solve.of] == each.of, loops.name
+            assert solve.level == each.level, loops.name
             _check_part(loops.name, solve.factors, each.factors, symbols, ())
         assert compared, loops.name
     if "kinks" in functions:

@@ -21,12 +21,16 @@ from coadjoint.derive import Equations
 from coadjoint.derive.document import equation_lines
 from coadjoint.derive.domain import bounds
 from coadjoint.derive.emitted import list_following
+from coadjoint.derive.fields import circle
+from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
-from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.jets import jets_of, solved
+from coadjoint.derive.fields.stencils import find_largest
+from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.exact import element_text
-from coadjoint.families import Family, Strand
+from coadjoint.families import Family, PrincipalSymbol, Strand
 from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
@@ -170,6 +174,8 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     spec, space = first.spec, first.spec.space
     assert space is not None, spec.name
     own = f"at N points of the circle, by differences of order {space.order}"
+    if space.has_ends:
+        own = f"at N points between {space.ends} ends, by differences of order {space.order}"
     routes = [
         f"Route {first.route} of fields along {space.name}, {own}.",
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
@@ -177,17 +183,44 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     lines = ["fields:", *equation_lines(first), f"point {space.name}:", *family_lines(grid.family)]
     wave = tell_wave(first)
     told = replace(context, routes=tuple(routes), equations=tuple(lines))
-    return replace(told, strand=find_strand(spec), wave=wave)
+    return replace(
+        told, strand=find_strand(spec), wave=wave, spectral=grid.spectral, symbol=tell_symbol(first)
+    )
+
+
+def tell_symbol(first: Equations) -> PrincipalSymbol | None:
+    """The principal symbol of fields for differences of the declared order."""
+    setting, space = first.setting, first.spec.space
+    assert space is not None, first.spec.name
+    order, matrix = find_matrix(setting, jets_of(setting), first.exact.rates)
+    if not order:
+        return None
+    rows = {
+        a: {b: element_text(setting.field, x) for b, x in zip(setting.state, row, strict=True) if x}
+        for a, row in zip(setting.state, matrix, strict=True)
+    }
+    largest = find_largest(order, space.order)
+    if space.has_ends:
+        largest = CLOSURES[space.order].largest
+    return PrincipalSymbol(space.length, order, largest, rows)
 
 
 def tell_wave(first: Equations) -> tuple[str, ...]:
-    """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``; else ()."""
+    """The speed a of waves and the name of the length, where ``m_t + a(m) m_s = 0``.
+
+    Of Hunter and Saxton's equation, ``m_t + u m_s + 2 u_s m = 0`` with m a multiple of u_ss, it is
+    u. Others have waves whose end is not known: ().
+    """
     setting, jets, space = first.setting, jets_of(first.setting), first.spec.space
     assert space is not None, first.spec.name
-    if len(setting.state) > 1:
+    if len(setting.state) > 1 or space.has_ends:
         return ()
     (m,), (rate,), field = setting.state, first.exact.rates, setting.field
     speed, steepness = -field.derivative(rate, jets.towers[m][1]), field[jets.towers[m][1]]
+    for u in solved(first.spec):
+        carried = field[u] * steepness + 2 * field[jets.towers[u][1]] * field[m]
+        is_level = {*circle.inertia(setting)} == {2} and field.is_zero(rate + carried)
+        return (u, space.length) if is_level else ()
     others = {*jets.orders} - {m}
     if field.reach(speed) & others or not field.is_zero(rate + speed * steepness):
         return ()
@@ -201,7 +234,9 @@ def find_strand(spec: Spec) -> Strand | None:
     if not strains or spec.algebra is None or spec.space is None or not spec.algebra.matrices:
         return None
     matrices, (strain,) = spec.algebra.matrices, strains
-    if not all(isinstance(x, int | Fraction) for each in matrices for x in each.values()):
+    if spec.space.has_ends or not all(
+        isinstance(x, int | Fraction) for each in matrices for x in each.values()
+    ):
         return None
     entries = (
         tuple((row, column, float(x)) for (row, column), x in sorted(each.items()))

@@ -26,7 +26,7 @@ from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, solved
 from coadjoint.derive.fields.operators import Operator, Term, apply, order_of, skew_defects
-from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.fields.structure import cocycle, field_operator
 from coadjoint.derive.fields.symbol import look_at_symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
@@ -231,7 +231,12 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
     """The energy, and what the spec claims to be conserved."""
     setting, spec = first.setting, first.spec
     emitted = {each.name: each.whole for each in first.exact.emitted}
-    if first.exact.energy is not None:
+    space = spec.space
+    assert space is not None, spec.name
+    if first.exact.energy is not None and space.has_ends:
+        statement = f"the integral of the energy is conserved between {space.ends} ends"
+        yield statement, "conserved", partial(_decide_between_ends, first)
+    elif first.exact.energy is not None:
         decide = partial(decide_density, first, [first.exact.energy])
         yield "the integral of the energy is conserved", "conserved", decide
     for place, claim in enumerate(spec.conserved):
@@ -266,6 +271,23 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
     return Decision(
         verdict=Verdict.PROVED, method=f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}"
     )
+
+
+def _decide_between_ends(equations: Equations) -> Decision:
+    """The flux of the energy is ``-h_Pi . h_Xi``, in which one factor is 0 at the ends."""
+    setting, jets = equations.setting, jets_of(equations.setting)
+    field, energy = setting.field, equations.exact.energy
+    assert energy is not None, equations.spec.name
+    slopes = [field.derivative(energy, name) for name in setting.state]
+    by_name = dict(zip(setting.state, slopes, strict=True))
+    flux = -field.sum(by_name[mu] * by_name[strain] for mu, strain in cocycle(setting))
+    rates = dict(zip(setting.state, equations.exact.rates, strict=True))
+    decision = decide_zero([jets.rate(energy, rates) + jets.total(flux)], field)
+    method = (
+        f"{decision.method}: d/dt + d/ds flux = 0 with the flux -dh/dmu . dh/dXi, in which the "
+        "velocities or the stresses are 0 at the ends"
+    )
+    return replace(decision, method=method)
 
 
 def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:

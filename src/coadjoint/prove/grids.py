@@ -32,13 +32,21 @@ def about_grid(grid: Grid) -> Iterator[Examined]:
     space = first.spec.space
     assert space is not None, first.spec.name
     where = f"at N >= {family.small} points, with differences of order {space.order}"
+    where += f" and {space.ends} ends" * space.has_ends
+    rings = "lines" if space.has_ends else "rings"
     sizes = " and ".join(str(count_points(each, grid)) for each in grid.windows)
     yield (
-        f"the motion of the generic point is that of rings of {sizes} points by their matrices",
+        f"the motion of the generic point is that of {rings} of {sizes} points by their matrices",
         "equivalence",
         lambda: _compare_rings(grid),
     )
     yield f"the energy is conserved, {where}", "conserved", lambda: _decide_energy(grid)
+    if not space.has_ends:
+        yield (
+            "the energy is conserved, at N points, with Fourier derivatives",
+            "conserved",
+            lambda: _decide_by_parts(grid),
+        )
     yield from _about_sums(grid, where)
     yield _about_jacobi(grid, where)
 
@@ -80,7 +88,8 @@ def _differences(grid: Grid, ring: Equations) -> list[Element]:
             for c in grid.lattice.components
             for r in range(-reach, reach + 1)
         }
-        for c, rate in zip(grid.equations.setting.state, grid.rates, strict=True):
+        rates = grid.ends.get(k, grid.ends.get(k - size, grid.rates))
+        for c, rate in zip(grid.equations.setting.state, rates, strict=True):
             value = lattice.evaluate(rate, {**values, **seen}, field.number, field.call)
             found.append(value - own[names[c, k]])
     return found
@@ -96,6 +105,8 @@ def _decide_energy(grid: Grid) -> Decision:
     with the point, whatever the differences are.
     """
     lattice = grid.lattice
+    if grid.ends:
+        return _decide_energy_of_lines(grid)
     defects = list[Element]()
     for (a, b, r), value in grid.brackets.items():
         back = grid.brackets.get((b, a, -r), lattice.field.zero)
@@ -104,6 +115,37 @@ def _decide_energy(grid: Grid) -> Decision:
     method = (
         f"{decision.method}: the matrix of the bracket is antisymmetric at the generic point, and "
         "rates are this matrix times the gradient of the energy"
+    )
+    return replace(decision, method=method)
+
+
+def _decide_energy_of_lines(grid: Grid) -> Decision:
+    """The same for two lines: of longer ones each pair of points is like one of these.
+
+    Points near one end, those inside and those near the other are coupled to themselves and to the
+    next group there, since no difference reaches further.
+    """
+    decisions = list[Decision]()
+    for line in grid.windows:
+        tensor, size = line.exact.poisson_tensor, len(line.setting.state)
+        assert tensor is not None, line.spec.name
+        defects = [tensor[i][j] + tensor[j][i] for i in range(size) for j in range(i + 1)]
+        decisions.append(decide_zero([x for x in defects if x], line.setting.field))
+    decision = next((d for d in decisions if d.verdict is not Verdict.PROVED), decisions[0])
+    method = (
+        f"{decision.method}: the matrix of the bracket is antisymmetric with the weights of the "
+        "energy, points near both ends and inside among them, and rates are this matrix times the "
+        "gradient of the energy"
+    )
+    return replace(decision, method=method)
+
+
+def _decide_by_parts(grid: Grid) -> Decision:
+    """The matrix of the bracket is antisymmetric whatever D_k are, if they sum by parts."""
+    decision = decide_zero(list(grid.defects), grid.lattice.field)
+    method = (
+        f"{decision.method}: terms f D_k g of the bracket are minus those of its adjoint, and the "
+        "matrix of D_k is real and has the transpose (-1)^k D_k"
     )
     return replace(decision, method=method)
 
@@ -156,10 +198,11 @@ def _about_jacobi(grid: Grid, where: str) -> Examined:
         discovery = Discovery(method, f"for {size} points")
         return "the bracket satisfies the Jacobi identity", "jacobi", lambda: discovery
     a, b, c = (ring.setting.state[n] for n in next(iter(defects)))
+    by = "" if grid.ends else f" by O(h^{_order(grid)})"  # near ends it is less
     method = f"differences do not obey Leibniz' rule: of the triple {a}, {b}, {c} and others"
     discovery = Discovery(method, f"for {size} points")
     return (
-        f"the Jacobi identity of the bracket fails at N points by O(h^{_order(grid)})",
+        f"the Jacobi identity of the bracket fails at N points{by}",
         "jacobi",
         lambda: discovery,
     )

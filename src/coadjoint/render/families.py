@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index, Strand
+from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -101,6 +101,7 @@ class SolveText:
     factors: PartText
     blocks: int
     of: int
+    level: bool
 
 
 @dataclass(frozen=True)
@@ -269,7 +270,8 @@ def _arrange_solve(loops: Loops, target: str) -> SolveText | None:
     solve = loops.solve
     if solve is None:
         return None
-    return SolveText(_arrange(solve.factors, loops.wraps, target, ""), solve.blocks, solve.of)
+    factors = _arrange(solve.factors, loops.wraps, target, "")
+    return SolveText(factors, solve.blocks, solve.of, solve.level)
 
 
 def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
@@ -333,6 +335,8 @@ class FamilyContext:
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
         strand: The strain of a strand and its matrices.
+        spectral: Of fields, what is computed where derivatives are those of Fourier series.
+        symbol: Of fields, their principal symbol.
         wave: Of a field that is carried by itself, the speed of its waves and the name of the
             length of its circle; empty for others.
     """
@@ -365,6 +369,8 @@ class FamilyContext:
     pair_kinks: tuple[str, ...] = ()
     strand: Strand | None = None
     wave: tuple[str, ...] = ()
+    spectral: Spectral | None = None
+    symbol: PrincipalSymbol | None = None
 
     @property
     def held(self) -> Loops:
@@ -428,6 +434,7 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
         "id": identity,
         "lanes": LANES,
         "solves": any(loops.solve for loops in context.loops.values()),
+        "level": any(loops.solve and loops.solve.level for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "inputs": inputs,
@@ -476,12 +483,16 @@ def _render_file(context: FamilyContext, template: str, target: str, identity: s
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
             *(["strand=STRAND"] * bool(context.strand)),
+            *(["spectral=SPECTRAL"] * bool(context.spectral)),
+            *(["symbol=SYMBOL"] * bool(context.symbol)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
         "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
         "strand": _tell_strand(context.strand),
+        "spectral": _tell_texts(context.spectral),
+        "symbol": _tell_texts(context.symbol),
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -551,6 +562,27 @@ def _tell_strand(strand: Strand | None) -> list[str]:
         return []
     names = map(quote, (strand.name, strand.side, strand.length))
     return [*names, str(strand.size), *(map(str, strand.matrices))]
+
+
+def _tell_texts(record: Spectral | PrincipalSymbol | None) -> dict[str, Any]:
+    """A record with texts of fields, as a generated package declares it; empty without."""
+
+    def tell(value: Any) -> str:
+        match value:
+            case str():
+                return quote(value)
+            case tuple():
+                return f"({', '.join(map(tell, value))})"
+            case Mapping():
+                return "{" + ", ".join(f"{tell(k)}: {tell(x)}" for k, x in value.items()) + "}"
+        return repr(value)
+
+    return {
+        name: {tell(k): tell(x) for k, x in value.items()}
+        if isinstance(value, Mapping)
+        else tell(value)
+        for name, value in ({} if record is None else vars(record)).items()
+    }
 
 
 def tell_shape(loops: Loops, context: FamilyContext) -> str:

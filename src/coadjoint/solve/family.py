@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
-from coadjoint.families import Index, Strand
+from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
@@ -58,6 +58,8 @@ class FamilySystem(System):
         pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
         strand: The strain of a strand and its matrices, if the members are points of one.
         wave: Of a field that is carried by itself, the speed of waves and the name of the length.
+        spectral: Of fields, what is computed where derivatives are those of Fourier series.
+        symbol: Of fields, their principal symbol.
         own_state: Components of a member.
     """
 
@@ -90,11 +92,13 @@ class FamilySystem(System):
         pair_kinks: tuple[str, ...] = (),
         strand: Strand | None = None,
         wave: tuple[str, ...] = (),
+        spectral: Spectral | None = None,
+        symbol: PrincipalSymbol | None = None,
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
         self.kinks, self.pair_kinks, self.wave = kinks, pair_kinks, wave
-        self.strand = strand
+        self.strand, self.spectral, self.symbol = strand, spectral, symbol
         self.own_state = [name for each in state.values() for name in each.components]
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
@@ -244,6 +248,8 @@ class FamilySystem(System):
             pair_kinks=self.pair_kinks,
             strand=self.strand,
             wave=self.wave,
+            spectral=self.spectral,
+            symbol=self.symbol,
         )
         made.levels = self.levels
         return made

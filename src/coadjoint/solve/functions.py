@@ -100,11 +100,15 @@ class Functions:
     Attributes:
         stepwise: Why generated methods make steps that are recorded in Python, as a clause; ""
             where they need not.
+        derivatives: ``fourier`` where fields have these; "" for differences, and without fields.
+        obstacle: Why generated methods do not apply at all, as a clause; "" where they may.
         members: How many equal members there are, whose rows follow one another component after
             component; what one is constrained to does not depend on the others.
     """
 
     stepwise: str = ""
+    obstacle: str = ""
+    derivatives: str = ""
     members: int = 1
 
     @property

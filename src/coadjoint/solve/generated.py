@@ -33,6 +33,7 @@ from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.request import find_kind
 from coadjoint.solve.solution import Solution
+from coadjoint.solve.stability import is_of_waves
 from coadjoint.solve.starts import check_starts
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.solve.surroundings import Driven, Surroundings
@@ -65,6 +66,8 @@ def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
         target: As `System.simulate` takes it.
         reconstruct: Likewise.
     """
+    if system.obstacle:
+        return system.obstacle
     kinds = list_kinds(system.functions)
     wanted = kinds if is_asked(reconstruct) else kinds[:1]
     if not system.stepwise and not all(map(system._solvers.has_files, wanted)):
@@ -197,7 +200,8 @@ def find_series_obstacle(
     if isinstance(system, FamilySystem):
         if stepwise and stepwise != system.stepwise:
             return f"it needs rates of all orders, and {stepwise}"
-        return tell_series_obstacle(system, choose_order(rtol), members, is_auto=is_auto)
+        order = choose_order(rtol, of_waves=is_of_waves(system))
+        return tell_series_obstacle(system, order, members, is_auto=is_auto)
     return f"it needs rates of all orders, and {stepwise}" if stepwise else ""
 
 

@@ -72,6 +72,7 @@ class Request:
         chosen: Why the method was taken, where it was left to us and keeps structure or could.
         seed: Of the noise; None where there is none.
         newton: Whether Newton's method solves the equations of implicit steps.
+        of_waves: Whether the system has fields, whose waves a method of Taylor is not to make grow.
     """
 
     state: Array
@@ -96,11 +97,12 @@ class Request:
     seed: int | None = None
     chosen: str = ""
     newton: bool = False
+    of_waves: bool = False
 
     @cached_property
     def choice(self) -> Choice:
         """The generated method."""
-        order = _ORDER.get(self.method) or choose_order(self.rtol)
+        order = _ORDER.get(self.method) or choose_order(self.rtol, of_waves=self.of_waves)
         kind = find_kind(self.reconstruct)
         return Choice(
             name=self.method,

@@ -24,6 +24,7 @@ from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Following
 from coadjoint.solve.events import read_events
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.noisy import check_no_noise, check_samples, choose_noisy, has_noise
@@ -52,6 +53,7 @@ from coadjoint.solve.request import (
 )
 from coadjoint.solve.shocks import warn_of_shock
 from coadjoint.solve.solution import Solution
+from coadjoint.solve.stability import is_of_waves, watch_waves
 from coadjoint.solve.surroundings import Driven, Surroundings
 
 if TYPE_CHECKING:
@@ -163,13 +165,25 @@ def simulate(
         seed=None if seed is None else int(seed),
         chosen=chosen,
         newton=bool(newton),
+        of_waves=is_of_waves(system),
     )
     check_steps(request)
     if has_noise(system):
         check_samples(request)
     warn_of_shock(system, request)
+    if isinstance(system, FamilySystem) and system.spectral and system.spectral.solved:
+        from coadjoint.solve.spectral import check_means
+
+        check_means(system, request.state)
+    if system.obstacle:  # else there is nothing to load
+        from coadjoint.solve.spectral import warn_of_jump
+
+        warn_of_jump(system, request)
     if not request.method.startswith(SCIPY):
-        return generated.simulate(system, request)
+        speeds = watch_waves(system, request)
+        solution = generated.simulate(system, request)
+        speeds(solution)
+        return solution
     _check_alone(system, request, obstacle)
     return _simulate_alone(system, request)
 

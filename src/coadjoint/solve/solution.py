@@ -118,12 +118,14 @@ class Solution:
         what each path keeps. ``projection`` says onto what states are moved in addition, and when.
         ``stepwise`` says why the steps of a generated method were made in Python, and ``chosen``
         why a method with a fixed step was taken where that was left to us. ``newton`` is there
-        where Newton's method solved the equations of steps.
+        where Newton's method solved the equations of steps, and ``derivatives`` where those of
+        fields are no differences.
         """
         course = self.course
         names = ("method", "order", "rtol", "atol", "step", "stepwise", "seed")
         told = {name: getattr(course, name) for name in (*names, "keeps", "projection", "chosen")}
         told |= {"newton": True} if course.newton else {}
+        told["derivatives"] = self.system.derivatives
         return {name: value for name, value in told.items() if value not in (None, "")}
 
     @property

@@ -65,7 +65,8 @@ class System(Functions):
         METHODS: Methods that keep structure, with what each keeps of this system.
         levels: How much compilers optimise, by stem and build, where that is less than they can;
             see `coadjoint.build.source.Source`.
-        wave: Of a field that is carried by itself, the speed of waves and the name of the length.
+        wave: Of a field whose waves break, their speed and the name of the length; see
+            `coadjoint.solve.shocks`.
     """
 
     levels: Mapping[tuple[str, str], int] = MappingProxyType({})
@@ -124,6 +125,22 @@ class System(Functions):
             f"sizes of {self.name} are {dict(sizes)!r}, and {problem}; expected {expected}. {way}",
             found=list(sizes),
         )
+
+    def with_derivatives(self, derivatives: str) -> System:
+        """Fields by ``"differences"``, which the spec declares, or by ``"fourier"`` derivatives.
+
+        Fourier derivatives are exact for smooth periodic fields but for rounding, as soon as there
+        are enough points. Python leads the steps between transforms of SciPy, so that methods
+        ``scipy:NAME`` alone apply, to one trajectory; generated solvers need differences.
+
+        Raises:
+            KernelArgumentError: Another name, or a system without fields.
+        """
+        if derivatives == "differences" and not self.obstacle:  # what most are asked for
+            return self
+        from coadjoint.solve.spectral import use_derivatives
+
+        return use_derivatives(self, derivatives)
 
     # -- functions --------------------------------------------------------------------------------
 

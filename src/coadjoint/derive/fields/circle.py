@@ -12,7 +12,9 @@ with the Euler operator by eta, and the cocycle of Virasoro's algebra for a cent
 A Lagrangian with derivatives, :math:`l = \tfrac12 \sum a_k (\partial_s^k u)^2`, makes m a
 differential operator of u, :math:`m = A u` with :math:`A = \sum (-1)^k a_k \partial_s^{2k}`. Then
 both are symbols with their derivatives, and equations hold as polynomials in these. Where a law
-needs the equation between them, m is replaced by A u.
+needs the equation between them, m is replaced by A u. Without the square of u itself, as in Hunter
+and Saxton's equation, A takes constants to 0: m has the mean 0 and says nothing of the mean of u,
+which is 0 here. Another mean is the same motion seen by someone who goes around the circle.
 Comes in: a Setting with a Lagrangian. Goes out: Equations in jets of m, and of u with such an A.
 Read next: `coadjoint.derive.fields.structure`, where the bracket is.
 """
@@ -92,6 +94,8 @@ def _slope(setting: Setting) -> Element:
 def inertia(setting: Setting) -> Mapping[int, Element]:
     """The coefficients of ``d^k/ds^k`` in the operator A with m = A u; empty without derivatives.
 
+    That of u itself may be missing.
+
     Raises:
         DerivationError: The Lagrangian is no sum of squares with constant positive factors.
     """
@@ -110,7 +114,7 @@ def inertia(setting: Setting) -> Mapping[int, Element]:
             f"expected a sum of squares of {name} and its derivatives."
         )
         raise fault(setting, formula, message, formula.text)
-    for n, x in {0: field.zero, **found}.items():
+    for n, x in found.items():
         at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** (n // 2)
         if at <= 0:
             square = jets.towers[name][n // 2]

@@ -19,13 +19,21 @@ import sympy
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
+from coadjoint.derive.fields.ends import CLOSURES, EndCalculus, find_weight
 from coadjoint.derive.fields.jets import Jets, jets_of, narrow, solved
 from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
 from coadjoint.derive.fields.operators import Operator
-from coadjoint.derive.fields.solved import find_factors, solve_ring, write_solved
+from coadjoint.derive.fields.solved import (
+    find_factors,
+    is_level,
+    multiply_out,
+    solve_ring,
+    write_solved,
+)
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.derive.symbols import choose_names
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
 from coadjoint.families import Family, Sum, Total
 
@@ -50,8 +58,27 @@ class GenericPoint:
 
     @cached_property
     def densities(self) -> dict[str, Element]:
-        """The energy and the observables, by component."""
-        return {name: narrow(self.jets, value) for name, value in self.equations.exact.observables}
+        """The energy and the observables, by component.
+
+        Raises:
+            DerivationError: One has derivatives, and there are ends.
+        """
+        found = dict(self.equations.exact.observables)
+        if not self.space.has_ends:
+            return {name: narrow(self.jets, value) for name, value in found.items()}
+        jets = {x for name, tower in self.jets.towers.items() for x in tower} - {
+            *self.setting.state
+        }
+        for name, value in found.items():
+            named = sorted(self.setting.field.reach(value) & jets)
+            if named:
+                raise DerivationError(
+                    f"{self.spec.path}: {name} has the derivative {named[0]}, and there are "
+                    f"{self.space.ends} ends; expected densities of fields alone. Remove it, or "
+                    'write ends = "periodic".',
+                    found=named[0],
+                )
+        return found
 
     @cached_property
     def slopes(self) -> list[list[Element]]:
@@ -130,12 +157,50 @@ class GenericPoint:
 
     # -- the generic point ------------------------------------------------------------------
 
+    def find_inverse(self, count: Any, length: Any) -> Any:
+        """One over the spacing, for N points of a circle, or of a line with two ends."""
+        return (count - 1 if self.space.has_ends else count) / length
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """The points near ends, counted from there."""
+        some = len(CLOSURES[self.order].rows) if self.space.has_ends else 0
+        return (*range(some), *range(-some, 0))
+
+    def calculate(self, at: int | None, **given: Any) -> Calculus:
+        """Differences at points of a circle, inside of a line, or at a point near an end.
+
+        Args:
+            at: The number of a point near an end; None for others.
+            given: As `Calculus` takes it.
+        """
+        if not self.space.has_ends:
+            return Calculus(order=self.order, **given)
+        return EndCalculus(order=self.order, meets=self.meets, place=lambda _: at, **given)
+
+    @cached_property
+    def meets(self) -> tuple[bool, ...]:
+        """Of the rate of each field, whether it has the derivative of what is 0 at the ends."""
+        strains = {c for each in self.setting.advected if each.strain for c in each.components}
+        clamped = self.space.ends == "clamped"
+        return tuple((name in strains) == clamped for name in self.setting.state)
+
     @cached_property
     def written(self) -> tuple[list[sympy.Expr], dict[str, sympy.Expr]]:
         """Rates and densities of the generic point as expressions that are not multiplied out."""
+        return self._write(None)
+
+    @cached_property
+    def written_ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
+        """The rates of points near ends; empty on a circle."""
+        return {number: tuple(self._write(number)[0]) for number in self.numbers}
+
+    def _write(self, number: int | None) -> tuple[list[sympy.Expr], dict[str, sympy.Expr]]:
+        """The same of a point near an end."""
         field = self.setting.field
-        inverse = sympy.Symbol(self.count) / sympy.Symbol(self.space.length)
-        calculus = Calculus(self.order, inverse, _rational, sympy.factor_terms)
+        inverse = self.find_inverse(sympy.Symbol(self.count), sympy.Symbol(self.space.length))
+        given = {"inverse": inverse, "number": rational, "tidy": sympy.factor_terms}
+        calculus = self.calculate(number, **given)
 
         def convert(element: Element, values: Mapping[str, Any]) -> Any:
             new = {sympy.Symbol(name): value for name, value in values.items()}
@@ -148,9 +213,18 @@ class GenericPoint:
     @cached_property
     def reach(self) -> int:
         """How far the neighbours are that rates and densities read."""
-        rates, densities = self.written
-        named = {s.name for each in (*rates, *densities.values()) for s in each.free_symbols}
+        named = {s.name for each in self._trees for s in each.free_symbols}
         return max(abs(shift) for _, shift in map(_read_place, named))
+
+    @property
+    def _trees(self) -> list[sympy.Expr]:
+        """All rates and densities."""
+        rates, densities = self.written
+        return [
+            *rates,
+            *densities.values(),
+            *(x for own in self.written_ends.values() for x in own),
+        ]
 
     @cached_property
     def lattice(self) -> LatticeField:
@@ -162,9 +236,9 @@ class GenericPoint:
         positive = [*(self.setting.field.positive & {*rest}), self.count]
         return LatticeField(Field([*symbols, *rest], slots, positive), self.components, reach)
 
-    def calculus_in(self, field: Field, inverse: Element) -> Calculus:
+    def calculus_in(self, field: Field, inverse: Element, number: int | None = None) -> Calculus:
         """Differences of elements of a field, with one over the spacing."""
-        return Calculus(self.order, inverse, field.number)
+        return self.calculate(number, inverse=inverse, number=field.number)
 
     def converter(self, field: Field) -> Callable[[Element, Mapping[str, Any]], Any]:
         """Expressions in jets as elements of another field."""
@@ -176,10 +250,13 @@ class GenericPoint:
 
         return convert
 
-    def _place_exactly(self) -> tuple[Calculus, Callable[[Element], Lattice]]:
+    def _place_exactly(
+        self, number: int | None = None
+    ) -> tuple[Calculus, Callable[[Element], Lattice]]:
         """Differences and expressions in the exact field of the lattice."""
         field = self.lattice.field
-        calculus = self.calculus_in(field, field[self.count] / field[self.space.length])
+        inverse = self.find_inverse(field[self.count], field[self.space.length])
+        calculus = self.calculus_in(field, inverse, number)
         convert = self.converter(field)
         return calculus, self.placer(calculus, lambda c, i: field[name_at(c, i)], convert)
 
@@ -198,11 +275,37 @@ class GenericPoint:
         return {key: self.lattice.field.sum(parts) for key, parts in found.items()}
 
     @cached_property
+    def defects(self) -> list[Element]:
+        """What vanishes if the bracket is antisymmetric for all derivatives that sum by parts.
+
+        Of a matrix D_k with the transpose (-1)^k D_k a term ``f D_k g`` is, at the points i and j,
+        f(i) g(j) times its entry there: so is the term that is minus its adjoint.
+        """
+        _, place = self._place_exactly()
+        found: dict[tuple[int, int, int], list[Element]] = {}
+        for i, entries in enumerate(self.operator):
+            for j, entry in enumerate(entries):
+                for term in entry:
+                    left, right = place(term.left), place(term.right)
+                    other, sign = min(term.order, 1), (-1) ** term.order  # D_0 is the identity
+                    found.setdefault((i, j, term.order), []).append(left(0) * right(other))
+                    found.setdefault((j, i, term.order), []).append(left(other) * right(0) * sign)
+        return [self.lattice.field.sum(parts) for parts in found.values()]
+
+    @cached_property
     def exact_point(self) -> tuple[list[Element], dict[str, Element]]:
         """Rates and densities of the generic point in the exact field of the lattice."""
         calculus, place = self._place_exactly()
         rates = [f(0) for f in self.motion(calculus, place)]
         return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    @cached_property
+    def exact_ends(self) -> dict[int, tuple[Element, ...]]:
+        """The rates of points near ends, likewise; empty on a circle."""
+        found = dict[int, tuple[Element, ...]]()
+        for number in self.numbers:
+            found[number] = tuple(f(0) for f in self.motion(*self._place_exactly(number)))
+        return found
 
     # -- what is solved for -------------------------------------------------------------------
 
@@ -212,7 +315,10 @@ class GenericPoint:
         if not solved(self.spec):
             return {}
         (m,), (u,), field = self.setting.state, solved(self.spec), self.lattice.field
-        factors = self._find_factors(field, field[self.count] / field[self.space.length])
+        inverse = self.find_inverse(field[self.count], field[self.space.length])
+        factors = self._find_factors(field, inverse)
+        if is_level(self.setting):
+            factors = multiply_out(factors)
         return {m: field.sum(a * field[name_at(u, r)] for r, a in factors.items())}
 
     def _find_factors(self, field: Field, inverse: Element) -> dict[int, Element]:
@@ -233,14 +339,15 @@ class GenericPoint:
             solved(self.spec),
             self._find_factors(field, inverse),
         )
-        found = solve_ring(factors, field, [field[names[m, i]] for i in range(size)])
+        momenta, level = [field[names[m, i]] for i in range(size)], is_level(self.setting)
+        found = solve_ring(factors, field, momenta, level=level)
         return {(u, i): value for i, value in enumerate(found)}
 
     @cached_property
     def family(self) -> Family:
         """The generic point as loops are made of it."""
         rates, densities = self.written
-        symbols = {s for each in (*rates, *densities.values()) for s in each.free_symbols}
+        symbols = {s for each in self._trees for s in each.free_symbols}
         states = tuple(map(sympy.Symbol, self.setting.state))
         neighbours = {
             (sympy.Symbol(name), shift): symbol
@@ -249,14 +356,17 @@ class GenericPoint:
             if shift
         }
         count, length = map(sympy.Symbol, (self.count, self.space.length))
+        inverse = self.find_inverse(count, length)
+        singles = {(c, n): sympy.Symbol(f"{c}({n})") for c in states for n in self.numbers}
         totals = tuple(
             Total(
                 name=name,
-                formula=length * sympy.Symbol(f"{name}_sum") / count,
+                formula=(sympy.Symbol(f"{name}_sum") + self._weigh(term, singles)) / inverse,
                 sums=(Sum(symbol=sympy.Symbol(f"{name}_sum"), term=term),),
             )
             for name, term in densities.items()
         )
+        named = {s for each in totals for s in each.formula.free_symbols}
         return Family(
             index=self.space.index,
             states=states,
@@ -267,18 +377,36 @@ class GenericPoint:
             partners={},
             rates=tuple(rates),
             pair_sums=(),
-            ends={},
+            ends=self.written_ends,
             totals=totals,
-            small=2 * self.stencil_reach + 1,
-            wraps=True,
+            small=self.least,
+            wraps=not self.space.has_ends,
+            singles={key: symbol for key, symbol in singles.items() if symbol in named},
             count=(count,),
-            solved=write_solved(self.setting, self.order, count / length),
+            solved=write_solved(self.setting, self.order, inverse),
         )
+
+    @property
+    def least(self) -> int:
+        """The fewest points: no difference meets itself, or points of both ends."""
+        between = 2 * self.stencil_reach
+        return len(self.numbers) + between if self.space.has_ends else between + 1
+
+    def _weigh(self, term: sympy.Expr, singles: Mapping[tuple[Any, int], Any]) -> sympy.Expr:
+        """What the weights of points near ends add to a sum over all points."""
+        parts = [
+            rational(find_weight(self.order, n) - 1)
+            * term.xreplace({c: symbol for (c, k), symbol in singles.items() if k == n})
+            for n in self.numbers
+        ]
+        return sympy.Add(*parts)
 
     # -- what differences keep ------------------------------------------------------------------
 
     def is_kept(self, name: str) -> bool:
         """Whether the sum of an observable over the points is kept exactly."""
+        if self.space.has_ends:
+            return name == "energy"
         (each,) = (x for x in self.equations.exact.emitted if x.name == name)
         field = self.lattice.field
         return all(field.is_zero(x) for c in each.components for x in self.change(c).values())
@@ -316,7 +444,8 @@ class GenericPoint:
         return replace(self.lattice, components=solved(self.spec)).vary(whole)
 
 
-def _rational(value: Fraction) -> sympy.Rational:
+def rational(value: Fraction) -> sympy.Rational:
+    """A number of SymPy."""
     return sympy.Rational(value.numerator, value.denominator)
 
 

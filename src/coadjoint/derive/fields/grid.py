@@ -29,10 +29,11 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import LatticeField
 from coadjoint.derive.fields.rings import Rings
+from coadjoint.derive.fields.spectral import write_spectral
 from coadjoint.derive.records import Kept
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
-from coadjoint.families import Family
+from coadjoint.families import Family, Spectral
 from coadjoint.spec.model import Windows
 
 
@@ -52,6 +53,10 @@ class Grid:
             its name; empty without.
         velocities: Likewise, of each ring by its number of points what is solved for in the
             momenta, by its name and point; empty without.
+        ends: In that field, rates of points near ends by their numbers; empty on a circle.
+        spectral: What is computed where derivatives are those of Fourier series; None with ends.
+        defects: In the field of the lattice, what vanishes if the bracket is antisymmetric for all
+            derivatives that sum by parts, those of Fourier series among them.
         brackets: In this field, of two fields and how many points further the second one is, the
             bracket of both times the spacing.
     """
@@ -66,6 +71,9 @@ class Grid:
     brackets: Mapping[tuple[str, str, int], Element]
     momenta: Mapping[str, Element]
     velocities: Mapping[int, Mapping[tuple[str, int], Element]]
+    ends: Mapping[int, tuple[Element, ...]]
+    spectral: Spectral | None
+    defects: tuple[Element, ...]
 
 
 @once
@@ -79,7 +87,7 @@ def make_grid(equations: Equations) -> Grid:
         for name, value in kept.items()
         if value is Kept.ALWAYS and not point.is_kept(name)
     }
-    size = 2 * point.reach + 1
+    size = point.least if point.space.has_ends else 2 * point.reach + 1
     windows = tuple(rings.make(n, kept) for n in (size, size + 1))
     rates, _ = point.exact_point
     return Grid(
@@ -93,4 +101,7 @@ def make_grid(equations: Equations) -> Grid:
         brackets=point.brackets,
         momenta=point.momenta,
         velocities=rings.velocities,
+        ends=point.exact_ends,
+        spectral=None if point.space.has_ends else write_spectral(point),
+        defects=tuple(point.defects),
     )

@@ -68,6 +68,8 @@ def sample_profiles(spec: Spec, size: int | None) -> dict[str, tuple[tuple[Fract
     """The fields at the beginning at so many points, by component; nothing without a number."""
     found = dict[str, tuple[tuple[Fraction, ...], ...]]()
     for name in spec.profiles if size else ():
-        points = (evaluate_profile(spec, name, Fraction(i, size)) for i in range(size or 0))
+        assert spec.space is not None, spec.name
+        steps = (size or 0) - spec.space.has_ends  # a line has a point at each end
+        points = (evaluate_profile(spec, name, Fraction(i, steps)) for i in range(size or 0))
         found[name] = tuple(zip(*points, strict=True))
     return found

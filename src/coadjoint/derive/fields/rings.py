@@ -15,6 +15,7 @@ from functools import cached_property
 
 from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.fields.ends import find_place, find_row, find_weight
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import Calculus, Lattice
 from coadjoint.derive.fields.profiles import sample_profiles
@@ -48,7 +49,7 @@ class Rings:
         spec = replace(self._bare(size), family=self.declared)
         setting = settings.make_setting(spec)
         field = setting.field
-        inverse = field.number(size) / field[self.space.length]
+        inverse = self.point.find_inverse(field.number(size), field[self.space.length])
         calculus = self.point.calculus_in(field, inverse)
         names = {
             (c, k): own
@@ -65,7 +66,7 @@ class Rings:
 
         place = self.point.placer(calculus, value, self.point.converter(field))
         totals = {
-            name: field.sum(place(density)(i) for i in range(size)) / inverse
+            name: field.sum(place(density)(i) * self._weigh(i, size) for i in range(size)) / inverse
             for name, density in self.point.densities.items()
         }
         tensor = self._tensor(setting, calculus, place, names, size)
@@ -103,25 +104,37 @@ class Rings:
         """``{u_a(i), u_b(j)}``, with a matrix for each difference."""
         field = setting.field
         rows: dict[tuple[str, str], list[Element]] = {}
-        for a, entries in zip(self.point.setting.state, self.point.operator, strict=True):
+        for n, (a, entries) in enumerate(
+            zip(self.point.setting.state, self.point.operator, strict=True)
+        ):
             for b, entry in zip(self.point.setting.state, entries, strict=True):
                 for term in entry:
                     left, right = place(term.left), place(term.right)
                     for i in range(size):
-                        for j, weight in self._matrix_row(term.order, i, size):
-                            part = (
-                                left(i) * right(j) * weight * calculus.inverse ** (term.order + 1)
-                            )
+                        for j, weight in self._matrix_row(term.order, i, size, n):
+                            scale = calculus.inverse ** (term.order + 1)
+                            part = left(i) * right(j) * (weight / self._weigh(j, size)) * scale
                             rows.setdefault((names[a, i], names[b, j]), []).append(part)
         known = {pair: field.sum(parts) for pair, parts in rows.items()}
         return tuple(
             tuple(known.get((a, b), field.zero) for b in setting.state) for a in setting.state
         )
 
-    def _matrix_row(self, derivative: int, i: int, size: int) -> Iterator[tuple[int, Fraction]]:
-        """A row of the matrix of a difference on a ring, times the power of the spacing."""
-        for r, c in stencil(derivative, self.point.order).items():
+    def _matrix_row(
+        self, derivative: int, i: int, size: int, n: int
+    ) -> Iterator[tuple[int, Fraction]]:
+        """A row of the matrix of a difference, times the power of the spacing, for a field."""
+        order = self.point.order
+        row = stencil(derivative, order)
+        if self.space.has_ends and derivative:
+            row = find_row(order, find_place(order, i, size), meets=self.point.meets[n])
+        for r, c in row.items():
             yield (i + r) % size, c
+
+    def _weigh(self, i: int, size: int) -> Fraction:
+        """The weight of a point in sums."""
+        order, has_ends = self.point.order, self.space.has_ends
+        return find_weight(order, find_place(order, i, size)) if has_ends else Fraction(1)
 
     def _bare(self, size: int) -> Spec:
         """A spec with the variables of so many points, and no formulas that lead anywhere."""
@@ -155,7 +168,7 @@ class Rings:
             reach=self.point.reach,
             alone=(0, 0),
             pairs=False,
-            least=2 * self.point.stencil_reach + 1,
+            least=self.point.least,
             windows=(),
         )
 

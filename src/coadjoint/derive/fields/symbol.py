@@ -75,16 +75,23 @@ class Seen:
     is_diagonalizable: bool = True
 
 
+def find_matrix(
+    setting: Setting, jets: Jets, rates: Sequence[Element]
+) -> tuple[int, Sequence[Sequence[Element]]]:
+    """The highest derivative in the rates, and the derivatives of the rates by these."""
+    jets = jets.only(setting.state)
+    order, field = max((_order(jets, rate) for rate in rates), default=0), setting.field
+    tops = [tower[order] for tower in jets.towers.values()]
+    return order, [field.gradient(rate, tops) for rate in rates]
+
+
 def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
     """The roots of the principal symbol at some points; none where it calls functions."""
-    jets = jets.only(setting.state)
-    order, points = max((_order(jets, rate) for rate in rates), default=0), 0
+    order, matrix = find_matrix(setting, jets, rates)
+    points = 0
     if not order:
         return Seen(order, points)
     field, diagonalizable = setting.field, True
-    matrix = [
-        field.gradient(rate, [tower[order] for tower in jets.towers.values()]) for rate in rates
-    ]
     for values in _list_points(setting, matrix):
         numbers = sympy.Matrix(
             [

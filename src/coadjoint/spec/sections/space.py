@@ -46,9 +46,9 @@ _ROLES = ("velocity", "momentum", "strain", "advected")
 
 
 class SpacePart(Part):
-    """The coordinate along which variables are fields, which goes round a circle."""
+    """The coordinate along which variables are fields: around a circle, or between two ends."""
 
-    length: str = Field(description="the parameter that is the length of the circle")
+    length: str = Field(description="the parameter that is the length of the circle or line")
     size: Annotated[int, Field(ge=1)] | None = Field(
         None,
         description="how many points there are; chosen when the system is loaded if left out, as "
@@ -56,6 +56,11 @@ class SpacePart(Part):
     )
     order: Literal[2, 4, 6, 8] = Field(
         4, description="order of the central differences: 2, 4 (the default), 6 or 8"
+    )
+    ends: Literal["periodic", "free", "clamped"] = Field(
+        "periodic",
+        description='"periodic" (the default), a circle; or "free" or "clamped" ends of a strand, '
+        "with order = 2 or 4",
     )
     derivatives: Annotated[int, Field(ge=1, le=4)] = Field(
         1, description="the highest derivative along the coordinate that formulas name"
@@ -128,6 +133,7 @@ class Space:
         length: The parameter that is the length of the circle.
         size: How many points there are, or None.
         order: Order of the central differences.
+        ends: ``periodic``, or ``free`` or ``clamped`` ends.
         derivatives: The highest derivative that formulas name.
         jets: The derivatives that formulas may name.
         unit: Unit of the coordinate.
@@ -137,6 +143,7 @@ class Space:
     length: str
     size: int | None
     order: int
+    ends: str
     derivatives: int
     jets: tuple[Jet, ...]
     unit: str = ""
@@ -144,7 +151,13 @@ class Space:
     @property
     def index(self) -> Index:
         """What counts the points."""
-        return Index(name=self.name, size=self.size, periodic=True, from_zero=True)
+        periodic = not self.has_ends
+        return Index(name=self.name, size=self.size, periodic=periodic, from_zero=True)
+
+    @property
+    def has_ends(self) -> bool:
+        """Whether it is no circle."""
+        return self.ends != "periodic"
 
 
 def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
@@ -160,6 +173,7 @@ def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
         raise reading.at_key(("space", more[0][0]), problem, found, "one", "Remove the others.")
     _check_tables(reading)
     _check_length(reading, name, part)
+    _check_ends(reading, name, part)
     fields = state_of(VARIABLES.of(reading))
     velocities = (each for each in VARIABLES.of(reading) if each not in fields)
     jets = (
@@ -172,6 +186,7 @@ def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
         length=part.length,
         size=part.size,
         order=part.order,
+        ends=part.ends,
         derivatives=part.derivatives,
         jets=tuple(jets),
         unit=part.unit,
@@ -199,6 +214,33 @@ def _check_tables(reading: Reading) -> None:
             problem = f"the {part.role} {name!r} is a field"
             expected = f"one of the roles {list_names(_ROLES)}"
             raise source.fault(("variables", name, "role"), problem, part.role, expected)
+
+
+def _check_ends(reading: Reading, name: str, part: SpacePart) -> None:
+    """Ends are those of a strand, with differences that have closures, and keep the energy alone.
+
+    Raises:
+        SpecError: They are not.
+    """
+    file, source = reading.file, reading.source
+    if part.ends == "periodic":
+        return
+    if part.order not in (2, 4):
+        problem = f"differences at {part.ends} ends have the order {part.order}"
+        hint = "Write order = 4."
+        raise source.fault(("space", name, "order"), problem, part.order, "2 or 4", hint)
+    if not any(each.role == "strain" for each in file.variables.values()):
+        problem = f"there are {part.ends} ends, and no strain"
+        expected, hint = "the ends of a strand", 'Write ends = "periodic".'
+        raise source.fault(("space", name, "ends"), problem, part.ends, expected, hint)
+    for place, claim in enumerate(file.claims.conserved):
+        if claim.claim != "energy":
+            problem = f"there are {part.ends} ends, through which other densities flow"
+            key = ("claims", "conserved", place)
+            raise source.fault(key, problem, claim.claim, "the energy alone", "Remove it.")
+    if file.claims.casimirs:
+        problem, expected = f"there are {part.ends} ends, and Casimirs are claimed", "none"
+        raise source.fault(("claims", "casimirs"), problem, "casimirs", expected, "Remove them.")
 
 
 def _check_length(reading: Reading, name: str, part: SpacePart) -> None:

@@ -1,0 +1,299 @@
+r"""Fourier derivatives: fields whose derivatives are those of the trigonometric polynomial.
+
+With N points of a circle of length L and :math:`\kappa_n = 2 \pi n / L`,
+
+.. math:: (D_k f)_j = \sum_n (i \kappa_n)^k \hat f_n e^{2 \pi i n j / N},
+
+by `scipy.fft`. For even N the mode n = N/2 has no odd derivative, so that :math:`D_k` is real,
+antisymmetric for odd k and symmetric for even k: the energy is kept in continuous time, as by
+differences, and the error of a smooth field falls faster than any power of L/N.
+
+Python leads the steps, SciPy transforms, and NumPy computes products and rates at all points by the
+texts of the generated package. Every target names this computation, so that there is one result.
+Comes in: a `FamilySystem` of fields. Goes out: the same system with other derivatives.
+Read next: `coadjoint.solve.simulate`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError, PeriodicityWarning
+from coadjoint.render.targets.protocol import Call, Kernel
+from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.formulas import Formula
+from coadjoint.solve.kernels import Kernels
+from coadjoint.solve.quantities import Quantities
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.families import Spectral
+    from coadjoint.solve.request import Request
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+
+#: Functions that fields have with these derivatives.
+FUNCTIONS: Final = ("rhs", "energy", "observables")
+#: How much larger than elsewhere a step across the ends is that is called a jump, and the least
+#: part of a field that is looked at.
+STEEP, SMALL = 10.0, 1e-6
+#: The part of a field that its mean may be where it is 0 but for rounding.
+MEAN: Final = 1e-9
+
+
+class SpectralSystem(FamilySystem):
+    """Fields at N points of a circle, by Fourier derivatives.
+
+    Args:
+        system: The same fields by differences.
+    """
+
+    derivatives = "fourier"
+    obstacle = "its derivatives are those of Fourier series, between which Python leads the steps"
+
+    def __init__(self, system: FamilySystem) -> None:
+        assert system.spectral is not None, system.name
+        self.__dict__.update(system.__dict__)
+        for name in ("_kernels", "_solvers"):
+            self.__dict__.pop(name, None)
+        self.differences, self.METHODS = system, ()
+        kept = (
+            replace(each, conserved=each.name == "energy") for each in system.OBSERVABLES.values()
+        )
+        self.OBSERVABLES = Quantities(*kept)
+        self.functions = {name: system.functions[name] for name in FUNCTIONS}
+
+    def resize(self, sizes: Mapping[str, int]) -> SpectralSystem:
+        """The fields at another number of points."""
+        return SpectralSystem(self.differences.resize(sizes))
+
+    @cached_property
+    def _kernels(self) -> Kernels:
+        return _SpectralKernels(self)
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
+        return SpectralSystem, (self.differences,)
+
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]}; Fourier derivatives>"
+
+
+class _SpectralKernels(Kernels):
+    """One kernel, whatever the target is."""
+
+    def __init__(self, system: SpectralSystem) -> None:
+        super().__init__(system)
+        self._kernel_of_all = SpectralKernel(system)
+
+    def _load(self, target: str) -> Kernel:
+        return self._kernel_of_all
+
+
+class SpectralKernel(Kernel):
+    """Rates, energy and observables of fields by Fourier derivatives."""
+
+    def __init__(self, system: SpectralSystem) -> None:
+        assert system.spectral is not None, system.name
+        self.source, self._size, self._names = "", system.size, list(system.own_state)
+        self._spectral: Spectral = system.spectral
+        self._shared = list(system.PARAMETERS.components)
+        own = self._spectral
+        texts = [x for each in (own.products, own.rates, own.densities) for x in each.values()]
+        texts += [x for _, factors in own.solved.values() for x in factors.values()]
+        names = [*self._names, *self._shared, *own.solved, *own.derivatives, *own.products]
+        scope = dict.fromkeys(names, ())
+        self._formulas = {text: Formula(text, scope, "a text of fields") for text in texts}
+
+    def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
+        """One call for all trajectories."""
+        yield partial(self._evaluate, function, call)
+
+    def _evaluate(self, function: str, call: Call) -> None:
+        """A function of all trajectories at once, the points before the trajectories."""
+        shape = (self._size, call.members)
+        fields = dict(zip(self._names, call.state.reshape(-1, *shape), strict=True))
+        parameters = call.parameters if call.parameters.ndim > 1 else call.parameters[:, np.newaxis]
+        given = dict(zip(self._shared, parameters, strict=True))
+        known, length = given | fields, given[self._spectral.length]
+        with np.errstate(all="ignore"):
+            waves = Waves(self._size, length)
+            for u, (m, factors) in self._spectral.solved.items():
+                parts = {k: self._find(text, given, shape[1:]) for k, text in factors.items()}
+                known[u] = waves.solve(fields[m], parts)
+            waiting = dict(self._spectral.products)
+            for name, (of, order) in self._order():
+                if of in waiting:
+                    known[of] = self._find(waiting.pop(of), known, shape)
+                known[name] = waves.differentiate(known[of], order)
+            if function == "rhs":
+                rates = [self._find(text, known, shape) for text in self._spectral.rates.values()]
+                call.block[...] = np.reshape(rates, call.block.shape)
+                return
+            sums = [
+                length / self._size * np.sum(self._find(text, known, shape), axis=0)
+                for name, text in self._spectral.densities.items()
+                if function == "observables" or name == "energy"
+            ]
+            call.block[...] = np.reshape(sums, call.block.shape)
+
+    def _order(self) -> Iterator[tuple[str, tuple[str, int]]]:
+        """Derivatives of fields, then those of products in the order of these."""
+        places = {name: n for n, name in enumerate(self._spectral.products, 1)}
+        own = self._spectral.derivatives.items()
+        yield from sorted(own, key=lambda each: places.get(each[1][0], 0))
+
+    def _find(self, text: str, known: Mapping[str, Array], shape: tuple[int, ...]) -> Array:
+        """A text at all points of all trajectories."""
+        size = int(np.prod(shape))
+        named = self._formulas[text].names
+        flat = {name: np.broadcast_to(known[name], shape).reshape(size) for name in named}
+        value, _ = self._formulas[text].evaluate(flat)
+        return np.broadcast_to(value, (size,)).reshape(shape)
+
+
+class Waves:
+    """The waves on a circle.
+
+    Args:
+        size: How many points it has.
+        length: How long it is, a number for each trajectory or for all.
+    """
+
+    def __init__(self, size: int, length: Array) -> None:
+        self.size = size
+        self._numbers = 2 * np.pi * np.arange(size // 2 + 1)[:, np.newaxis] / length
+
+    def differentiate(self, values: Array, order: int) -> Array:
+        """The derivative of values ``(N, trajectories)``."""
+        return self._multiply(values, self._symbol(order))
+
+    def solve(self, right: Array, factors: Mapping[int, Array]) -> Array:
+        """U with ``sum_k a_k D_k u = right``; with the mean 0 where constants are taken to 0."""
+        symbol = sum((a * self._symbol(k) for k, a in factors.items()), np.zeros(1)).real
+        if 0 not in factors:
+            symbol[0] = np.inf
+        return self._multiply(right, 1 / symbol)
+
+    def _symbol(self, order: int) -> NDArray[np.complex128]:
+        """What a derivative multiplies each wave by."""
+        symbol: NDArray[np.complex128] = np.asarray((1j * self._numbers) ** order, dtype=complex)
+        if order % 2 and self.size % 2 == 0:
+            symbol[-1] = 0
+        return symbol
+
+    def _multiply(self, values: Array, symbol: NDArray[Any]) -> Array:
+        from scipy import fft
+
+        waves = fft.rfft(values, axis=0) * symbol
+        found: Array = fft.irfft(waves, n=self.size, axis=0)
+        return found
+
+
+def solve_velocities(
+    system: FamilySystem, parameters: Mapping[str, Array], fields: Mapping[str, Array]
+) -> dict[str, Array]:
+    """Velocities that follow from m = A u at points ``(N, ...)``; empty where there are none."""
+    found: dict[str, Array] = {}
+    own = system.spectral
+    if own is None:
+        return found
+    for u, (m, factors) in own.solved.items():
+        texts = (Formula(x, dict.fromkeys(parameters, ()), "a factor") for x in factors.values())
+        values = fields[m].reshape(system.size, -1)
+        shape = fields[m].shape[1:]
+
+        def spread(value: Any, shape: tuple[int, ...] = shape) -> Array:
+            return np.broadcast_to(value, shape).reshape(-1)
+
+        given = {name: spread(value) for name, value in parameters.items()}
+        parts = {k: text.evaluate(given)[0] for k, text in zip(factors, texts, strict=True)}
+        waves = Waves(system.size, given[own.length])
+        found[u] = waves.solve(values, parts).reshape(fields[m].shape)
+    return found
+
+
+def use_derivatives(system: System, derivatives: str) -> System:
+    """The system with the derivatives that are asked for.
+
+    Args:
+        system: A System.
+        derivatives: ``differences``, or ``fourier``.
+
+    Raises:
+        KernelArgumentError: Another name, or a system without fields.
+    """
+    if derivatives not in ("differences", "fourier"):
+        raise KernelArgumentError(
+            f"derivatives are {derivatives!r}; expected 'differences' or 'fourier'.",
+            found=str(derivatives),
+            expected=["differences", "fourier"],
+        )
+    own = system.differences if isinstance(system, SpectralSystem) else system
+    if derivatives == "differences":
+        return own
+    if not isinstance(own, FamilySystem) or own.spectral is None:
+        raise KernelArgumentError(
+            f"{system.name} has no fields along a circle, of which there are Fourier derivatives; "
+            "expected derivatives='differences', or a spec with [space].",
+            found=derivatives,
+            expected=["differences"],
+        )
+    return SpectralSystem(own)
+
+
+def check_means(system: FamilySystem, state: Array) -> None:
+    """The mean of a momentum is 0 where it is A u with an A that takes constants to 0.
+
+    Raises:
+        KernelArgumentError: It is not.
+    """
+    solved = {} if system.spectral is None else system.spectral.solved
+    for u, (m, factors) in solved.items():
+        field = state.reshape(len(system.own_state), system.size, -1)[system.own_state.index(m)]
+        means, sizes = np.mean(field, axis=0), np.max(np.abs(field), axis=0)
+        if 0 not in factors and (np.abs(means) > MEAN * sizes).any():
+            mean = float(means[np.argmax(np.abs(means) - MEAN * sizes)])
+            raise KernelArgumentError(
+                f"the mean of {m} of {system.name} is {mean:.6g} at the beginning; expected 0, "
+                f"since {m} is made of derivatives of {u}. Subtract the mean.",
+                found=mean,
+                expected=0.0,
+            )
+
+
+def warn_of_jump(system: System, request: Request) -> None:
+    """Say how far a field jumps at the ends of the circle, if it does at the beginning."""
+    if not isinstance(system, SpectralSystem):
+        return
+    names, size = system.own_state, system.size
+    fields = request.state.reshape(len(names), size, -1)
+    for name, field in zip(names, fields, strict=True):
+        jump = find_jump(field)
+        if jump:
+            warnings.warn(
+                f"the field {name} of {system.name} jumps by {jump:.3g} from the last point to the "
+                "first one: it is not periodic, and Fourier derivatives of it oscillate along the "
+                "whole circle. Begin with periodic fields, or take derivatives='differences'.",
+                PeriodicityWarning,
+                stacklevel=4,
+            )
+
+
+def find_jump(field: Array) -> float:
+    """By how much a field ``(N, trajectories)`` misses its first value, seen from its last points.
+
+    Straight on from two points each value is foreseen; 0 where that is no worse at the ends than
+    elsewhere.
+    """
+    misses = np.abs(field - 2 * np.roll(field, 1, axis=0) + np.roll(field, 2, axis=0))
+    across, within = misses[:2].max(axis=0), misses[2:].max(axis=0)
+    is_jump = (across > STEEP * within) & (across > SMALL * np.abs(field).max(axis=0))
+    return float(np.max(np.where(is_jump, np.abs(field[0] - 2 * field[-1] + field[-2]), 0.0)))

@@ -1,0 +1,213 @@
+"""Fields by Fourier derivatives: exact waves, what is kept, holonomies, and what is refused."""
+
+import pickle
+import warnings
+
+import numpy as np
+import pytest
+
+import coadjoint
+from coadjoint.errors import KernelArgumentError, PeriodicityWarning
+from coadjoint.resources import derivations_folder
+from coadjoint.solve.spectral import SpectralSystem, find_jump
+from coadjoint.solve.strands import transport
+from coadjoint.systems import (
+    camassa_holm,
+    hunter_saxton,
+    kdv,
+    landau_lifshitz,
+    rigid_body,
+    spin_chain,
+    spin_chain_chiral,
+)
+from tests.fields import (
+    breaking_wave,
+    cnoidal_wave,
+    helix,
+    precessing_wave,
+    smooth_length,
+    smooth_wave,
+)
+
+#: Systems with their exact waves, lengths, parameters, and enough points for rounding to show.
+WAVES = {
+    "chiral": (spin_chain_chiral.system, precessing_wave, 10.0, {"L": 10.0}, (31, 32)),
+    "magnet": (
+        landau_lifshitz.system,
+        helix,
+        20.0,
+        {"L": 20.0, "a": [0, 0, 0.6], "B": [0, 0, 0.3]},
+        (31, 32),
+    ),
+    "kdv": (kdv.system, cnoidal_wave, 12.0, {"L": 12.0, "c": 1.3}, (31, 32)),
+    "camassa_holm": (
+        camassa_holm.system,
+        smooth_wave,
+        smooth_length(),
+        {"L": smooth_length(), "alpha": 0.9},
+        (47, 48),
+    ),
+    "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}, (63, 64)),
+}
+
+
+def read_file(system):
+    """The spec of a shipped system."""
+    return (derivations_folder() / f"{system.name}.toml").read_text(encoding="utf-8")
+
+
+def fourier(system, N):
+    """A system of so many points."""
+    return system.resize({"s": N}).with_derivatives("fourier")
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_rates_of_exact_waves_are_right_to_rounding(name):
+    """For odd and even numbers of points, of which differences of order 4 miss 1e-6."""
+    system, solution, length, parameters, counts = WAVES[name]
+    for N in counts:
+        fields, rates = solution(np.arange(N) * length / N, 0.3)
+        own = fourier(system, N)
+        found = own.rhs(fields.ravel(), parameters).reshape(-1, N)
+        np.testing.assert_allclose(found, rates, atol=1e-12 * np.abs(rates).max())
+        by_differences = own.differences.rhs(fields.ravel(), parameters).reshape(-1, N)
+        assert np.abs(by_differences - rates).max() > 1e-6
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_the_energy_is_kept_for_any_fields(name):
+    """Its rate along the motion is 0 at random fields, and along another vector it is not."""
+    system, _, _, parameters, counts = WAVES[name]
+    for N in counts:
+        own, source = fourier(system, N), np.random.default_rng(N)
+        state = source.normal(size=own.STATE.size)
+        rate, step = own.rhs(state, parameters), 1e-3
+        rate /= np.abs(rate).max()
+
+        def change(along, own=own, state=state, step=step):
+            """The energies are quadratic, so that this difference is exact."""
+            ahead, behind = state + step * along, state - step * along
+            energies = (own.energy(x, parameters) for x in (ahead, behind))
+            return (next(energies) - next(energies)) / (2 * step)
+
+        size = own.energy(state, parameters)
+        assert abs(change(rate)) < 1e-11 * abs(size)
+        assert abs(change(np.abs(rate))) > 1e-5 * abs(size)
+
+
+def test_a_batch_and_every_target_have_the_same_rates():
+    """Columns of a batch, with parameters of their own, and targets."""
+    own, source = fourier(camassa_holm.system, 24), np.random.default_rng(2)
+    m, parameters = source.normal(size=(24, 3)), np.array([[0.1, 1.0, 9.0], [3.0, 3.0, 4.0]])
+    found = own.rhs(m, parameters)
+    for n in range(3):
+        alone = own.rhs(m[:, n], parameters[:, n], target="numpy")
+        np.testing.assert_allclose(found[:, n], alone, rtol=1e-13, atol=1e-13)
+    np.testing.assert_array_equal(own.rhs(m, parameters, target="python"), found)
+
+
+def test_the_trace_of_the_holonomy_of_the_spin_chain_is_kept():
+    """To 1e-9 over t = 10, of a smooth field at 128 points; that of psi' = -psi Xi is not.
+
+    By differences of order 4 it changes by more than 1e-6.
+    """
+    N, L = 128, 10.0
+    w = 2 * np.pi * np.arange(N) / N
+    Pi = [np.cos(w), np.sin(w) / 2, 1 + 0 * w]
+    Xi = [0.2 + np.cos(w) / 5, np.sin(w) / 2, 0.1 - np.sin(2 * w) / 5]
+    own = fourier(spin_chain.system, N)
+    state = np.concatenate([*Pi, *Xi])
+    options = {"method": "scipy:DOP853", "rtol": 1e-11, "atol": 1e-12, "samples": 6}
+    found = own.simulate(state, (0, 10), **options)
+    traces = np.trace(found.frames()[:, :, -1])
+    assert abs(traces[0]) < 2.9
+    assert np.abs(traces - traces[0]).max() < 1e-9
+    assert np.abs(found.drift["energy"]).max() < 1e-9
+    zero, (a, b, c) = np.zeros((N, 6)), found["Xi"]
+    hat = np.array([[zero, -c, b], [c, zero, -a], [-b, a, zero]])
+    wrong = np.trace(transport(-hat, L)[:, :, -1])
+    assert np.abs(wrong - wrong[0]).max() > 1e-2
+    others = own.differences.simulate(state, (0, 10), **options)
+    traces = np.trace(others.frames()[:, :, -1])
+    assert np.abs(traces - traces[0]).max() > 1e-6
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "taylor"},
+        {"method": "dop853"},
+        {"method": "midpoint", "step": 0.1},
+        {"step": 0.1},
+    ],
+    ids=lambda each: str(each),
+)
+def test_generated_solvers_are_refused_with_the_reason(options):
+    """They need differences; the advice is followed."""
+    own = fourier(kdv.system, 32)
+    with pytest.raises(KernelArgumentError, match="derivatives are those of Fourier series"):
+        own.simulate(np.zeros(32), (0, 1), **options)
+    found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
+    assert not found.state.any()
+    settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
+    assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
+    assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
+
+
+def test_a_batch_is_refused():
+    """Methods of SciPy follow one trajectory."""
+    with pytest.raises(KernelArgumentError, match="derivatives are those of Fourier series"):
+        fourier(kdv.system, 32).simulate(np.zeros((32, 2)), (0, 1))
+
+
+@pytest.mark.campaign
+def test_a_spec_is_loaded_with_them(tmp_path):
+    """With a number of points."""
+    path = tmp_path / "waves.toml"
+    path.write_text(read_file(kdv.system), encoding="utf-8")
+    loaded = coadjoint.load(path, sizes={"s": 32}, derivatives="fourier")
+    assert isinstance(loaded, SpectralSystem)
+    assert loaded.size == 32
+
+
+def test_other_names_and_systems_are_refused():
+    """A name that is none, and a system without fields."""
+    with pytest.raises(KernelArgumentError, match="'chebyshev'; expected 'differences'"):
+        kdv.system.with_derivatives("chebyshev")
+    with pytest.raises(KernelArgumentError, match="rigid_body has no fields"):
+        rigid_body.system.with_derivatives("fourier")
+    assert rigid_body.system.with_derivatives("differences") is rigid_body.system
+
+
+@pytest.mark.parametrize("jump", [0.0, 0.5])
+def test_a_field_that_jumps_at_the_ends_is_told(jump):
+    """With the size of the jump; a periodic field is not."""
+    own, s = fourier(kdv.system, 64), np.arange(64) / 64
+    state = np.cos(2 * np.pi * s) / 5 + jump * s
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        own.simulate(state, (0, 1e-4), samples=2, parameters={"L": 9.0})
+    told = [each for each in told if each.category is PeriodicityWarning]
+    assert len(told) == (jump > 0)
+    for each in told:
+        assert "field m of kdv jumps by 0.5" in str(each.message)
+        assert "derivatives='differences'" in str(each.message)
+
+
+def test_rough_and_constant_fields_do_not_jump():
+    """Only the ends are judged, by what is usual elsewhere."""
+    source = np.random.default_rng(1)
+    assert not find_jump(source.normal(size=(64, 1)))
+    assert not find_jump(np.ones((64, 1)))
+    assert find_jump(np.linspace(0, 1, 64)[:, None]) > 1
+
+
+def test_a_system_goes_back_and_is_pickled():
+    """With its number of points and its derivatives."""
+    own = fourier(kdv.system, 40)
+    assert own.with_derivatives("differences") is own.differences
+    assert own.with_derivatives("fourier").size == own.resize({"s": 40}).size == 40
+    again = pickle.loads(pickle.dumps(own))
+    assert isinstance(again, SpectralSystem)
+    assert again.size == 40
+    assert "Fourier" in repr(again)
