@@ -46,7 +46,7 @@ void main() {
   vec3 light = normalize(vec3(0.45, -0.35, 0.85));
   float sun = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * n.z;
   float shine = pow(max(dot(n, normalize(light + toward)), 0.0), 48.0);
-  result = vec4(base * (ambient * (0.55 + 0.45 * sky) + 0.75 * sun) + 0.28 * shine, colour.a);
+  result = vec4(base * (ambient * (0.6 + 0.4 * sky) + 0.5 * sun) + 0.18 * shine, colour.a);
 }`;
 const LINE_VERTEX = `#version 300 es
 uniform mat4 view; uniform vec2 screen; uniform float width;
@@ -80,7 +80,7 @@ void main() {
 class Drawing {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: false }));
+    const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true }));
     if (!gl) throw new Error("this browser has no WebGL 2");
     this.solid = this.program(MESH_VERTEX, MESH_FRAGMENT);
     this.floorProgram = this.program(MESH_VERTEX, FLOOR_FRAGMENT);

@@ -59,7 +59,7 @@ function addSliders(table, array, box) {
   for (const each of scene.tables[table]) {
     const group = document.createElement("div"), values = each.components.map((_, k) => array[row + k]);
     group.className = "group";
-    if (each.doc) { const doc = document.createElement("p"); doc.textContent = each.doc; group.append(doc); }
+    if (each.doc) { const doc = document.createElement("p"); doc.textContent = raise(each.doc); group.append(doc); }
     const big = Math.max(...values.map(Math.abs)) || 1;
     each.components.forEach((name, k) => {
       const at = row++, line = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input"), output = document.createElement("output");
@@ -168,11 +168,12 @@ drag(id("scene"), (x, y) => {
     end: () => finish(was),
   };
 });
+const HINT = !scene.functions.includes("energy") || model.u.length ? "Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
 function finish(was) { start.x.set(model.x); model.measure(); model.find(); refresh(); running = was; save(); }
 if (panel.shown) {
   id("sphere-box").hidden = false;
   id("sphere-title").textContent = panel.strand ? `${plainName(panel.name)} at every point` : panel.vector.round ? `${plainName(panel.name)} on its sphere` : `${plainName(panel.name)}, the curve of the velocity`;
-  id("sphere-hint").textContent = panel.strand ? "Colours are those of the ring." : panel.vector.round ? "Curves: levels of the energy; orange: that of the motion. Drag the point." : "The velocity as a point. Drag around to look.";
+  id("sphere-hint").textContent = panel.strand ? "Colours are those of the ring." : panel.vector.round ? HINT : "The velocity as a point. Drag around to look.";
   id("cut").hidden = panel.strand;
   drag(id("sphere"), (x, y) => {
     if (panel.strand || !panel.vector.round) return { move: (a, b, dx, dy) => orbit(panel.camera, dx, dy) };
@@ -187,7 +188,7 @@ if (panel.shown) {
 }
 function press() {
   id("cut").setAttribute("aria-pressed", String(cutting));
-  id("sphere-hint").textContent = cutting ? "Click the sphere: crossings of the half plane through that point become dots." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
+  id("sphere-hint").textContent = cutting ? "Click the sphere: crossings of the half plane through that point become dots." : HINT;
 }
 id("cut").addEventListener("click", () => { cutting = !cutting; press(); });
 for (const [canvas, own] of [["scene", view], ["sphere", panel]]) id(canvas).addEventListener("wheel", (event) => {
@@ -267,6 +268,7 @@ function advance(seconds) {
   while (debt >= model.h) {
     if (!model.step(model.h)) { run(false); tell(`The motion ends here: ${plainName(model.ended)} no longer holds.`, true); break; }
     panel.watch();
+    view.sample();
     debt -= model.h;
     if (performance.now() > until) { debt = 0; break; }
   }

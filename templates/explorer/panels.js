@@ -79,7 +79,7 @@ class SpherePanel {
         if (cut.length === 2) segments.push(...cut[0], ...cut[1], ...tint, ...tint);
       }
     }
-    this.levels = new Float64Array(segments);
+    this.levels = new Float32Array(segments);
   }
 
   draw(theme, labels) {
@@ -205,15 +205,15 @@ class DriftStrip {
   build() {
     this.list.replaceChildren();
     this.rows = this.model.integrals.map((each) => {
-      const row = document.createElement("div"), name = document.createElement("span"), value = document.createElement("span"), canvas = document.createElement("canvas");
+      const row = document.createElement("div"), name = document.createElement("span"), value = document.createElement("span"), error = document.createElement("span"), canvas = document.createElement("canvas");
       row.className = "drift";
       name.textContent = each.name;
       name.className = "name";
-      value.className = "value";
+      value.className = error.className = "value";
       canvas.setAttribute("aria-hidden", "true");
-      row.append(name, value, canvas);
+      row.append(name, value, error, canvas);
       this.list.append(row);
-      return { value, canvas, past: [] };
+      return { value, error, canvas, past: [] };
     });
   }
   clear() { this.rows.forEach((row) => { row.past = []; }); }
@@ -224,7 +224,8 @@ class DriftStrip {
       if (row.past.length > 240) row.past.shift();
       if (!telling) return;
       const now = this.model.y[each.rows[0]];
-      row.value.textContent = each.rows.length === 1 ? `${shorten(now)}${unitText(each.unit)} · ${tellDrift(drift)}` : tellDrift(drift);
+      row.value.textContent = each.rows.length === 1 ? `${shorten(now)}${unitText(each.unit)}` : unitText(each.unit);
+      row.error.textContent = tellDrift(drift);
       const [pen, wide, high] = fitCanvas(row.canvas);
       pen.strokeStyle = INK[k % INK.length];
       pen.lineWidth = 1.6;
@@ -235,10 +236,7 @@ class DriftStrip {
   }
 }
 const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replace("-", "\u2212");
-const tellDrift = (d) => (d < 1e-15 ? "steady" : `drift ${d.toExponential(0).replace("-", "\u2212")}`);
-const unitText = (unit) => {
-  if (!unit || unit === "1") return "";
-  const high = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076" };
-  const raised = unit.replace(/\^(-?\d)/g, (_, digits) => [...digits].map((c) => high[c] || c).join(""));
-  return `\u00a0${raised.replace(/^1\/(\w+)$/, "$1\u207b\u00b9").replace(/ /g, "\u00a0")}`;
-};
+const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${d.toExponential(0).replace("-", "\u2212")}`);
+const HIGH = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
+const raise = (text) => text.replace(/\^(-?\d+)/g, (_, digits) => [...digits].map((c) => HIGH[c]).join(""));
+const unitText = (unit) => (!unit || unit === "1" ? "" : `\u00a0${raise(unit).replace(/^1\/(\w+)$/, "$1\u207b\u00b9").replace(/ /g, "\u00a0")}`);

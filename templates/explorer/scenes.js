@@ -26,6 +26,7 @@ class Scene {
   label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
   turnable() { return false; }
   moving() {}
+  sample() {}
 }
 
 /* A body: about a fixed point, free, or moving; with a box of its moments of inertia. */
@@ -161,19 +162,24 @@ class RollingScene extends Scene {
     this.follow(at);
     const cell = 10 ** Math.round(Math.log10(size)) / 2;
     drawing.floor(0, 22 * size, cell, theme.floor, theme.line, [at[0], at[1], 0.9 * size], at);
-    const trail = this.trail("contact");
-    trail.add(plus(contact, [0, 0, 0.004 * size]), 0.01 * size);
-    drawing.line(trail.points, fade(ORANGE), 3);
+    this.sample();
+    drawing.line(this.trail("contact").points, fade(ORANGE), 3);
     drawing.draw(this.own, q, at, [size, size, size], theme.body, { second: theme.body2, paint: this.spread < 0.05 ? 2 : 1 });
     if (this.spread < 0.05) this.rim(q, at, theme);
     drawing.draw("sphere", q, plus(contact, [0, 0, 0.01 * size]), Array(3).fill(0.035 * size), ORANGE);
-    this.label("contact", contact, "orange");
+    if (this.spread < 0.05) this.label("contact", contact, "orange");
     const w = model.read(scene.turning);
     if (norm(w) > 1e-9) {
-      const tip = plus(at, rotate(q, scaled(1.5 * size / norm(w), w)));
-      drawing.arrow(at, tip, GREEN, 0.025 * size);
-      this.label(scene.turning.name, tip, "green");
+      const along = rotate(q, scaled(1.5 * size / norm(w), w)), under = at[2] + along[2] < 0; // else it would end below the floor
+      const from = under ? minus(at, scaled(1.3, along)) : at, tip = under ? minus(at, scaled(0.3, along)) : plus(at, along);
+      drawing.arrow(from, tip, GREEN, 0.018 * size);
+      this.label(scene.turning.name, under ? from : tip, "green");
     }
+  }
+  /* The trace of the contact, at every step. */
+  sample() {
+    const rows = (this.free ||= [...this.model.rest.keys()].filter((row) => !this.model.quaternionRows().includes(row)));
+    this.trail("contact").add([this.model.rest[rows[0]], this.model.rest[rows[1]], 0.004 * this.size], 0.02 * this.size);
   }
   rim(q, at, theme) {
     const ring = Array.from({ length: 65 }, (_, k) => plus(at, rotate(q, scaled(this.size, [Math.cos(k * Math.PI / 32), Math.sin(k * Math.PI / 32), 0]))));
