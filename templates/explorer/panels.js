@@ -26,6 +26,13 @@ class SpherePanel {
     this.name = this.vector ? this.vector.name : scene.tables.state[0].name;
     this.scale = 1;
     this.last = null;
+    if (this.vector) this.face();
+  }
+  /* Look from the side on which the point is, not straight at it. */
+  face() {
+    const [a, b, c] = unit(this.value());
+    this.camera.pitch = clamp(0.25 + 0.55 * c, -0.5, 0.75);
+    this.camera.yaw = Math.hypot(a, b) > 0.1 ? Math.atan2(b, a) - 0.45 : -0.9;
   }
   get shown() { return Boolean(this.drawing); }
   value(x = this.model.x) { return this.vector.rows.map((row) => x[row]); }

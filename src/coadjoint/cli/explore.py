@@ -22,9 +22,7 @@ from coadjoint.cli.output import say, write_text
 )
 @size_option
 @seconds_option
-def command(
-    system: str, output: Path | None, sizes: dict[str, int], seconds: int | None
-) -> None:
+def command(system: str, output: Path | None, sizes: dict[str, int], seconds: int | None) -> None:
     """Write a web page that simulates a system with its generated code.
 
     The page is one file and needs no network. Open it in a browser, or send it to somebody.

@@ -18,6 +18,7 @@ from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
 from coadjoint.pipeline import Rendered
 from coadjoint.render.families import FamilyContext
+from coadjoint.resources import derivations_folder
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Variable
 
@@ -64,9 +65,10 @@ def describe_scene(spec: Spec, rendered: Rendered) -> dict[str, Any]:
 
 def _refuse(spec: Spec, problem: str, expected: str) -> KernelArgumentError:
     """The error for a system without a page."""
+    known = spec.name if spec.path.parent == derivations_folder() else spec.path
     return KernelArgumentError(
         f"{spec.name} has no page to explore: {problem}; expected {expected}. "
-        f"Simulate it: coadjoint simulate {spec.name} --plot.",
+        f"Simulate it: coadjoint simulate {known} --help says how.",
         found=spec.name,
         expected=expected,
     )
@@ -201,7 +203,9 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
             return {"kind": "planar", "frame": along, "angles": [each for each in angles if each]}
     places = [v for v in spec.having_role("coordinate") if v.shape in ((2,), (3,))]
     if places:
-        partners = [spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places]
+        partners = [
+            spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
+        ]
         return {
             "kind": "particles",
             "places": [finder.find(v) for v in places],
