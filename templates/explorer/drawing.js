@@ -143,7 +143,7 @@ class Drawing {
     if (this.canvas.width !== wide || this.canvas.height !== high) Object.assign(this.canvas, { width: wide, height: high });
     this.ratio = ratio;
     this.ambient = ambient;
-    const c = Math.cos(camera.pitch), reach = camera.distance * Math.max(1, 0.85 * high / wide);
+    const c = Math.cos(camera.pitch), reach = camera.distance * Math.max(1, 1.02 * high / wide);
     this.eye = plus(camera.target, scaled(reach, [c * Math.cos(camera.yaw), c * Math.sin(camera.yaw), Math.sin(camera.pitch)]));
     this.look = lookAt(this.eye, camera.target);
     this.view = product(perspective(0.6, wide / high, reach / 50, reach * 30), this.look);

@@ -30,8 +30,9 @@ class SpherePanel {
   }
   /* Look from the side on which the point is, not straight at it. */
   face() {
-    const [a, b, c] = unit(this.value());
-    this.camera.pitch = clamp(0.25 + 0.55 * c, -0.5, 0.75);
+    const place = !this.vector.round && this.model.read(scene.places[0]);
+    const [a, b, c] = unit(place ? cross(place, this.value()) : this.value()); // a curve of velocities, from above its plane
+    this.camera.pitch = place ? clamp(Math.asin(c) + 0.1, -1, 1) : clamp(0.25 + 0.55 * c, -0.5, 0.75);
     this.camera.yaw = Math.hypot(a, b) > 0.1 ? Math.atan2(b, a) - 0.45 : -0.9;
   }
   get shown() { return Boolean(this.drawing); }
@@ -160,7 +161,7 @@ class SpherePanel {
     const w = this.value(), side = dot(w, this.plane.across), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
     const now = { side, height: w[2] / (norm(w) || 1), rate: rates[this.vector.rows[2]], front: dot(w, this.plane.out) };
     const before = this.last;
-    if (before && before.side < 0 && side >= 0 && now.front > 0) {
+    if (before && before.side < 0 !== side < 0 && now.front > 0) {
       const s = before.side / (before.side - side);
       this.dots.push([before.height + s * (now.height - before.height), before.rate + s * (now.rate - before.rate), this.run]);
       if (this.dots.length > 4000) this.dots.shift();

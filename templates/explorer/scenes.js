@@ -95,7 +95,9 @@ class BodyScene extends Scene {
     for (let k = 0; k < 4; k++) {
       const out = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]][k], end = plus(at, rotate(q, scaled(0.8, out)));
       drawing.draw("tube", turnOnto(E[2], rotate(q, out)), at, [0.035, 0.035, 0.8], theme.steel);
-      drawing.draw("tube", q, plus(end, rotate(q, [0, 0, -0.05])), [0.34, 0.34, 0.03], k === 0 ? ORANGE : theme.body2);
+      drawing.draw("tube", q, plus(end, rotate(q, [0, 0, -0.05])), [0.34, 0.34, 0.012], k === 0 ? ORANGE : theme.body2);
+      const turned = multiply(q, turnBy([0, 0, (k % 2 ? 7 : -7) * this.model.clock[0]])); // in turn, so that they do not turn the frame
+      drawing.draw("box", turned, plus(end, rotate(q, [0, 0, -0.07])), [0.32, 0.03, 0.012], theme.steel);
     }
   }
   arrows(q, at) {
@@ -171,7 +173,7 @@ class RollingScene extends Scene {
     const w = model.read(scene.turning);
     if (norm(w) > 1e-9) {
       const along = rotate(q, scaled(1.5 * size / norm(w), w)), under = at[2] + along[2] < 0; // else it would end below the floor
-      const from = under ? minus(at, scaled(1.3, along)) : at, tip = under ? minus(at, scaled(0.3, along)) : plus(at, along);
+      const from = under ? minus(at, scaled(0.85, along)) : at, tip = under ? minus(at, scaled(0.25, along)) : plus(at, along);
       drawing.arrow(from, tip, GREEN, 0.018 * size);
       this.label(scene.turning.name, under ? from : tip, "green");
     }
