@@ -1,7 +1,6 @@
 """JavaScript: read back as the Program, and compared with NumPy by an engine of JavaScript."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -84,7 +83,7 @@ def test_kernels_equal_those_of_numpy(name, exact):
     ("name", "size"), [("spin_chain", 41), ("n_body", 43), ("camassa_holm", 33)]
 )
 def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
-    """So do loops over members, in blocks and without, with sums over pairs and solved equations."""
+    """So do loops over members, in blocks and without, with sums over pairs and solutions."""
     js = engine()
     rendered = render(read_spec(derivations_folder() / f"{name}.toml"))
     js.eval(render_family_script(rendered.family.context))
@@ -149,7 +148,7 @@ def test_another_text_is_noticed(tmp_path, old, new):
     rendered = render(read_spec(path))
     text = render_script(rendered.context)
     assert old in text
-    with pytest.raises(CrossCheckError, match="kernel.js"):
+    with pytest.raises(CrossCheckError, match=r"kernel\.js"):
         check_text(rendered.programs["rhs"], JS, text.replace(old, new, 1), "sample")
 
 

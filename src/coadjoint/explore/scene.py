@@ -89,8 +89,8 @@ def _describe(spec: Spec, rendered: Rendered, unit: str) -> dict[str, Any]:
 
 def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
     """Quantities with their units, explanations and defaults."""
-    declared = [*spec.variables, *spec.parameters, *spec.observables, *spec.inputs]
-    docs = {each.name: each.doc for each in (*declared, *spec.reconstruction)}
+    declared: list[Any] = [*spec.variables, *spec.parameters, *spec.observables, *spec.inputs]
+    docs = {each.name: each.doc for each in [*declared, *spec.reconstruction]}
     return [
         {
             "name": each.name,
@@ -196,13 +196,13 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
     if drawn["turning"] and spec.invariance == "left":
         return {"kind": "body", **drawn}
     if spec.algebra and spec.algebra.name == "se(2)" and len(context.reconstructed) == 3:
-        named = {blocks["rotation"]: "turn", **{(n,): "" for n in blocks["translation"]}}
+        named = [blocks["rotation"], *((n,) for n in blocks["translation"])]
         along = [finder.find(v) for v in velocities if v.block in named]
         angles = [finder.find(v) for v in spec.having_role("coordinate")]
         if all(along) and len(along) == 3:
             return {"kind": "planar", "frame": along, "angles": [each for each in angles if each]}
     places = [v for v in spec.having_role("coordinate") if v.shape in ((2,), (3,))]
-    if places:
+    if places and all(map(finder.find, places)):
         partners = [
             spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
         ]
