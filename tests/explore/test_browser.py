@@ -49,7 +49,8 @@ COLOURS = """(() => {
   const data = pen.getImageData(0, 0, 160, 120).data, colours = new Set();
   let sum = 0;
   for (let k = 0; k < data.length; k += 4) {
-    if (data[k + 3] > 200) colours.add((data[k] >> 4) * 256 + (data[k + 1] >> 4) * 16 + (data[k + 2] >> 4));
+    const [r, g, b, a] = data.subarray(k, k + 4);
+    if (a > 200) colours.add((r >> 4) * 256 + (g >> 4) * 16 + (b >> 4));
     sum = (sum * 31 + data[k] + 7 * data[k + 1] + 13 * data[k + 2]) % 4294967291;
   }
   return [colours.size, sum];
@@ -173,7 +174,8 @@ def test_a_click_cuts_and_crossings_become_dots(page, pages):
     show(page, pages("heavy_top"), calm=True)
     page.run("document.getElementById('cut').click()")
     box = page.run(
-        "(b => [b.x + b.width / 2, b.y + b.height / 2])(document.getElementById('sphere').getBoundingClientRect())"
+        "(b => [b.x + b.width / 2, b.y + b.height / 2])"
+        "(document.getElementById('sphere').getBoundingClientRect())"
     )
     page.mouse("mousePressed", *box)
     page.mouse("mouseReleased", *box)
@@ -196,8 +198,8 @@ def test_kernels_in_the_browser_equal_those_of_numpy(page, pages, name):
         wanted = system.rhs(state, parameters, target="numpy").T
         found = page.run(
             f"(() => {{ const p = Float64Array.from({parameters.tolist()});"
-            f"return {json.dumps(state.T.tolist())}.map(x => [...kernel.rhs(Float64Array.from(x), p, "
-            f"new Float64Array({system.STATE.size}))]) }})()"
+            f"return {json.dumps(state.T.tolist())}.map(x => [...kernel.rhs(Float64Array.from(x), "
+            f"p, new Float64Array({system.STATE.size}))]) }})()"
         )
         found = np.array(found, dtype=float)
         if not system.elementary:

@@ -21,7 +21,7 @@ from coadjoint.render.environment import (
 from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.header import PLAIN
 from coadjoint.render.kernels import TEMPLATES
-from coadjoint.render.targets import FOLDERS, OTHERS
+from coadjoint.render.targets import FOLDERS, ON_DEMAND, OTHERS
 from coadjoint.resources import derivations_folder, targets_folder, templates_folder
 
 
@@ -42,7 +42,7 @@ def test_every_kernel_template_is_rendered():
     parts |= {*OTHERS["js"].files.values(), "js/family.js.j2"}  # of `coadjoint.render.scripts`
     assert {name for name in present if not name.startswith(PAGES)} == rendered | parts
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}
-    assert targets == set(FOLDERS)
+    assert targets == {*FOLDERS, *ON_DEMAND}
     assert {path.name for path in folder.iterdir() if path.is_dir()} >= targets
 
 

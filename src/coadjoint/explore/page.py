@@ -85,10 +85,10 @@ def _close_nothing(script: str) -> str:
 
 
 def _escape_json(value: Any) -> str:
-    """A value as JSON in which no character means anything to HTML.
+    r"""A value as JSON in which no character means anything to HTML.
 
     >>> _escape_json("</script>")
-    '"\\\\u003c/script\\\\u003e"'
+    '"\\u003c/script\\u003e"'
     """
     text = json.dumps(value, allow_nan=False)
     for character in "<>&":

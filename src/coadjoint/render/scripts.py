@@ -34,7 +34,7 @@ def render_script(context: KernelContext) -> str:
 def _render(context: KernelContext, identity: str) -> dict[str, str]:
     """The file, given the id."""
     programs = list_scripted(context)
-    rows = {each.name: list(enumerate(each.outputs)) for each in programs}
+    all_rows = [(each.name, list(enumerate(each.outputs))) for each in programs]
     values = {
         "name": context.name,
         "spec": context.spec,
@@ -43,8 +43,8 @@ def _render(context: KernelContext, identity: str) -> dict[str, str]:
         "state": rows_of(context.state),
         "parameters": rows_of(context.parameters),
         "programs": programs,
-        "outputs": {name: [each for each in own if each[1].value != ZERO] for name, own in rows.items()},
-        "zeros": {name: any(each.value == ZERO for _, each in own) for name, own in rows.items()},
+        "outputs": {name: [(n, v) for n, v in own if v.value != ZERO] for name, own in all_rows},
+        "zeros": {name: any(each.value == ZERO for _, each in own) for name, own in all_rows},
         "called": list_called(programs),
         "solves": any(each.solves_by_loop for each in programs),
     }  # fmt: skip

@@ -25,7 +25,8 @@ function _decode(text) {
   return new Float64Array(bytes.buffer);
 }
 function _evaluate(called, texts, shared, members, rows) {
-  const arrays = texts.map(_decode), out = new Float64Array(rows), all = new Float64Array(rows * members);
+  const arrays = texts.map(_decode), out = new Float64Array(rows);
+  const all = new Float64Array(rows * members);
   for (let m = 0; m < members; m++) {
     const given = arrays.map((each, k) =>
       shared[k] ? each : each.subarray(m * each.length / members, (m + 1) * each.length / members));

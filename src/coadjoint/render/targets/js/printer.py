@@ -11,91 +11,15 @@ from coadjoint.lower.program import Node, Number, Several, Symbol
 from coadjoint.render.printers import WIDTH, Printer, indent
 
 #: Words that no constant may have as its name, and names that the template uses.
-TAKEN: Final = frozenset(
-    [
-        "abstract",
-        "arguments",
-        "await",
-        "async",
-        "boolean",
-        "break",
-        "byte",
-        "case",
-        "catch",
-        "char",
-        "class",
-        "const",
-        "continue",
-        "debugger",
-        "default",
-        "delete",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "eval",
-        "export",
-        "extends",
-        "false",
-        "final",
-        "finally",
-        "float",
-        "for",
-        "from",
-        "function",
-        "get",
-        "goto",
-        "if",
-        "implements",
-        "import",
-        "in",
-        "instanceof",
-        "int",
-        "interface",
-        "let",
-        "long",
-        "native",
-        "new",
-        "null",
-        "of",
-        "package",
-        "private",
-        "protected",
-        "public",
-        "return",
-        "set",
-        "short",
-        "static",
-        "super",
-        "switch",
-        "synchronized",
-        "this",
-        "throw",
-        "throws",
-        "transient",
-        "true",
-        "try",
-        "typeof",
-        "undefined",
-        "var",
-        "void",
-        "volatile",
-        "while",
-        "with",
-        "yield",
-        "Infinity",
-        "Math",
-        "NaN",
-        "Float64Array",
-        "state",
-        "parameters",
-        "inputs",
-        "time",
-        "out",
-        "size",
-        "sums",
-    ]
-)
+_WORDS: Final = """
+abstract arguments await async boolean break byte case catch char class const continue debugger
+default delete do double else enum eval export extends false final finally float for from
+function get goto if implements import in instanceof int interface let long native new null of
+package private protected public return set short static super switch synchronized this throw
+throws transient true try typeof undefined var void volatile while with yield
+Infinity Math NaN Float64Array state parameters inputs time out size sums
+"""
+TAKEN: Final = frozenset(_WORDS.split())
 
 
 def name_text(name: str) -> str:
