@@ -249,10 +249,9 @@ function ballMesh() { return grid(32, 64, (u, v) => { const p = onSphere(u, v); 
 function floorMesh() { return { points: [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], normals: [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1], triangles: [0, 1, 2, 0, 2, 3] }; }
 /* A tube of radius 1 from 0 to 1 along the third axis, closed; with another radius at its end. */
 function tubeMesh(end) {
-  return grid(4, 48, (u, v) => {
-    const k = Math.round(4 * u), c = Math.cos(2 * Math.PI * v), s = Math.sin(2 * Math.PI * v);
-    const radius = [0, 1, 1, end, 0][k], height = k < 2 ? 0 : k === 2 && end === 1 ? 0 : 1, side = [c, s, 1 - end];
-    return [[radius * c, radius * s, k >= 3 ? 1 : height === 1 && k === 2 ? 0 : 0], k === 0 ? [0, 0, -1] : k === 4 ? [0, 0, 1] : k === 1 ? [0, 0, -1] : side];
+  return grid(5, 48, (u, v) => {
+    const k = Math.round(5 * u), radius = [0, 1, 1, end, end, 0][k], c = Math.cos(2 * Math.PI * v), s = Math.sin(2 * Math.PI * v);
+    return [[radius * c, radius * s, k > 2 ? 1 : 0], k < 2 ? [0, 0, -1] : k > 3 ? [0, 0, 1] : unit([c, s, 1 - end])];
   });
 }
 function boxMesh() {

@@ -65,6 +65,10 @@ class Model {
     }
     if (missing.length && scene.kind === "particles") this.beginParticles(new Set(missing));
     else if (missing.length && scene.turning) this.beginBody(new Set(missing));
+    else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
+      const block = Math.floor(place / scene.members), s = 2 * Math.PI * (place % scene.members) / scene.members;
+      this.x[place] = 0.5 + 0.4 * Math.cos(s + 2 * block);
+    });
     else missing.forEach((place, k) => { this.x[place] = [1, 0.4, 0.7, 0.2][k % 4]; });
     this.settle();
   }

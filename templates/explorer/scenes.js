@@ -72,7 +72,7 @@ class BodyScene extends Scene {
       const cell = 0.5;
       if (model.u.length) drawing.floor(Math.min(0, Math.floor(at[2])) - 1.6, 14, cell, theme.floor, theme.line, [at[0], at[1], 0.9], at);
     }
-    const rotors = model.u.length > 0 && scene.moving;
+    const rotors = scene.stick && scene.moving;
     if (rotors) this.frame(q, at, theme);
     else this.solid(q, middle, theme);
     const trail = this.trail("tip"), tip = this.weighs ? scaled(1.06, middle) : scene.moving ? at : plus(at, rotate(q, scaled(this.sizes[2] + 0.25, E[2])));
@@ -199,6 +199,17 @@ class ParticleScene extends Scene {
     this.camera.pitch = 0.5;
     this.extent = Math.max(...this.positions().map(norm), 0.5);
     this.camera.distance = 6.5 * this.extent;
+    this.central = this.isCentral();
+  }
+  /* Whether one particle at rest is pulled to the origin. */
+  isCentral() {
+    const { model } = this, [at] = this.positions(), [speed] = scene.speeds;
+    if (scene.places.length !== 1 || speed.table !== "state") return false;
+    const x = Float64Array.from(model.x);
+    model.write(speed, speed.rows.map(() => 0), x);
+    const rates = model.call("rhs", x, new Float64Array(model.n)), pull = speed.rows.map((row) => rates[row]);
+    if (pull.length === 2) pull.push(0);
+    return dot(pull, at) < -0.999999 * norm(pull) * norm(at);
   }
   positions() { return scene.places.map((each) => { const r = this.model.read(each); return r.length === 2 ? [...r, 0] : r; }); }
   draw(theme) {
@@ -206,7 +217,7 @@ class ParticleScene extends Scene {
     const far = Math.max(...points.map(norm));
     this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 4 ? 1 : 0);
     drawing.floor(0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
-    if (points.length === 1) drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill(0.11 * extent), GOLD);
+    drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
     points.forEach((at, k) => {
       const tint = [BLUE, RED, GREEN][k % 3], trail = this.trail(k);
       trail.add(at, 0.01 * extent);
@@ -240,8 +251,9 @@ class ParticleScene extends Scene {
 class PlanarScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag to look around; wheels stand where the constraints put them";
-    this.size = Math.max(...this.wheels().map((w) => Math.abs(w.at)), 0.1) * 1.25;
+    const wheels = this.wheels();
+    this.hint = wheels.length ? "Drag to look around; wheels stand where the constraints put them" : "Drag to look around";
+    this.size = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.1) * 1.25;
     this.camera.distance = 9 * this.size;
     this.camera.pitch = 0.75;
   }

@@ -116,6 +116,8 @@ def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):
         ("kirchhoff", "body", {"moving": "observables", "vertical": None}),
         ("euler_disk", "rolling", {"turning": "state", "vertical": "state"}),
         ("quadrotor", "body", {"vertical": "state", "stick": "M"}),
+        ("spacecraft_wheels", "body", {"attitude": "state", "moving": None, "stick": ""}),
+        ("three_wave", "portrait", {}),
         ("snakeboard", "planar", {}),
         ("monopole_kepler", "particles", {}),
         ("spin_chain", "strand", {}),

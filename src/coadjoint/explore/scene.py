@@ -170,7 +170,7 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
     context = rendered.context
     assert context is not None
     velocities = spec.having_role("velocity")
-    blocks = {} if spec.algebra is None else spec.algebra.blocks
+    blocks = _find_blocks(spec)
     parts, momenta = (
         {
             name: next((v for v in own if v.block == blocks.get(name) and v.shape == (3,)), None)
@@ -199,18 +199,21 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
         named = [blocks["rotation"], *((n,) for n in blocks["translation"])]
         along = [finder.find(v) for v in velocities if v.block in named]
         angles = [finder.find(v) for v in spec.having_role("coordinate")]
-        if all(along) and len(along) == 3:
+        if len(along) == 3 and all(each and each["table"] == "state" for each in along):
             return {"kind": "planar", "frame": along, "angles": [each for each in angles if each]}
     places = [v for v in spec.having_role("coordinate") if v.shape in ((2,), (3,))]
-    if places and all(map(finder.find, places)):
-        partners = [
-            spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
-        ]
+    partners = [
+        spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
+    ]
+    found = [
+        (finder.find(v), finder.find(partner)) for v, partner in zip(places, partners, strict=True)
+    ]
+    if found and all(at and speed for at, speed in found):
         return {
             "kind": "particles",
-            "places": [finder.find(v) for v in places],
-            "speeds": [finder.find(v) for v in partners],
-        }  # fmt: skip
+            "places": [at for at, _ in found],
+            "speeds": [speed for _, speed in found],
+        }
     count = sum(len(each.components) for each in context.state)
     if count > PORTRAIT or count < 2:
         raise _refuse(
@@ -219,6 +222,17 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
             f"one of these, or from 2 to {PORTRAIT} rows",
         )
     return {"kind": "portrait"}
+
+
+def _find_blocks(spec: Spec) -> dict[str, tuple[int, ...]]:
+    """The blocks of the algebra; its translations only if rotations turn them."""
+    if spec.algebra is None:
+        return {}
+    blocks, constants = dict(spec.algebra.blocks), spec.algebra.constants
+    turned = {j for i, j in constants if i in blocks.get("rotation", ())}
+    if not turned & set(blocks.get("translation", ())):
+        blocks.pop("translation", None)
+    return blocks
 
 
 def _find_vertical(spec: Spec, finder: _Finder) -> Rows | None:
