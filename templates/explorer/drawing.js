@@ -81,7 +81,10 @@ class Drawing {
   constructor(canvas) {
     this.canvas = canvas;
     const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true }));
-    if (!gl) throw new Error("this browser has no WebGL 2");
+    if (!gl) {
+      document.getElementById("hint").textContent = "This page draws with WebGL 2, which this browser lacks or has switched off. Open it in another one.";
+      throw new Error("no WebGL 2");
+    }
     this.solid = this.program(MESH_VERTEX, MESH_FRAGMENT);
     this.floorProgram = this.program(MESH_VERTEX, FLOOR_FRAGMENT);
     this.ribbon = this.program(LINE_VERTEX, LINE_FRAGMENT);

@@ -209,6 +209,17 @@ def test_kernels_in_the_browser_equal_those_of_numpy(page, pages, name):
         ).all()
 
 
+def test_a_browser_without_webgl_is_told(pages):
+    """The page says what it needs, where it says at other times what a hand does."""
+    with browser() as plain:
+        plain.call(
+            "Page.addScriptToEvaluateOnNewDocument",
+            source="HTMLCanvasElement.prototype.getContext = () => null",
+        )
+        plain.open(pages("rigid_body"))
+        assert "WebGL 2" in plain.run("document.getElementById('hint').textContent")
+
+
 @pytest.mark.parametrize("dark", [False, True])
 @pytest.mark.parametrize("name", ["heavy_top", "quadrotor", "snakeboard", "spin_chain"])
 def test_axe_finds_no_violation(page, pages, name, dark):
