@@ -132,6 +132,27 @@ def export_bounded(
     return str(_run("coadjoint.bounded:header_record", argument, seconds, memory)["text"])
 
 
+def explore_bounded(
+    path: str | PathLike[str],
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
+) -> str:
+    """A web page that simulates a system with its generated code, made in a bounded child.
+
+    Arguments and errors are those of `derive_bounded`.
+
+    Returns:
+        The text of an HTML file that needs no other file and no network.
+
+    Raises:
+        KernelArgumentError: The page shows no such system, with the reason.
+    """
+    argument = {"path": fspath(path), "sizes": dict(sizes)}
+    return str(_run("coadjoint.bounded:page_record", argument, seconds, memory)["text"])
+
+
 def _run(
     target: str, argument: Mapping[str, Any], seconds: float | None, memory: int
 ) -> dict[str, Any]:
@@ -273,3 +294,16 @@ def header_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     stages = ("derive", "lower", "prove", "render")
     rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
     return {"text": export_header(rendered, argument["method"])}
+
+
+@prepared_by("coadjoint.pipeline:prepare")
+def page_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """A page that simulates a system, as plain JSON values; runs in a bounded child."""
+    from coadjoint.explore.page import render_page
+    from coadjoint.pipeline import render
+    from coadjoint.spec import read_spec
+
+    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
+    stages = ("derive", "lower", "prove", "render")
+    rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    return {"text": render_page(spec, rendered)}

@@ -11,6 +11,7 @@ from coadjoint.errors import SpecError
 from coadjoint.methods import STRUCTURED
 from coadjoint.render import header
 from coadjoint.render.environment import (
+    PAGES,
     environment,
     names_read,
     refuse_unsafe,
@@ -20,7 +21,7 @@ from coadjoint.render.environment import (
 from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.header import PLAIN
 from coadjoint.render.kernels import TEMPLATES
-from coadjoint.render.targets import FOLDERS
+from coadjoint.render.targets import FOLDERS, ON_DEMAND, OTHERS
 from coadjoint.resources import derivations_folder, targets_folder, templates_folder
 
 
@@ -38,9 +39,10 @@ def test_every_kernel_template_is_rendered():
     parts |= {"c/methods/family_steps.c.j2", "c/methods/family_kinks.c.j2"}  # of family_solver.c.j2
     parts |= {"c/methods/stopping.c.j2", "c/methods/chord.c.j2"}
     parts |= {"c/methods/newton.c.j2", "c/methods/krylov.c.j2"}
-    assert {name for name in present if not name.startswith("document/")} == rendered | parts
+    parts |= {*OTHERS["js"].files.values(), "js/family.js.j2"}  # of `coadjoint.render.scripts`
+    assert {name for name in present if not name.startswith(PAGES)} == rendered | parts
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}
-    assert targets == set(FOLDERS)
+    assert targets == {*FOLDERS, *ON_DEMAND}
     assert {path.name for path in folder.iterdir() if path.is_dir()} >= targets
 
 

@@ -42,6 +42,7 @@ COMMANDS: Final = (
     "crosscheck",
     "simulate",
     "export",
+    "explore",
     "new",
     "doctor",
     "schema",

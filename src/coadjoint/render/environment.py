@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 from jinja2 import FileSystemLoader, StrictUndefined
 from jinja2.compiler import CodeGenerator, Frame
@@ -21,11 +21,14 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from coadjoint.errors import SpecError
 from coadjoint.render.printers import python_call
-from coadjoint.render.targets import TARGETS
+from coadjoint.render.targets import OTHERS, TARGETS
 from coadjoint.resources import templates_folder
 
 #: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
 UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
+
+#: Folders of templates of text and pages, whose filters are those of their own environments.
+PAGES: Final = ("document/", "explorer/")
 
 
 class _Generator(CodeGenerator):
@@ -73,7 +76,7 @@ def environment() -> _Environment:
     """The environment of kernels, with the filters of all targets."""
     made = make_environment(autoescape=False)  # code, not HTML; `refuse_unsafe` guards each value
     made.filters["python_call"] = python_call
-    for target in TARGETS.values():
+    for target in (*TARGETS.values(), *OTHERS.values()):
         made.filters |= target.filters
     return made
 
@@ -140,9 +143,7 @@ def names_read(template: str) -> frozenset[str]:
 def compile_templates() -> None:
     """Compile the templates of code now, which takes as long as rendering some systems."""
     for name in environment().list_templates(extensions=["j2"]):
-        if not name.startswith(
-            "document/"
-        ):  # whose filters are those of `coadjoint.render.document`
+        if not name.startswith(PAGES):
             environment().get_template(name)
 
 

@@ -7,6 +7,7 @@ Read next: `coadjoint.render.kernels`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
@@ -173,6 +174,12 @@ def _python_place(read: Read, wraps: bool) -> str:
     return f"{read.array}[{_row(read, member)}]"
 
 
+def _script_place(read: Read, wraps: bool) -> str:
+    """Where JavaScript reads; its remainder of a negative number is negative."""
+    place = _python_place(read, wraps).replace("float(size)", "size")
+    return re.sub(r"\(i - (\d+)\) % size", r"(i + size - \1) % size", place)
+
+
 def _c_place(read: Read, wraps: bool) -> str:
     """Where C reads, the address of the first lane."""
     row = _fixed_row(read).replace("size", "_run.size")
@@ -216,6 +223,7 @@ PLACES: Final[dict[str, Callable[[Read, bool], str]]] = {
     "c": _c_place,
     "numpy": _python_place,
     "python": _python_place,
+    "js": _script_place,
 }
 
 
@@ -411,14 +419,16 @@ def render_family(context: FamilyContext) -> dict[str, str]:
 
     def render(identity: str) -> dict[str, str]:
         return {
-            file: _render_file(context, template, target, identity)
+            file: render_family_template(context, template, target, identity)
             for file, (template, target) in FAMILY_FILES.items()
         }
 
     return identify(render)
 
 
-def _render_file(context: FamilyContext, template: str, target: str, identity: str) -> str:
+def render_family_template(
+    context: FamilyContext, template: str, target: str, identity: str
+) -> str:
     """One file, given the id."""
     parts = [part for loops in context.loops.values() for part in loops.parts]
     programs = [part.program for part in parts]

@@ -1,0 +1,315 @@
+// The page: hands, sliders, keys, the address, and a frame after the other.
+const id = (name) => document.getElementById(name);
+const model = new Model();
+const dark = matchMedia("(prefers-color-scheme: dark)"), calm = matchMedia("(prefers-reduced-motion: reduce)");
+const THEMES = {
+  light: { dark: 0, floor: [0.93, 0.915, 0.88], line: [0.66, 0.64, 0.60], steel: [0.45, 0.48, 0.52], body: [0.24, 0.50, 0.78], body2: [0.88, 0.90, 0.92], ball: [0.90, 0.92, 0.94], ambient: 0.5, pen: "#222" },
+  dark: { dark: 1, floor: [0.13, 0.15, 0.18], line: [0.42, 0.47, 0.53], steel: [0.60, 0.64, 0.69], body: [0.27, 0.53, 0.82], body2: [0.80, 0.83, 0.87], ball: [0.20, 0.24, 0.29], ambient: 0.38, pen: "#ddd" },
+};
+let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0;
+
+const drawing = new Drawing(id("scene")), view = new SCENES[scene.kind](model, drawing), panel = new SpherePanel(model, id("sphere"));
+const strip = new DriftStrip(model, id("drift"));
+const start = { x: Float64Array.from(model.x), p: Float64Array.from(model.p), u: Float64Array.from(model.u) };
+
+/* A name with its digits below, as books write it. */
+const GREEK = { Omega: "\u03a9", omega: "\u03c9", Pi: "\u03a0", Gamma: "\u0393", Xi: "\u039e", psi: "\u03c8", phi: "\u03c6", theta: "\u03b8", chi: "\u03c7", mu: "\u03bc", lam: "\u03bb", alpha: "\u03b1", beta: "\u03b2", gamma: "\u03b3", kappa: "\u03ba", rho: "\u03c1", sigma: "\u03c3" };
+function nameOn(element, name) {
+  const parts = /^([A-Za-z]+?)_?(\d*)$/.exec(name), letters = parts ? parts[1] : name;
+  element.replaceChildren(GREEK[letters] || (letters.startsWith("v") && GREEK[letters.slice(1)] ? `v${GREEK[letters.slice(1)]}` : letters));
+  if (parts && parts[2]) { const sub = document.createElement("sub"); sub.textContent = parts[2]; element.append(sub); }
+}
+const plainName = (name) => GREEK[name] || name;
+
+let quiet = 0;
+function tell(text, seen = false) {
+  const status = id("status");
+  status.textContent = text;
+  status.classList.toggle("shown", seen);
+  clearTimeout(quiet);
+  if (seen) quiet = setTimeout(() => status.classList.remove("shown"), 3500);
+}
+
+function run(on) {
+  if (on && model.ended) reset();
+  running = on;
+  id("play").textContent = on ? "Pause" : "Run";
+  if (!on) save();
+  tell(on ? "Running" : `Paused at ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime)}`);
+}
+function refresh() { view.clear(); panel.trail = new Trail(); panel.last = null; panel.run += 1; strip.clear(); model.observe(); showSliders(true); }
+function reset() {
+  model.x.set(start.x);
+  model.settle();
+  refresh();
+  tell("Back at the start");
+}
+
+// -- sliders --------------------------------------------------------------------------------------
+
+const sliders = [];
+function rangeOf(table, value, positive, big) {
+  if (table === "state") { const most = 2 * big; return [-most, most]; }
+  if (positive) return [0.1 * value, 3 * value];
+  const most = value ? 2.5 * Math.abs(value) : Math.max(big, 1);
+  return value > 0 && table === "parameters" ? [0, most] : [-most, most];
+}
+function addSliders(table, array, box) {
+  let row = 0;
+  for (const each of scene.tables[table]) {
+    const group = document.createElement("div"), values = each.components.map((_, k) => array[row + k]);
+    group.className = "group";
+    if (each.doc) { const doc = document.createElement("p"); doc.textContent = raise(each.doc); group.append(doc); }
+    const big = Math.max(...values.map(Math.abs)) || 1;
+    each.components.forEach((name, k) => {
+      const at = row++, line = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input"), output = document.createElement("output");
+      const [low, high] = rangeOf(table, values[k], each.positive, big);
+      line.className = "row";
+      input.type = "range";
+      input.id = `${table}-${name}`;
+      Object.assign(input, { min: low, max: high, step: (high - low) / 400 });
+      label.htmlFor = output.htmlFor = input.id;
+      nameOn(label, name);
+      line.append(label, input, output);
+      group.append(line);
+      const show = (force) => {
+        if (!force && document.activeElement === input) return;
+        const v = array[at];
+        if (v < Number(input.min)) input.min = v;
+        if (v > Number(input.max)) input.max = v;
+        input.value = v;
+        output.textContent = `${shorten(v)}${unitText(each.units[k])}`;
+        input.setAttribute("aria-valuetext", output.textContent);
+      };
+      input.addEventListener("input", () => {
+        array[at] = Number(input.value);
+        output.textContent = `${shorten(array[at])}${unitText(each.units[k])}`;
+        changed(table);
+      });
+      show(true);
+      sliders.push({ table, show });
+    });
+    box.append(group);
+  }
+}
+function changed(table) {
+  model.ended = "";
+  if (table !== "inputs") { model.find(); model.measure(); if (table === "parameters") view.moving(); refresh(); }
+  if (table === "state" && !running) start.x.set(model.x);
+  save();
+}
+function showSliders(all) { for (const each of sliders) if (all || each.table !== "parameters") each.show(false); }
+for (const [table, box, array] of [["inputs", "drive", model.u], ["parameters", "parameters", model.p], ["state", "state", model.x]]) {
+  if (!array.length || (scene.members && table === "state")) continue;
+  id(box).hidden = false;
+  addSliders(table, array, id(box).querySelector("div"));
+}
+
+// -- the address ----------------------------------------------------------------------------------
+
+function save() {
+  const numbers = (array) => [...array].map((v) => Number(v.toPrecision(9))).join(",");
+  const parts = [`p=${numbers(model.p)}`];
+  if (!scene.members) parts.push(`x=${numbers(running ? start.x : model.x)}`);
+  if (model.u.length) parts.push(`u=${numbers(model.u)}`);
+  try { history.replaceState(null, "", `#${parts.join("&")}`); } catch { location.hash = parts.join("&"); }
+}
+function load() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  let found = false;
+  for (const [key, array] of [["p", model.p], ["x", model.x], ["u", model.u]]) {
+    const numbers = (given.get(key) || "").split(",").map(Number);
+    if (given.get(key) && numbers.length === array.length && numbers.every(Number.isFinite)) { array.set(numbers); found = true; }
+  }
+  if (!found) return;
+  start.x.set(model.x);
+  model.settle();
+  view.moving();
+  refresh();
+}
+id("share").addEventListener("click", async () => {
+  save();
+  try { await navigator.clipboard.writeText(location.href); tell("The link to this motion is copied.", true); }
+  catch { tell("The address of this page is the link to this motion.", true); }
+});
+
+// -- hands ----------------------------------------------------------------------------------------
+
+function orbit(camera, dx, dy) {
+  camera.yaw -= 0.008 * dx;
+  camera.pitch = clamp(camera.pitch + 0.008 * dy, -1.45, 1.5);
+}
+function drag(canvas, begin) {
+  canvas.addEventListener("pointerdown", (event) => {
+    const box = canvas.getBoundingClientRect(), at = (e) => [e.clientX - box.left, e.clientY - box.top];
+    const hand = begin(...at(event));
+    if (!hand) return;
+    canvas.setPointerCapture(event.pointerId);
+    let last = at(event);
+    const move = (e) => { const now = at(e); hand.move(now[0], now[1], now[0] - last[0], now[1] - last[1]); last = now; };
+    const up = () => { canvas.removeEventListener("pointermove", move); hand.end?.(); };
+    canvas.addEventListener("pointermove", move);
+    canvas.addEventListener("pointerup", up, { once: true });
+    canvas.addEventListener("pointercancel", up, { once: true });
+  });
+}
+drag(id("scene"), (x, y) => {
+  if (view.grab) {
+    const held = view.grab(x, y);
+    if (held) { const was = running; running = false; return { move: held.move, end: () => { finish(was); } }; }
+  }
+  const found = view.turnable() && drawing.hit(x, y, view.centre, view.radius);
+  if (!found || !found.inside) return { move: (a, b, dx, dy) => orbit(view.camera, dx, dy) };
+  let before = found.direction;
+  const was = running;
+  running = false;
+  return {
+    move: (a, b) => { const now = drawing.hit(a, b, view.centre, view.radius).direction; view.turn(turnOnto(before, now)); before = now; refresh(); },
+    end: () => finish(was),
+  };
+});
+const HINT = !scene.functions.includes("energy") || model.u.length ? "Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
+function finish(was) { start.x.set(model.x); model.measure(); model.find(); refresh(); running = was; save(); }
+if (panel.shown) {
+  id("sphere-box").hidden = false;
+  id("sphere-title").textContent = panel.strand ? `${plainName(panel.name)} at every point` : panel.vector.round ? `${plainName(panel.name)} on its sphere` : `${plainName(panel.name)}, the curve of the velocity`;
+  id("sphere-hint").textContent = panel.strand ? "Colours are those of the ring." : panel.vector.round ? HINT : "The velocity as a point. Drag around to look.";
+  id("cut").hidden = panel.strand;
+  drag(id("sphere"), (x, y) => {
+    if (panel.strand || !panel.vector.round) return { move: (a, b, dx, dy) => orbit(panel.camera, dx, dy) };
+    const found = panel.drawing.hit(x, y, [0, 0, 0], 1), at = panel.drawing.project(scaled(panel.scale, panel.value()));
+    if (cutting && found.inside) { panel.cut(found.direction); cutting = false; id("section-box").hidden = false; tell("A dot for each crossing of the green half plane."); press(); return null; }
+    if (Math.hypot(at.x - x, at.y - y) > 30) return { move: (a, b, dx, dy) => orbit(panel.camera, dx, dy) };
+    const was = running;
+    running = false;
+    return { move: (a, b) => { panel.point(panel.drawing.hit(a, b, [0, 0, 0], 1).direction); view.clear(); strip.clear(); showSliders(true); }, end: () => finish(was) };
+  });
+  if (panel.vector && !panel.vector.round) id("cut").hidden = true;
+}
+function press() {
+  id("cut").setAttribute("aria-pressed", String(cutting));
+  id("sphere-hint").textContent = cutting ? "Click the sphere: crossings of the half plane through that point become dots." : HINT;
+}
+id("cut").addEventListener("click", () => { cutting = !cutting; press(); });
+for (const [canvas, own] of [["scene", view], ["sphere", panel]]) id(canvas).addEventListener("wheel", (event) => {
+  event.preventDefault();
+  own.camera.distance *= Math.exp(0.001 * event.deltaY);
+}, { passive: false });
+
+// -- keys -----------------------------------------------------------------------------------------
+
+const ARROWS = { ArrowLeft: [-24, 0], ArrowRight: [24, 0], ArrowUp: [0, -24], ArrowDown: [0, 24] };
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const on = document.activeElement, arrow = ARROWS[event.key];
+  if (event.key === " " && !/^(BUTTON|SUMMARY|INPUT)$/.test(on.tagName)) { run(!running); event.preventDefault(); }
+  else if (event.key.toLowerCase() === "r" && on.tagName !== "INPUT") reset();
+  else if (arrow && on.id === "scene") { orbit(view.camera, ...arrow); event.preventDefault(); }
+  else if (arrow && on.id === "sphere") {
+    if (panel.vector && panel.vector.round) {
+      const now = unit(panel.value()), side = unit(cross(E[2], now)), up = cross(now, side);
+      panel.point(unit(plus(now, plus(scaled(arrow[0] / 300, side), scaled(-arrow[1] / 300, up)))));
+      finish(running);
+      tell(`${plainName(panel.name)} is ${panel.value().map(shorten).join(", ")}`);
+    } else orbit(panel.camera, ...arrow);
+    event.preventDefault();
+  }
+});
+id("play").addEventListener("click", () => run(!running));
+id("again").addEventListener("click", reset);
+
+// -- the stick ------------------------------------------------------------------------------------
+
+const stick = { x: 0, y: 0, rows: [] };
+if (scene.stick) {
+  let row = 0;
+  for (const each of scene.tables.inputs) { if (each.name === scene.stick) stick.rows = [row, row + 1, row + 2]; row += each.components.length; }
+  id("pad").hidden = false;
+  view.hint = "Fly with the stick: torques that lean the body as far as the stick, and hold it there";
+  const knob = (x, y) => { Object.assign(stick, { x, y }); id("knob").style.transform = `translate(${40 * x}px, ${40 * y}px)`; };
+  drag(id("pad"), (x, y) => {
+    const half = id("pad").clientWidth / 2, to = (a, b) => { const l = Math.max(1, Math.hypot(a - half, b - half) / half); knob((a - half) / half / l, (b - half) / half / l); };
+    if (!running) run(true);
+    to(x, y);
+    return { move: to, end: () => knob(0, 0) };
+  });
+  id("pad").addEventListener("keydown", (event) => { const to = ARROWS[event.key]; if (to) { knob(to[0] / 24, to[1] / 24); event.preventDefault(); } });
+  id("pad").addEventListener("keyup", (event) => { if (ARROWS[event.key]) knob(0, 0); });
+}
+/* Torques toward the lean of the stick, as a pilot's box gives them. */
+function steer() {
+  const inertia = (steer.inertia ||= model.inertia()), w = model.read(scene.turning), up = scene.vertical ? unit(model.read(scene.vertical)) : [0, 0, 1];
+  const lean = unit([0.45 * stick.y, 0.45 * stick.x, 1]), wanted = scaled(4, cross(lean, up));
+  stick.rows.forEach((row, k) => { model.u[row] = inertia[k] * 8 * (wanted[k] - w[k]); });
+}
+
+// -- frames ---------------------------------------------------------------------------------------
+
+function showLabels(box, labels, pen) {
+  while (box.children.length < labels.length) box.append(document.createElement("span"));
+  const taken = [];
+  [...box.children].forEach((span, k) => {
+    const own = labels[k];
+    span.hidden = !own || !own.text;
+    if (span.hidden) return;
+    if (span.dataset.name !== own.text) { nameOn(span, own.text); span.dataset.name = own.text; }
+    span.className = own.kind;
+    const at = pen.project(own.at), x = clamp(at.x + 8, 4, box.clientWidth - 60), y = clamp(at.y - 18, 4, box.clientHeight - 20);
+    const clash = taken.some(([a, b]) => Math.abs(a - x) < 34 && Math.abs(b - y) < 17);
+    span.hidden = !at.front || clash;
+    if (!clash) taken.push([x, y]);
+    span.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+  });
+}
+function advance(seconds) {
+  const until = performance.now() + 11;
+  debt = Math.min(debt + seconds * 10 ** Number(id("speed").value), 0.5);
+  if (scene.stick) steer();
+  while (debt >= model.h) {
+    if (!model.step(model.h)) { run(false); tell(`The motion ends here: ${plainName(model.ended)} no longer holds.`, true); break; }
+    panel.watch();
+    view.sample();
+    debt -= model.h;
+    if (performance.now() > until) { debt = 0; break; }
+  }
+  model.observe();
+}
+function paint() {
+  theme = THEMES[dark.matches ? "dark" : "light"];
+  view.labels = [];
+  drawing.begin(view.camera, theme.ambient);
+  view.draw(theme);
+  showLabels(id("scene-labels"), view.labels, drawing);
+  if (panel.shown) {
+    const labels = [];
+    panel.draw(theme, labels);
+    showLabels(id("sphere-labels"), labels, panel.drawing);
+    if (panel.plane) {
+      drawSection(id("section"), panel, theme);
+      id("section-told").textContent = `${panel.dots.length} crossings: up, the third component by the length; across, its rate.`;
+    }
+  }
+  strip.update(theme, frames % 12 === 0);
+  if (frames % 6 === 0) {
+    id("clock").textContent = `${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
+    if (id("hint").textContent !== view.hint) id("hint").textContent = view.hint;
+    if (running) showSliders(false);
+  }
+  frames += 1;
+}
+let before = 0;
+function frame(now) {
+  const passed = clamp((now - before) / 1000, 0, 0.05);
+  before = now;
+  if (running) advance(passed);
+  paint();
+  requestAnimationFrame(frame);
+}
+const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
+id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.join(", ")}` : ""}.`;
+id("kept").hidden = !model.integrals.length;
+load();
+addEventListener("hashchange", load);
+globalThis.explorer = { model, view, panel, run, reset, paint, frames: () => frames, isRunning: () => running };
+run(!calm.matches);
+requestAnimationFrame((now) => { before = now; frame(now); });

@@ -1,0 +1,278 @@
+// The model: one system at one state, moved by its generated functions.
+const scene = JSON.parse(document.getElementById("scene-data").textContent);
+const size = (table) => scene.tables[table].reduce((sum, each) => sum + each.components.length, 0) *
+  (scene.members && table === "state" ? scene.members : 1);
+
+class Model {
+  constructor() {
+    this.n = size("state");
+    this.x = new Float64Array(this.n);
+    this.p = new Float64Array(size("parameters"));
+    this.u = new Float64Array(size("inputs"));
+    this.y = new Float64Array(size("observables"));
+    this.rest = new Float64Array(size("reconstructed"));
+    this.clock = new Float64Array(1);
+    this.old = new Float64Array(this.n);
+    this.half = new Float64Array(this.n);
+    this.given = { state: this.x, parameters: this.p, inputs: this.u, time: this.clock };
+    const method = scene.methods[0] || { name: "rk4", schedule: [], keeps: [] };
+    this.stepper = new Stepper(this.n, (x, out) => this.call("rhs", x, out), method, scene.spheres,
+      (flow, x, out) => this.call(flow, x, out));
+    this.method = method;
+    for (const table of ["parameters", "inputs"]) this.fill(table, table === "inputs" ? this.u : this.p);
+    this.position = [0, 0, 0];
+    this.attitude = [1, 0, 0, 0];
+    this.begin();
+  }
+
+  fill(table, array) {
+    let row = 0;
+    for (const each of scene.tables[table]) each.components.forEach((_, k) => {
+      array[row++] = each.default ? each.default[k] : each.positive ? 1 : 0;
+    });
+  }
+
+  call(name, x, out) {
+    if (scene.members) return kernel[name](x, this.p, scene.members, out);
+    const names = scene.takes[name] || scene.takes.rhs;
+    return kernel[name](...names.map((each) => (each === "state" ? x : this.given[each])), out);
+  }
+
+  has(name) { return scene.functions.includes(name); }
+  energyAt(x) { return this.call("energy", x, this.one ||= new Float64Array(1))[0]; }
+  observe() { if (this.has("observables")) this.call("observables", this.x, this.y); }
+
+  /* A variable's components: of a state, or what the kernel says of them. */
+  read(variable, x = this.x) {
+    if (variable.table === "state") return variable.rows.map((row) => x[row]);
+    if (variable.table === "reconstructed") return variable.rows.map((row) => this.rest[row]);
+    const y = x === this.x ? this.y : this.call("observables", x, this.spare ||= new Float64Array(this.y.length));
+    return variable.rows.map((row) => y[row]);
+  }
+  write(variable, values, x = this.x) { variable.rows.forEach((row, k) => { x[row] = values[k]; }); }
+
+  /* The first state: defaults of the spec, and a plain motion where it has none. */
+  begin() {
+    let row = 0;
+    const missing = [];
+    for (const each of scene.tables.state) {
+      const members = scene.members || 1;
+      for (let k = 0; k < each.components.length * members; k++, row++) {
+        const given = each.default && (each.default.length > each.components.length ? k : Math.floor(k / members));
+        this.x[row] = each.default ? each.default[given] : 0;
+        if (!each.default) missing.push(row);
+      }
+    }
+    if (missing.length && scene.kind === "particles") this.beginParticles(new Set(missing));
+    else if (missing.length && scene.turning) this.beginBody(new Set(missing));
+    else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
+      const block = Math.floor(place / scene.members), s = 2 * Math.PI * (place % scene.members) / scene.members;
+      this.x[place] = 0.5 + 0.4 * Math.cos(s + 2 * block);
+    });
+    else missing.forEach((place, k) => { this.x[place] = [1, 0.4, 0.7, 0.2][k % 4]; });
+    this.settle();
+  }
+
+  beginParticles(missing) {
+    scene.places.forEach((place, k) => {
+      const speed = scene.speeds[k], apart = 1 + k;
+      if (!place || !missing.has(place.rows[0])) return;
+      this.write(place, [apart, 0.1 * k, 0]);
+      if (!speed || !missing.has(speed.rows[0])) return;
+      this.write(speed, [0, 0, 0]);
+      this.call("rhs", this.x, this.half);
+      const pull = Math.hypot(...speed.rows.map((row) => this.half[row]));
+      const fast = Math.sqrt((pull || 1) * apart);
+      this.write(speed, [0, 0.8 * fast, 0.35 * fast]);
+    });
+  }
+
+  beginBody(missing) {
+    const driven = this.u.length > 0, { spinning, pushing, vertical } = scene;
+    const free = (variable) => variable && variable.table === "state" && missing.has(variable.rows[0]);
+    if (scene.attitude && free(scene.attitude)) this.write(scene.attitude, [1, 0, 0, 0]);
+    let weight = [0, 0, 0];
+    if (free(vertical)) {
+      this.write(vertical, [0, 0, 1]);
+      weight = this.weight();
+      const lean = norm(weight) > 0 ? rotate(turnBy([0.5, 0, 0]), [0, 0, 1]) : [0, 0, 1];
+      this.write(vertical, rotate(turnOnto([0, 0, 1], unit(norm(weight) > 0 ? weight : E[2])), lean));
+    }
+    if (free(spinning) && !driven) {
+      const inertia = this.inertia(), heavy = norm(weight);
+      if (heavy > 0) {
+        const axis = unit(weight), about = dot(axis.map((a, k) => a * inertia[k]), axis);
+        this.write(spinning, plus(scaled(Math.sqrt(10 * about * heavy), axis), scaled(0.02 * about, [1, 1, 1])));
+      } else {
+        const sorted = [0, 1, 2].sort((a, b) => inertia[a] - inertia[b]);
+        this.write(spinning, [0, 1, 2].map((k) => inertia[k] * (k === sorted[1] ? 2 : 0.15)));
+      }
+    }
+    if (free(pushing) && !driven) {
+      const mass = this.inertia(pushing, scene.moving);
+      this.write(pushing, [0.25, 0.15, 0.6].map((v, k) => v * mass[k]));
+    }
+  }
+
+  /* The slope of the energy by the vertical, all else at rest: the direction of the weight's arm. */
+  weight() {
+    const { vertical } = scene;
+    if (!vertical || vertical.table !== "state") return [0, 0, 0];
+    const at = (v) => {
+      this.half.set(this.x);
+      for (const each of [scene.spinning, scene.pushing, scene.turning])
+        if (each && each.table === "state") this.write(each, [0, 0, 0], this.half);
+      this.write(vertical, v, this.half);
+      return this.energyAt(this.half);
+    };
+    if (!this.has("energy")) return [0, 0, 0];
+    const found = E.map((axis) => (at(axis) - at(scaled(-1, axis))) / 2);
+    return found.every(Number.isFinite) ? found : [0, 0, 0];
+  }
+
+  /* Momenta of unit velocities, by the linear part of the velocity of each momentum. */
+  inertia(momentum = scene.spinning, velocity = scene.turning) {
+    if (!momentum || momentum.table !== "state" || velocity.table !== "observables") return [1, 1, 1];
+    return E.map((axis, k) => {
+      this.half.set(this.x);
+      this.write(momentum, axis, this.half);
+      const one = this.read(velocity, this.half)[k];
+      this.write(momentum, [0, 0, 0], this.half);
+      const slope = one - this.read(velocity, this.half)[k];
+      return slope > 0 ? 1 / slope : 1;
+    });
+  }
+
+  /* The arm from the point of contact to the centre: Y = Omega x s is linear in Omega. */
+  arm(up) {
+    this.half.set(this.x);
+    this.write(scene.vertical, up, this.half);
+    this.write(scene.turning, E[0], this.half);
+    const first = this.read(scene.moving, this.half);
+    this.write(scene.turning, E[1], this.half);
+    const second = this.read(scene.moving, this.half);
+    return [-second[2], first[2], second[0]];
+  }
+
+  /* What goes with a state: the attitude, step, and integrals that its drift is measured from. */
+  settle() {
+    this.clock[0] = 0;
+    this.ended = "";
+    if (this.has("projection")) this.call("projection", this.x.slice(), this.x);
+    let row = 0;
+    for (const each of scene.tables.reconstructed) {
+      const up = each.upright && scene.vertical ? this.read(scene.vertical) : null;
+      const start = each.default || (each.quaternion ? (up ? turnOnto(up, E[2]) : [1, 0, 0, 0]) : each.components.map(() => 0));
+      for (const value of start) this.rest[row++] = value;
+    }
+    this.position = [0, 0, 0];
+    this.attitude = scene.vertical ? turnOnto(this.read(scene.vertical), E[2]) : [1, 0, 0, 0];
+    this.observe();
+    this.find();
+    this.measure();
+  }
+
+  measure() {
+    this.observe();
+    let row = 0;
+    this.integrals = [];
+    for (const each of scene.tables.observables) {
+      const rows = each.components.map(() => row++);
+      if (each.conserved) this.integrals.push({ name: each.name, unit: each.units[0], rows, first: rows.map((r) => this.y[r]) });
+    }
+  }
+
+  drift({ rows, first }) {
+    const big = Math.max(...first.map(Math.abs), 1e-12);
+    return Math.max(...rows.map((row, k) => Math.abs(this.y[row] - first[k]))) / big;
+  }
+
+  /* A step from how fast nearby motions part, found by repeated differences of the rates. */
+  find() {
+    const base = new Float64Array(this.n), other = new Float64Array(this.n);
+    this.call("rhs", this.x, base);
+    let v = Float64Array.from(base, (each, k) => each + 1e-3 * Math.sin(k + 1)), rate = 0;
+    const scale = Math.max(...this.x.map(Math.abs), 1e-3);
+    for (let round = 0; round < 12; round++) {
+      const length = Math.hypot(...v) || 1, little = (1e-6 * scale) / length;
+      this.call("rhs", this.x.map((each, k) => each + little * v[k]), other);
+      const next = other.map((each, k) => (each - base[k]) / little);
+      rate = Math.max(rate * 0.7, Math.hypot(...next) / length);
+      v = next;
+    }
+    const own = Math.hypot(...base) / (Math.hypot(...this.x) || 1);
+    this.h = clamp(0.04 / (Math.max(rate, own) || 1), 1e-6, 0.02);
+  }
+
+  step(h) {
+    this.old.set(this.x);
+    this.stepper.step(this.x, h);
+    if (this.has("projection")) this.call("projection", this.x.slice(), this.x);
+    if (!this.x.every(Number.isFinite)) return this.end("rates without value");
+    if (scene.domain.length) {
+      const rows = this.call("domain", this.x, this.bounds ||= new Float64Array(scene.domain.length));
+      const left = scene.domain.findIndex((each, k) => !(each.strict ? rows[k] > 0 : rows[k] >= 0));
+      if (left >= 0) return this.end(scene.domain[left].name);
+    }
+    for (let i = 0; i < this.n; i++) this.half[i] = 0.5 * (this.old[i] + this.x[i]);
+    if (this.rest.length) this.follow(h);
+    else if (scene.turning && !scene.attitude) {
+      const q = this.attitude, w = this.read(scene.turning, this.half);
+      this.attitude = normal(multiply(q, turnBy(scaled(h, w))));
+    }
+    if (scene.moving && scene.kind === "body")
+      this.position = plus(this.position, scaled(h, rotate(this.pose(), this.read(scene.moving, this.half))));
+    this.clock[0] += h;
+    return true;
+  }
+
+  end(why) { this.x.set(this.old); this.ended = why; return false; }
+
+  /* What is reconstructed, by the middle of the step. */
+  follow(h) {
+    const joined = (x, rest) => Float64Array.from([...x, ...rest]);
+    const k = this.call("reconstruction", joined(this.old, this.rest), new Float64Array(this.rest.length));
+    const middle = this.rest.map((each, i) => each + 0.5 * h * k[i]);
+    this.call("reconstruction", joined(this.half, middle), k);
+    for (let i = 0; i < k.length; i++) this.rest[i] += h * k[i];
+    const place = this.quaternionRows();
+    if (place) {
+      const q = normal(place.map((row) => this.rest[row]));
+      place.forEach((row, i) => { this.rest[row] = q[i]; });
+    }
+  }
+
+  quaternionRows() {
+    let row = 0;
+    for (const each of scene.tables.reconstructed) {
+      if (each.quaternion) return each.components.map((_, k) => row + k);
+      row += each.components.length;
+    }
+    return null;
+  }
+
+  /* The attitude, from body to space. Where a vertical is part of the state, it stands upright. */
+  pose() {
+    const rows = this.quaternionRows();
+    const q = scene.attitude ? normal(this.read(scene.attitude)) : rows ? rows.map((row) => this.rest[row]) : this.attitude;
+    if (!scene.vertical) return q;
+    const turned = normal(multiply(turnOnto(rotate(q, this.read(scene.vertical)), E[2]), q));
+    if (!rows && !scene.attitude) this.attitude = turned;
+    return turned;
+  }
+
+  /* Turn the body by a rotation of space, as a hand does: its momentum in the body stays. */
+  turn(rotation) {
+    const q = normal(multiply(rotation, this.pose()));
+    const rows = this.quaternionRows();
+    if (scene.attitude) this.write(scene.attitude, q);
+    else if (rows) rows.forEach((row, k) => { this.rest[row] = q[k]; });
+    this.attitude = q;
+    if (scene.vertical && scene.vertical.table === "state") {
+      const length = norm(this.read(scene.vertical)) || 1;
+      this.write(scene.vertical, scaled(length, rotate(conjugate(q), E[2])));
+    }
+    this.ended = "";
+    this.measure();
+  }
+}

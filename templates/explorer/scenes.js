@@ -1,0 +1,394 @@
+// Scenes: the thing itself, drawn from what the records of a system say of it.
+const BLUE = [0.16, 0.45, 0.78], ORANGE = [0.90, 0.52, 0.12], GOLD = [0.93, 0.72, 0.20], GREEN = [0.10, 0.58, 0.46], RED = [0.80, 0.30, 0.25];
+const fade = (colour, most = 0.95) => (part) => [...colour, most * part * part];
+const TRAIL = 700;
+
+class Trail {
+  constructor() { this.points = []; }
+  add(p, least) {
+    const last = this.points[this.points.length - 1];
+    if (last && norm(minus(p, last)) < least) return;
+    this.points.push(p);
+    if (this.points.length > TRAIL) this.points.shift();
+  }
+}
+
+/* What all scenes share: a camera, trails, arrows with their names, and a hand. */
+class Scene {
+  constructor(model, drawing) {
+    Object.assign(this, { model, drawing, trails: {}, labels: [], radius: 1, centre: [0, 0, 0] });
+    this.camera = { yaw: -0.9, pitch: 0.32, distance: 6, target: [0, 0, 0] };
+    this.hint = "Drag to look around";
+  }
+  trail(name) { return (this.trails[name] ||= new Trail()); }
+  clear() { this.trails = {}; }
+  follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
+  label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
+  turnable() { return false; }
+  moving() {}
+  sample() {}
+}
+
+/* A body: about a fixed point, free, or moving; with a box of its moments of inertia. */
+class BodyScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    this.hint = "Drag the body to turn it, the space around it to look";
+    this.flip = [1, 0, 0, 0];
+    const down = scene.vertical && scene.vertical.depth && scene.vertical.depth.length === 1;
+    if (down && model.has("energy")) {
+      const x = Float64Array.from(model.x), row = scene.vertical.depth[0], before = model.energyAt(x);
+      x[row] += 1;
+      if (model.energyAt(x) < before) this.flip = [0, 1, 0, 0]; // the normal of the plane points down
+    }
+    this.shape();
+  }
+  shape() {
+    const model = this.model, inertia = model.inertia(), total = Math.max(...inertia);
+    const sides = [0, 1, 2].map((k) => Math.sqrt(Math.max(inertia[(k + 1) % 3] + inertia[(k + 2) % 3] - inertia[k], 0.03 * total)));
+    const big = Math.max(...sides);
+    this.sizes = sides.map((s) => 0.85 * s / big);
+    const equal = (a, b) => Math.abs(inertia[a] - inertia[b]) < 1e-9 * total;
+    this.axis = equal(0, 1) ? 2 : equal(1, 2) ? 0 : equal(0, 2) ? 1 : -1;
+    const weight = model.weight();
+    this.arm = norm(weight) > 1e-12 && !scene.moving ? scaled(1.15, unit(weight)) : [0, 0, 0];
+    this.weighs = norm(this.arm) > 0;
+    if (this.weighs) this.sizes = scaled(0.62, this.sizes);
+    this.camera.distance = this.weighs ? 6.4 : scene.moving ? 7.5 : 5;
+  }
+  moving() { if (this.model.u.length) return; this.shape(); }
+  place() { return rotate(this.flip, scene.moving ? this.model.position : [0, 0, 0]); }
+  draw(theme) {
+    const { model, drawing } = this, q = multiply(this.flip, model.pose()), at = this.place(), middle = plus(at, rotate(q, this.arm));
+    this.centre = this.weighs ? at : middle;
+    this.radius = this.weighs ? 1.5 : 1;
+    if (this.weighs) {
+      drawing.floor(-1.5, 5, 0.5, theme.floor, theme.line, [middle[0], middle[1], 0.8], [0, 0]);
+      drawing.draw("cone", [1, 0, 0, 0], [0, 0, -1.5], [0.22, 0.22, 1.48], theme.steel);
+      drawing.draw("tube", multiply(q, turnOnto(E[2], this.arm)), at, [0.035, 0.035, norm(this.arm)], theme.steel);
+      drawing.draw("sphere", q, middle, [0.1, 0.1, 0.1], GOLD);
+    } else if (scene.moving) {
+      this.follow(at);
+      const cell = 0.5;
+      if (model.u.length) drawing.floor(Math.min(0, Math.floor(at[2])) - 1.6, 14, cell, theme.floor, theme.line, [at[0], at[1], 0.9], at);
+    }
+    const rotors = scene.stick && scene.moving;
+    if (rotors) this.frame(q, at, theme);
+    else this.solid(q, middle, theme);
+    const trail = this.trail("tip"), tip = this.weighs ? scaled(1.06, middle) : scene.moving ? at : plus(at, rotate(q, scaled(this.sizes[2] + 0.25, E[2])));
+    trail.add(tip, 0.02);
+    drawing.line(trail.points, fade(ORANGE), 2.5);
+    if (!scene.moving && !this.weighs) drawing.arrow(plus(at, rotate(q, scaled(this.sizes[2] * 0.9, E[2]))), tip, ORANGE, 0.022);
+    this.arrows(q, at);
+  }
+  solid(q, middle, theme) {
+    const { drawing } = this;
+    if (this.axis >= 0) {
+      const own = multiply(q, turnOnto(E[2], E[this.axis])), r = this.sizes[(this.axis + 1) % 3], h = this.sizes[this.axis];
+      drawing.draw("tube", own, minus(middle, rotate(own, [0, 0, h])), [r, r, 2 * h], theme.body, { second: theme.body2, paint: 2 });
+    } else drawing.draw("box", q, middle, this.sizes, theme.body, { second: theme.body2, paint: 1 });
+  }
+  /* Something that is driven by a thrust: rotors on a cross. */
+  frame(q, at, theme) {
+    const { drawing } = this;
+    drawing.draw("sphere", q, at, [0.24, 0.24, 0.13], theme.body);
+    for (let k = 0; k < 4; k++) {
+      const out = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]][k], end = plus(at, rotate(q, scaled(0.8, out)));
+      drawing.draw("tube", turnOnto(E[2], rotate(q, out)), at, [0.035, 0.035, 0.8], theme.steel);
+      drawing.draw("tube", q, plus(end, rotate(q, [0, 0, -0.05])), [0.34, 0.34, 0.012], k === 0 ? ORANGE : theme.body2);
+      const turned = multiply(q, turnBy([0, 0, (k % 2 ? 7 : -7) * this.model.clock[0]])); // in turn, so that they do not turn the frame
+      drawing.draw("box", turned, plus(end, rotate(q, [0, 0, -0.07])), [0.32, 0.03, 0.012], theme.steel);
+    }
+  }
+  arrows(q, at) {
+    const { model, drawing } = this, w = model.read(scene.turning), size = norm(w);
+    const far = this.weighs ? 1.5 : 1.35;
+    if (size > 1e-9) {
+      const tip = plus(at, rotate(q, scaled(far / size, w)));
+      drawing.arrow(at, tip, GREEN, 0.022);
+      this.label(scene.turning.name, tip, "green");
+    }
+    const momentum = scene.spinning && scene.spinning.table === "state" ? model.read(scene.spinning) : [0, 0, 0];
+    if (norm(momentum) > 1e-9) {
+      const tip = plus(at, rotate(q, scaled(1.15 * far / norm(momentum), momentum)));
+      drawing.arrow(at, tip, RED, 0.022);
+      this.label(scene.spinning.name, tip, "red");
+    }
+    if (scene.moving && !model.u.length && norm(model.read(scene.moving)) > 1e-9) {
+      const tip = plus(at, rotate(q, scaled(1.5, unit(model.read(scene.moving)))));
+      drawing.arrow(at, tip, BLUE, 0.022);
+      this.label(scene.moving.name, tip, "blue");
+    }
+  }
+  turnable() { return true; }
+  turn(rotation) { this.model.turn(multiply(multiply(conjugate(this.flip), rotation), this.flip)); }
+}
+
+/* A body that rolls: its surface is where the arms to its centre of mass begin. */
+class RollingScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    this.hint = "Drag the body to turn it, the floor to look around";
+    this.surface();
+  }
+  surface() {
+    const rows = 40, columns = 64, points = [], triangles = [];
+    for (let i = 0; i <= rows; i++) for (let j = 0; j <= columns; j++) {
+      const u = clamp(i / rows, 0.004, 0.996);
+      points.push(scaled(-1, this.model.arm(onSphere(u, j / columns))));
+      const a = i * (columns + 1) + j;
+      if (i < rows && j < columns) triangles.push(a, a + columns + 1, a + 1, a + 1, a + columns + 1, a + columns + 2);
+    }
+    for (const row of [0, rows]) { // flat ends, as of a disk, are closed at their middle
+      const ring = points.slice(row * (columns + 1), row * (columns + 1) + columns);
+      const middle = scaled(1 / columns, ring.reduce(plus));
+      const first = points.length;
+      points.push(middle, ...ring);
+      for (let j = 0; j < columns; j++) triangles.push(first, first + 1 + j, first + 1 + ((j + 1) % columns));
+    }
+    const finite = points.filter((p) => p.every(Number.isFinite));
+    this.size = Math.max(...finite.map(norm), 1e-9);
+    for (const p of points) if (!p.every(Number.isFinite)) p.fill(0);
+    this.own = this.drawing.mesh(smooth(points.map((p) => scaled(1 / this.size, p)), triangles));
+    this.spread = Math.max(...finite.map((p) => Math.abs(p[2]))) / this.size;
+    this.camera.distance = 5.5 * this.size;
+    this.camera.pitch = 0.42;
+  }
+  moving() { const { distance, pitch } = this.camera; this.surface(); Object.assign(this.camera, { distance, pitch }); }
+  draw(theme) {
+    const { model, drawing, size } = this, q = model.pose(), up = model.read(scene.vertical);
+    const rows = model.quaternionRows(), free = [...model.rest.keys()].filter((row) => !rows.includes(row));
+    const contact = [model.rest[free[0]], model.rest[free[1]], 0], arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
+    this.centre = at;
+    this.radius = size;
+    this.follow(at);
+    const cell = 10 ** Math.round(Math.log10(size)) / 2;
+    drawing.floor(0, 22 * size, cell, theme.floor, theme.line, [at[0], at[1], 0.9 * size], at);
+    this.sample();
+    drawing.line(this.trail("contact").points, fade(ORANGE), 3);
+    drawing.draw(this.own, q, at, [size, size, size], theme.body, { second: theme.body2, paint: this.spread < 0.05 ? 2 : 1 });
+    if (this.spread < 0.05) this.rim(q, at, theme);
+    drawing.draw("sphere", q, plus(contact, [0, 0, 0.01 * size]), Array(3).fill(0.035 * size), ORANGE);
+    if (this.spread < 0.05) this.label("contact", contact, "orange");
+    const w = model.read(scene.turning);
+    if (norm(w) > 1e-9) {
+      const along = rotate(q, scaled(1.5 * size / norm(w), w)), under = at[2] + along[2] < 0; // else it would end below the floor
+      const from = under ? minus(at, scaled(0.85, along)) : at, tip = under ? minus(at, scaled(0.25, along)) : plus(at, along);
+      drawing.arrow(from, tip, GREEN, 0.018 * size);
+      this.label(scene.turning.name, under ? from : tip, "green");
+    }
+  }
+  /* The trace of the contact, at every step. */
+  sample() {
+    const rows = (this.free ||= [...this.model.rest.keys()].filter((row) => !this.model.quaternionRows().includes(row)));
+    this.trail("contact").add([this.model.rest[rows[0]], this.model.rest[rows[1]], 0.004 * this.size], 0.02 * this.size);
+  }
+  rim(q, at, theme) {
+    const ring = Array.from({ length: 65 }, (_, k) => plus(at, rotate(q, scaled(this.size, [Math.cos(k * Math.PI / 32), Math.sin(k * Math.PI / 32), 0]))));
+    this.drawing.line(ring, () => [...theme.steel, 1], 4);
+  }
+  turnable() { return true; }
+  turn(rotation) { this.model.turn(rotation); }
+}
+
+/* Particles on their orbits; a centre of force at the origin. */
+class ParticleScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    this.hint = "Drag a particle to move it, the space around it to look";
+    this.camera.pitch = 0.5;
+    this.extent = Math.max(...this.positions().map(norm), 0.5);
+    this.camera.distance = 6.5 * this.extent;
+    this.central = this.isCentral();
+  }
+  /* Whether one particle at rest is pulled to the origin. */
+  isCentral() {
+    const { model } = this, [at] = this.positions(), [speed] = scene.speeds;
+    if (scene.places.length !== 1 || speed.table !== "state") return false;
+    const x = Float64Array.from(model.x);
+    model.write(speed, speed.rows.map(() => 0), x);
+    const rates = model.call("rhs", x, new Float64Array(model.n)), pull = speed.rows.map((row) => rates[row]);
+    if (pull.length === 2) pull.push(0);
+    return dot(pull, at) < -0.999999 * norm(pull) * norm(at);
+  }
+  positions() { return scene.places.map((each) => { const r = this.model.read(each); return r.length === 2 ? [...r, 0] : r; }); }
+  draw(theme) {
+    const { drawing, extent } = this, points = this.positions();
+    const far = Math.max(...points.map(norm));
+    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 4 ? 1 : 0);
+    drawing.floor(0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
+    drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
+    points.forEach((at, k) => {
+      const tint = [BLUE, RED, GREEN][k % 3], trail = this.trail(k);
+      trail.add(at, 0.01 * extent);
+      drawing.line(trail.points, fade(tint), 2.5);
+      drawing.draw("sphere", [1, 0, 0, 0], at, Array(3).fill(0.075 * extent), tint);
+      drawing.line([at, [at[0], at[1], 0]], () => [...theme.line, 0.5], 1);
+      this.label(scene.places[k].name, plus(at, [0, 0, 0.12 * extent]));
+      const speed = scene.speeds[k];
+      if (speed) {
+        const v = this.model.read(speed), tip = plus(at, scaled(0.5 * extent / (this.fast ||= norm([...v, 0])), v.length === 2 ? [...v, 0] : v));
+        drawing.arrow(at, tip, GREEN, 0.014 * extent);
+        this.label(speed.name, tip, "green");
+      }
+    });
+  }
+  grab(x, y) {
+    const found = this.positions().findIndex((p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 26; });
+    return found < 0 ? null : { move: (a, b) => this.carry(found, a, b) };
+  }
+  /* In the plane through the particle that faces the eye. */
+  carry(k, x, y) {
+    const { drawing, model } = this, at = this.positions()[k], facing = unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
+    const s = dot(minus(at, drawing.eye), facing) / dot(d, facing), to = plus(drawing.eye, scaled(s, d));
+    model.write(scene.places[k], to);
+    this.clear();
+    model.measure();
+  }
+}
+
+/* A vehicle in the plane: each constraint is a wheel, on the line where it lets the frame turn. */
+class PlanarScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    const wheels = this.wheels();
+    this.hint = wheels.length ? "Drag to look around; wheels stand where the constraints put them" : "Drag to look around";
+    this.size = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.1) * 1.25;
+    this.camera.distance = 9 * this.size;
+    this.camera.pitch = 0.75;
+  }
+  /* Rows of constraints are linear in the velocities of the frame: n . (v + omega x p). */
+  wheels() {
+    const { model } = this, count = scene.sizes.constraint_residual || 0;
+    const x = model.half, found = [], all = scene.frame.flatMap((each) => each.rows), out = () => new Float64Array(count);
+    x.set(model.x);
+    const at = (velocity) => { all.forEach((row, k) => { x[row] = velocity[k]; }); return model.call("constraint_residual", x, out()); };
+    const zero = at([0, 0, 0]), order = this.order();
+    const slopes = order.map((k) => at([0, 1, 2].map((j) => (j === k ? 1 : 0))).map((v, i) => v - zero[i]));
+    for (let i = 0; i < count; i++) {
+      const [a, b, turn] = slopes.map((s) => s[i]);
+      if (Math.abs(b) > 1e-9) found.push({ at: turn / b, angle: Math.atan2(-a, b) });
+    }
+    return found;
+  }
+  /* Which velocities are along, across and of turning: by what each does to the place. */
+  order() {
+    if (this.known) return this.known;
+    const { model } = this, rows = scene.frame.flatMap((each) => each.rows), x = new Float64Array(model.n + 3);
+    const rates = rows.map((row) => { x.fill(0); x[row] = 1; return [...model.call("reconstruction", x, new Float64Array(3))]; });
+    const largest = rates.map((r) => r.findIndex((v) => Math.abs(v) > 0.5)), turn = rates.findIndex((r, k) => {
+      x.fill(0); x[rows[k]] = 1; x[model.n + largest[k]] = 0.3; // a direction turns no other rate
+      const again = [...model.call("reconstruction", x, new Float64Array(3))];
+      return r.filter((v) => Math.abs(v) > 0.5).length === 1 && again.every((v, j) => v === r[j]) && this.turns(rates, r, largest[k], rows, x);
+    });
+    const others = [0, 1, 2].filter((k) => k !== turn).sort((a, b) => largest[a] - largest[b]);
+    this.rows = { turn: largest[turn], x: largest[others[0]], y: largest[others[1]] };
+    return (this.known = [...others, turn]);
+  }
+  /* Whether a reconstructed row is the direction: others depend on it. */
+  turns(rates, own, row, rows, x) {
+    return rows.some((each) => {
+      x.fill(0); x[each] = 1;
+      const before = [...this.model.call("reconstruction", x, new Float64Array(3))];
+      x[this.model.n + row] = 0.3;
+      return [...this.model.call("reconstruction", x, new Float64Array(3))].some((v, j) => v !== before[j]);
+    });
+  }
+  draw(theme) {
+    const { model, drawing, size } = this, wheels = this.wheels(), rows = this.rows, r = model.rest;
+    const at = [r[rows.x], r[rows.y], 0.16 * size], q = turnBy([0, 0, r[rows.turn]]), lift = 0.1 * size;
+    this.follow(at);
+    drawing.floor(0, 24 * size, size, theme.floor, theme.line, [at[0], at[1], size], at);
+    const trail = this.trail("path");
+    trail.add([at[0], at[1], 0.01 * size], 0.01 * size);
+    drawing.line(trail.points, fade(ORANGE), 3);
+    const long = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.5 * size);
+    drawing.draw("box", q, at, [long, 0.11 * size, 0.025 * size], theme.body);
+    for (const wheel of wheels) {
+      const turn = multiply(q, turnBy([0, 0, wheel.angle])), middle = plus(at, rotate(q, [wheel.at, 0, 0.06 * size]));
+      drawing.draw("box", turn, middle, [0.2 * size, 0.14 * size, 0.022 * size], theme.body2);
+      for (const side of [-1, 1]) {
+        const hub = plus(middle, rotate(turn, [0, side * 0.15 * size - 0.02 * size, -0.12 * size]));
+        drawing.draw("tube", multiply(turn, turnOnto(E[2], E[1])), hub, [lift, lift, 0.04 * size], theme.steel);
+      }
+    }
+    scene.angles.filter((each) => !this.steers(each)).forEach((each, k) => {
+      const own = multiply(q, turnBy([0, 0, model.read(each)[0]])), high = plus(at, [0, 0, (0.2 + 0.1 * k) * size]);
+      drawing.draw("tube", q, at, [0.04 * size, 0.04 * size, (0.2 + 0.1 * k) * size], theme.steel);
+      drawing.draw("box", own, high, [0.55 * size, 0.06 * size, 0.04 * size], GOLD);
+      this.label(each.name, plus(high, rotate(own, [0.55 * size, 0, 0])), "orange");
+    });
+    scene.angles.filter((each) => this.steers(each)).forEach((each) => {
+      if (wheels[0]) this.label(each.name, plus(at, rotate(q, [wheels[0].at, 0, 0.16 * size])));
+    });
+  }
+  /* Whether the wheels turn with an angle. */
+  steers(angle) {
+    if (this.steering?.has(angle.name)) return this.steering.get(angle.name);
+    const before = JSON.stringify(this.wheels()), kept = this.model.x[angle.rows[0]];
+    this.model.x[angle.rows[0]] = kept + 0.1;
+    const found = JSON.stringify(this.wheels()) !== before;
+    this.model.x[angle.rows[0]] = kept;
+    (this.steering ||= new Map()).set(angle.name, found);
+    return found;
+  }
+}
+
+/* A field: a vector at each point of a ring, whose tips are a moving curve; or a height. */
+class FieldScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    this.hint = "Drag to look around; the coloured curve is the field";
+    this.camera.pitch = 0.5;
+    this.camera.distance = 7.5;
+    const values = this.curve();
+    this.scale = 1 / Math.max(...values.map((v) => Math.hypot(...v)), 1e-9);
+  }
+  curve() {
+    const size = scene.members;
+    return Array.from({ length: size }, (_, i) => scene.curve.map((block) => this.model.x[block * size + i]));
+  }
+  draw(theme) {
+    const { drawing } = this, values = this.curve(), count = values.length, tips = [], ring = [];
+    values.forEach((v, i) => {
+      const a = 2 * Math.PI * i / count, out = [Math.cos(a), Math.sin(a), 0], base = scaled(1.6, out);
+      ring.push(base);
+      const along = v.length === 3 ? v : [0, 0, v[0]];
+      tips.push(plus(base, scaled(0.9 * this.scale, along)));
+    });
+    drawing.floor(-1.3, 6, 0.5, theme.floor, theme.line, [0, 0, 1.6], [0, 0]);
+    drawing.line([...ring, ring[0]], () => [...theme.steel, 1], 4);
+    const every = Math.max(1, Math.floor(count / 64));
+    for (let i = 0; i < count; i += every) drawing.line([ring[i], tips[i]], (s) => [...hue(i / count), 0.25 + 0.6 * s], 2);
+    drawing.line([...tips, tips[0]], (s) => [...hue(s), 1], 4.5);
+    this.label(scene.tables.state[0].name, tips[0]);
+  }
+}
+/* Colours around a ring that readers without one kind of cone tell apart by their lightness. */
+function hue(s) {
+  const a = 2 * Math.PI * s;
+  return [0.52 + 0.38 * Math.cos(a), 0.50 + 0.16 * Math.cos(a - 1.4), 0.50 - 0.32 * Math.cos(a + 0.3)];
+}
+
+/* The first two or three rows of a state as a point that moves. */
+class PortraitScene extends Scene {
+  constructor(model, drawing) {
+    super(model, drawing);
+    this.hint = "The first rows of the state as a point in space; drag to look around";
+    this.names = scene.tables.state.flatMap((each) => each.components).slice(0, 3);
+    this.extent = Math.max(...this.point().map(Math.abs), 1e-3);
+    this.camera.distance = 6 * this.extent;
+  }
+  point() { return [0, 1, 2].map((k) => (k < this.names.length ? this.model.x[k] : 0)); }
+  draw(theme) {
+    const { drawing } = this, at = this.point();
+    this.extent = Math.max(this.extent, norm(at) * 0.9);
+    this.camera.distance = Math.max(this.camera.distance, 4.5 * this.extent);
+    this.names.forEach((name, k) => { drawing.line([[0, 0, 0], scaled(this.extent, E[k])], () => [...theme.steel, 0.8], 2); this.label(name, scaled(1.06 * this.extent, E[k])); });
+    this.trail("point").add(at, 0.005 * this.extent);
+    drawing.line(this.trail("point").points, fade(BLUE), 2.5);
+    drawing.draw("sphere", [1, 0, 0, 0], at, Array(3).fill(0.04 * this.extent), ORANGE);
+  }
+}
+
+const SCENES = { body: BodyScene, rolling: RollingScene, particles: ParticleScene, planar: PlanarScene, strand: FieldScene, profile: FieldScene, portrait: PortraitScene };

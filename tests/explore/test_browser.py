@@ -1,0 +1,239 @@
+"""The page in headless Chromium: what is on its canvas and in it, hands, keys, accessibility."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coadjoint.explore.page import render_page
+from coadjoint.pipeline import render
+from coadjoint.resources import derivations_folder
+from coadjoint.solve.folders import load_texts
+from coadjoint.spec import read_spec
+from tests.explore.browser import CHROMIUM, browser
+
+pytestmark = [
+    pytest.mark.campaign,
+    pytest.mark.skipif(
+        not CHROMIUM, reason="no Chromium on this machine: apt-get install chromium"
+    ),
+]
+
+SHOWN = (
+    "rigid_body",
+    "heavy_top",
+    "heavy_top_kovalevskaya",
+    "kirchhoff",
+    "chaplygin_ball",
+    "euler_disk",
+    "rattleback",
+    "snakeboard",
+    "kepler",
+    "monopole_kepler",
+    "quadrotor",
+    "spin_chain",
+    "kdv",
+    "double_spherical_pendulum",
+)
+#: Colours on the canvas of the scene, where something is drawn, in steps of 16.
+COLOURS = """(() => {
+  const canvas = document.getElementById("scene");
+  explorer.paint();
+  const copy = document.createElement("canvas");
+  Object.assign(copy, { width: 160, height: 120 });
+  const pen = copy.getContext("2d");
+  pen.drawImage(canvas, 0, 0, 160, 120);
+  const data = pen.getImageData(0, 0, 160, 120).data, colours = new Set();
+  let sum = 0;
+  for (let k = 0; k < data.length; k += 4) {
+    const [r, g, b, a] = data.subarray(k, k + 4);
+    if (a > 200) colours.add((r >> 4) * 256 + (g >> 4) * 16 + (b >> 4));
+    sum = (sum * 31 + data[k] + 7 * data[k + 1] + 13 * data[k + 2]) % 4294967291;
+  }
+  return [colours.size, sum];
+})()"""
+
+
+@pytest.fixture(scope="module")
+def page():
+    """A page of a browser."""
+    with browser() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """The page of a system as a file, made once."""
+    folder, made = tmp_path_factory.mktemp("pages"), {}
+
+    def make(name):
+        if name not in made:
+            spec = read_spec(derivations_folder() / f"{name}.toml")
+            made[name] = folder / f"{name}.html"
+            made[name].write_text(render_page(spec, render(spec)))
+        return made[name]
+
+    return make
+
+
+def show(page, path, **preferences):
+    """Load a page and wait for its first frames."""
+    page.problems.clear()
+    page.asked.clear()
+    page.resize(preferences.pop("width", 1200), preferences.pop("height", 800), **preferences)
+    page.open(path)
+    page.wait("globalThis.explorer && explorer.frames() > 7")
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_a_page_draws_what_moves_without_errors(page, pages, name):
+    """No console error and no request; the canvas shows more than a floor, and changes."""
+    show(page, pages(name))
+    colours, first = page.run(COLOURS)
+    page.wait("explorer.model.clock[0] > 0.05")
+    _, later = page.run(COLOURS)
+    assert colours > 8, name
+    assert first != later, name
+    assert page.run("explorer.model.x.every(Number.isFinite) && explorer.model.ended === ''")
+    assert page.run("document.documentElement.scrollWidth <= innerWidth")
+    assert page.problems == []
+    assert [each for each in page.asked if not each.startswith("file:")] == []
+
+
+@pytest.mark.parametrize("name", ["heavy_top", "quadrotor", "spin_chain"])
+def test_nothing_is_wider_than_a_phone(page, pages, name):
+    """On 390 columns nothing goes over the side, and nothing covers the button that runs it."""
+    show(page, pages(name), width=390, height=844)
+    assert page.run("document.documentElement.scrollWidth") <= 390
+    assert page.run(
+        "(() => { const b = document.getElementById('play').getBoundingClientRect();"
+        "return document.elementFromPoint(b.x + b.width / 2, b.y + b.height / 2).id })()"
+    ) == "play"  # fmt: skip
+
+
+def test_a_slider_moves_the_state_and_the_address(page, pages):
+    """A component of the state follows its slider, and the fragment of the address has it."""
+    show(page, pages("heavy_top"), calm=True)
+    assert not page.run("explorer.isRunning()")  # who prefers less motion starts it
+    page.run("document.getElementById('state').open = true")
+    page.run(
+        "(() => { const s = document.getElementById('state-Pi1'); s.value = 1.5;"
+        "s.dispatchEvent(new Event('input')) })()"
+    )
+    assert page.run("explorer.model.x[0]") == pytest.approx(1.5, abs=0.1)
+    shared = page.run("location.hash")
+    state = re.search(r"x=([^&]*)", shared)[1].split(",")
+    assert float(state[0]) == pytest.approx(page.run("explorer.model.x[0]"))
+    page.run("(() => { explorer.model.x[0] = 0; location.hash = '' })()")
+    page.run(f"location.hash = {json.dumps(shared)}")
+    page.wait("Math.abs(explorer.model.x[0]) > 1")
+
+
+def test_keys_run_pause_and_move(page, pages):
+    """Space runs and pauses, arrows move the point of the sphere, R goes back to the start."""
+    show(page, pages("rigid_body"), calm=True)
+    page.run("document.getElementById('sphere').focus()")
+    page.key(" ", "Space", " ")
+    page.wait("explorer.model.clock[0] > 0.05")
+    page.key(" ", "Space", " ")
+    assert not page.run("explorer.isRunning()")
+    assert "Paused" in page.run("document.getElementById('status').textContent")
+    before = page.run("[...explorer.model.x]")
+    page.key("ArrowRight", "ArrowRight")
+    after = page.run("[...explorer.model.x]")
+    assert np.linalg.norm(after) == pytest.approx(np.linalg.norm(before))
+    assert np.linalg.norm(np.subtract(after, before)) > 0.1
+    page.key("r", "KeyR", "r")
+    assert page.run("explorer.model.clock[0]") == 0
+
+
+def test_a_hand_turns_the_body_and_moves_a_particle(page, pages):
+    """What is dragged is the thing: the vertical turns with the body, the place with the ball."""
+    show(page, pages("chaplygin_ball"), calm=True)
+    before = page.run("[...explorer.model.x]")
+    middle = page.run("(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.centre))")
+    page.drag(middle, [middle[0] + 60, middle[1] + 30])
+    after = page.run("[...explorer.model.x]")
+    assert after[:3] == before[:3]
+    assert np.linalg.norm(after[3:]) == pytest.approx(1)
+    assert np.linalg.norm(np.subtract(after[3:], before[3:])) > 0.05
+    show(page, pages("kepler"), calm=True)
+    at = page.run("(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))")
+    page.drag(at, [at[0] + 40, at[1] - 25])
+    found = page.run(
+        "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))"
+    )
+    assert found == pytest.approx([at[0] + 40, at[1] - 25], abs=2)
+
+
+def test_a_click_cuts_and_crossings_become_dots(page, pages):
+    """The section button, a click on the sphere, and a motion leave dots, all on one side."""
+    show(page, pages("heavy_top"), calm=True)
+    page.run("document.getElementById('cut').click()")
+    box = page.run(
+        "(b => [b.x + b.width / 2, b.y + b.height / 2])"
+        "(document.getElementById('sphere').getBoundingClientRect())"
+    )
+    page.mouse("mousePressed", *box)
+    page.mouse("mouseReleased", *box)
+    assert page.run("explorer.panel.plane !== null")
+    page.run("explorer.run(true)")
+    page.wait("explorer.panel.dots.length > 3")
+    assert page.run("explorer.panel.dots.every(d => Math.abs(d[0]) <= 1 && Number.isFinite(d[1]))")
+    assert "crossings" in page.run("document.getElementById('section-told').textContent")
+
+
+@pytest.mark.parametrize("name", ["heavy_top", "chaplygin_ball", "snakeboard"])
+def test_kernels_in_the_browser_equal_those_of_numpy(page, pages, name):
+    """At 10 000 points: bit for bit without functions beyond sqrt, else within the bound."""
+    show(page, pages(name), calm=True)
+    rng = np.random.default_rng(3)
+    rendered = render(read_spec(derivations_folder() / f"{name}.toml"))
+    with load_texts(rendered.texts) as system:
+        parameters = rng.uniform(0.5, 2.0, system.PARAMETERS.size)
+        state = rng.uniform(0.2, 1.5, (system.STATE.size, 10_000))
+        wanted = system.rhs(state, parameters, target="numpy").T
+        found = page.run(
+            f"(() => {{ const p = Float64Array.from({parameters.tolist()});"
+            f"return {json.dumps(state.T.tolist())}.map(x => [...kernel.rhs(Float64Array.from(x), "
+            f"p, new Float64Array({system.STATE.size}))]) }})()"
+        )
+        found = np.array(found, dtype=float)
+        if not system.elementary:
+            np.testing.assert_array_equal(found, wanted)
+        assert (
+            np.abs(found - wanted) <= 1e-12 * np.maximum(np.abs(wanted).max(axis=1), 1)[:, None]
+        ).all()
+
+
+def test_a_browser_without_webgl_is_told(pages):
+    """The page says what it needs, where it says at other times what a hand does."""
+    with browser() as plain:
+        plain.call(
+            "Page.addScriptToEvaluateOnNewDocument",
+            source="HTMLCanvasElement.prototype.getContext = () => null",
+        )
+        plain.open(pages("rigid_body"))
+        assert "WebGL 2" in plain.run("document.getElementById('hint').textContent")
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("name", ["heavy_top", "quadrotor", "snakeboard", "spin_chain"])
+def test_axe_finds_no_violation(page, pages, name, dark):
+    """axe-core, from AXE_CORE or node_modules, has nothing to say of the page in either scheme."""
+    place = Path(os.environ.get("AXE_CORE", "node_modules/axe-core/axe.min.js"))
+    if not place.is_file():
+        pytest.skip(
+            "axe-core is not here: npm install --no-save axe-core, or set AXE_CORE to axe.min.js"
+        )
+    show(page, pages(name), dark=dark, calm=True)
+    page.run("document.querySelectorAll('details').forEach(each => { each.open = true })")
+    page.run(place.read_text() + ";0")
+    found = page.run(
+        "axe.run().then(r => [r.violations.map(v => [v.id, v.nodes[0].html]), r.passes.length])"
+    )
+    assert found[0] == []
+    assert found[1] > 10
