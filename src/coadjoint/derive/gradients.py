@@ -11,13 +11,14 @@ Read next: `coadjoint.derive.vectors`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.shapes import shapes
 
 #: Derivatives of functions of one scalar.
@@ -45,21 +46,35 @@ class Addend:
     @property
     def tree(self) -> tree.Node:
         """The addend as one tree, without its sign."""
-        parts = list(self.above) + ([] if self.vector is None else [self.vector])
-        size = abs(self.number)
+        size, upper = _write_turns(abs(self.number), self.above, 4)
+        size, under = _write_turns(size, self.below, Fraction(1, 4))
+        parts = list(upper) + ([] if self.vector is None else [self.vector])
         if size.numerator != 1 or not parts:
             parts.insert(0, tree.Number(Fraction(size.numerator)))
         whole = parts[0]
         for part in parts[1:]:
             whole = tree.Binary("*", whole, part)
         lower = [tree.Number(Fraction(size.denominator))] * (size.denominator != 1)
-        lower += list(self.below)
+        lower += list(under)
         if lower:
             bottom = lower[0]
             for part in lower[1:]:
                 bottom = tree.Binary("*", bottom, part)
             whole = tree.Binary("/", whole, bottom)
         return whole
+
+
+def _write_turns(
+    size: Fraction, factors: tuple[tree.Node, ...], four: Fraction | int
+) -> tuple[Fraction, list[tree.Node]]:
+    """Factors with pi in the place of atan(1), which is a quarter of it."""
+    written = [tree.Name("pi") if each == _EIGHTH else each for each in factors]
+    for each in factors:
+        size = size / four if each == _EIGHTH else size
+    return size, written
+
+
+_EIGHTH = tree.Call("atan", (tree.Number(Fraction(1)),))
 
 
 def total_of(addends: list[Addend]) -> tree.Node:
@@ -73,43 +88,54 @@ def total_of(addends: list[Addend]) -> tree.Node:
 
 
 def gradient(
-    formula: tree.Node, by: tree.Node, scope: Mapping[str, Shape]
+    formula: tree.Node, by: tree.Node, parts: Sequence[str], scope: Mapping[str, Shape]
 ) -> list[Addend] | None:
     """The gradient of a scalar formula by a whole variable; None where it is not found.
 
     Args:
         formula: The tree.
-        by: The variable: a name, or a quantity of a member without a component.
-        scope: Shapes of whole quantities.
+        by: The variable: a name.
+        parts: Names of its components, by which formulas may be written too.
+        scope: Shapes of quantities and components.
     """
-    found = dict[tuple[object, ...], Addend]()
     try:
         known = shapes(formula, scope)
-        for each in _pull(formula, Addend(), by, known):
-            key = (each.above, each.below, each.vector)
-            sum_ = each.number + (found[key].number if key in found else 0)
-            found[key] = replace(each, number=sum_)
-    except (_GivesUp, AssertionError):
+        found = _collect(_pull(formula, Addend(), by, known))
+        slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
+    except (_GivesUp, AssertionError, ExpressionError):
         return None
+    if any(slopes):
+        found.append(Addend(vector=tree.Call("vector", tuple(map(total_of, slopes)))))
+    return found
+
+
+def _collect(addends: Iterable[Addend]) -> list[Addend]:
+    """Addends that differ by their numbers alone, added up."""
+    found = dict[tuple[object, ...], Addend]()
+    for each in addends:
+        key = (each.above, each.below, each.vector)
+        number = each.number + (found[key].number if key in found else 0)
+        found[key] = replace(each, number=number)
     return [each for each in found.values() if each.number]
 
 
+def _is_it(node: tree.Node, by: tree.Node) -> bool:
+    """Whether a node is the variable; a component may be written with a subscript."""
+    if isinstance(node, tree.Index) and isinstance(by, tree.Name):
+        return "".join(map(str, (node.name, *node.indices))) == by.name
+    return node == by
+
+
 def _names(node: tree.Node, by: tree.Node) -> bool:
-    """Whether a formula depends on a variable, or on a component of it."""
-    wanted = by.name if isinstance(by, tree.Name) else ""
-    return any(
-        each == by
-        or (isinstance(each, tree.Index | tree.Name) and wanted and each.name.startswith(wanted)
-            and each.name[len(wanted):].strip("_0123456789") == "")
-        for each in tree.walk(node)
-    )
+    """Whether a formula names a variable."""
+    return any(_is_it(each, by) for each in tree.walk(node))
 
 
 def _pull(
     node: tree.Node, adjoint: Addend, by: tree.Node, known: Mapping[int, Shape]
 ) -> Iterator[Addend]:
     """What an adjoint gives below a node."""
-    if node == by:
+    if _is_it(node, by):
         yield adjoint
         return
     if not _names(node, by):
@@ -240,8 +266,8 @@ def _over(adjoint: Addend, divisor: tree.Node) -> Addend:
         rest = list(adjoint.above)
         rest.remove(divisor)
         return replace(adjoint, above=tuple(rest))
-    base, exponent = (divisor.base, divisor.exponent) if isinstance(divisor, tree.Power) else (
-        divisor, 1
+    base, exponent = (
+        (divisor.base, divisor.exponent) if isinstance(divisor, tree.Power) else (divisor, 1)
     )
     lower, power = list(adjoint.below), exponent
     for each in adjoint.below:

@@ -19,7 +19,6 @@ from coadjoint.notation import names
 from coadjoint.notation.written import Written, enclose
 from coadjoint.spec.model import Shape
 
-
 #: The left side of a line of a derivation, in every format.
 Left = Written
 #: How kernels call a time derivative.

@@ -7,8 +7,9 @@ Read next: `coadjoint.derive.vectors`, which searches among them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field as attribute
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from dataclasses import field as attribute
 from fractions import Fraction
 from itertools import product as pairs
 
@@ -19,13 +20,21 @@ from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.setting import assemble, weigh
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, dense
+from coadjoint.groups.quaternions import Quaternion
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.shapes import shapes
 from coadjoint.spec.model import Variable
 
 #: Vectors of a vocabulary; their products are as many as the square of it.
 MOST_WORDS = 24
+#: Rows of matrices beyond which products of matrices cost too much.
+MOST_ROWS = 10
+#: Matrices beyond which their products are too many.
+MOST_MATRICES = 8
+#: Vectors beyond which products of three are too many.
+MOST_PLAIN = 8
 
 
 @dataclass(frozen=True)
@@ -55,19 +64,23 @@ class Vocabulary:
     scalars: frozenset[str]
     named: tuple[tuple[tree.Node, tree.Node], ...] = ()
     shapes: Mapping[str, Shape] = attribute(default_factory=dict)
-    levels: int = 3
+    levels: int = 4
 
     def candidates(self, like: Value, level: int) -> Iterator[Candidate]:
         """Candidates of the shape of a value: the words; their products; products of products."""
         if isinstance(like[0], tuple):
             yield from self._matrices(like, level)
             return
-        own = [word for word in self.words if _size(word.value) == _size(like)]
+        whole = [word for word in self.words if _size(word.value) == _size(like)]
+        own = [word for word in whole if level > 1 or not _is_sum(word.node)]
         yield from own
+        if level and len(like) == 4:
+            yield from self._turns(own)
         if level and len(like) == 3:
             yield from self._crosses(own, own)
-        if level > 1 and len(like) == 3:
+        if level > 2 and len(like) == 3:
             plain = [word for word in own if isinstance(word.node, tree.Name | tree.Member)]
+            plain = plain[:MOST_PLAIN]
             yield from self._crosses(plain, list(self._crosses(plain, plain)))
 
     def _crosses(self, left: list[Candidate], right: list[Candidate]) -> Iterator[Candidate]:
@@ -77,11 +90,29 @@ class Vocabulary:
                 if any(map(bool, value)):
                     yield Candidate(tree.Call("cross", (a.node, b.node)), value)
 
+    def _turns(self, own: list[Candidate]) -> Iterator[Candidate]:
+        """Quaternions times vectors, from either side."""
+        for q, w in pairs(own, self.words):
+            if _size(w.value) == (3,):
+                a, b = Quaternion(*q.value), Quaternion.pure(w.value)
+                yield Candidate(tree.Call("qmul", (q.node, w.node)), (a * b).components)
+                yield Candidate(tree.Call("qmul", (w.node, q.node)), (b * a).components)
+
     def _matrices(self, like: Value, level: int) -> Iterator[Candidate]:
         own = [w for w in self.words if _size(w.value) == _size(like)]
+        if len(like) == 3:
+            vectors = [w for w in self.words if _size(w.value) == (3,)]
+            own += [Candidate(tree.Call("hat", (w.node,)), dense.hat(w.value)) for w in vectors]
         yield from own
-        if not level:
+        if not level or not len(like[0]) == len(like) <= MOST_ROWS:
             return
+        if len(own) > MOST_MATRICES:
+            return
+        if level > 1:
+            squares = [
+                Candidate(tree.Power(w.node, 2), dense.product(w.value, w.value)) for w in own
+            ]
+            own += squares
         for n, a in enumerate(own):
             for b in own[n + 1 :]:
                 value = dense.commutator(a.value, b.value)
@@ -110,42 +141,61 @@ class Vocabulary:
         return Addend(Fraction(monomial.number), above, tuple(below))
 
 
+def _is_sum(node: tree.Node) -> bool:
+    """Whether a vector is a sum, which is written addend by addend where that goes."""
+    while isinstance(node, tree.Negate):
+        node = node.operand
+    return isinstance(node, tree.Binary) and node.operator in "+-"
+
+
 def _power(base: tree.Node, exponent: int) -> tree.Node:
     return base if exponent == 1 else tree.Power(base, exponent)
+
+
+def _is_power_of(node: tree.Node, names: Collection[str]) -> bool:
+    """Whether a factor is a power of one of some names."""
+    base = node.base if isinstance(node, tree.Power) else node
+    return isinstance(base, tree.Name) and base.name in names
 
 
 def _size(value: Value) -> tuple[int, ...]:
     return (len(value), len(value[0])) if isinstance(value[0], tuple) else (len(value),)
 
 
-def make_vocabulary(equations: Equations) -> Vocabulary:
-    """The vocabulary of Equations in the declared state."""
-    return _Maker(equations).make()
+def make_vocabulary(equations: Equations, *, closed: bool = True) -> Vocabulary:
+    """The vocabulary of Equations in the declared state.
+
+    Args:
+        equations: What was derived.
+        closed: Whether definitions are put in; else velocities and multipliers are symbols.
+    """
+    return _Maker(equations, closed=closed).make()
 
 
 class _Maker:
     """The making of one vocabulary."""
 
-    def __init__(self, equations: Equations) -> None:
-        self.equations, self.spec = equations, equations.spec
+    def __init__(self, equations: Equations, *, closed: bool) -> None:
+        self.equations, self.spec, self.closed = equations, equations.spec, closed
         self.setting, self.field = equations.setting, equations.setting.field
         quantities = [*self.spec.variables, *self.spec.parameters, *self.spec.inputs]
         quantities += self.spec.jets
         self.shapes: dict[str, Shape] = {q.name: _shape(q) for q in quantities}
+        self.shapes |= {name: () for q in quantities for name in q.components}
         self.velocities = self._find_velocities()
-        self.values = {name: self._close(self.setting.values[name]) for name in self.shapes}
+        whole = [name for name, shape in self.shapes.items() if shape]
+        self.values = {name: self._close(self.setting.values[name]) for name in whole}
         self.named = list[tuple[tree.Node, tree.Node]]()
 
     def make(self) -> Vocabulary:
         targets = tuple(self._targets())
         words = list(self._words())
         words += self._velocity(targets)
-        scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
         return Vocabulary(
             field=self.field,
             targets=targets,
             words=tuple(_without_equal(words)),
-            scalars=frozenset(scalars),
+            scalars=self._scalar_names(),
             named=tuple(self.named),
             shapes=self.shapes,
         )
@@ -153,6 +203,8 @@ class _Maker:
     def _close(self, value: Value) -> Value:
         if isinstance(value, tuple):
             return tuple(map(self._close, value))
+        if not self.closed:
+            return value
         closed = self.equations.close(value)
         return self.field.substitute(closed, self.velocities) if self.velocities else closed
 
@@ -166,33 +218,51 @@ class _Maker:
     def _targets(self) -> Iterator[Candidate]:
         """The rates of whole vectors and matrices of the state."""
         names, rates = self.equations.variables, self.equations.exact.rates
-        by_name = {
-            name: self._close(rate) for name, rate in zip(names, rates, strict=True)
-        }
+        by_name = {name: self._close(rate) for name, rate in zip(names, rates, strict=True)}
         for variable in self.spec.state:
-            if variable.value_shape:
+            if variable.value_shape and set(variable.components) <= by_name.keys():
                 yield Candidate(tree.Name(variable.name), assemble(variable, by_name))
 
     def _words(self) -> Iterator[Candidate]:
         """Declared vectors, then those in formulas, then gradients of the energy."""
         variables = {v.name for v in self.spec.variables}
+        given = {v.name for v in self.spec.defined} if self.spec.constraints and self.closed else ()
         order = [n for n in self.shapes if n in variables]
         order += [n for n in self.shapes if n not in variables]
         diagonal = set(_diagonals(self._formulas()))
         for name in order:
-            if self.shapes[name] and name not in diagonal:
+            if self.shapes[name] and name not in diagonal and name not in given:
                 yield Candidate(tree.Name(name), self.values[name])
+        yield from self._others()
         yield from self._slopes_along_space()
         yield from self._further_slopes()
         formulas = list(self._formulas())
-        found = [node for formula in formulas for node in self._vectors_in(formula)]
-        found += self._gradients()
+        found = list(self._gradients())
+        found += [node for formula in formulas for node in self._vectors_in(formula)]
         for node in found[:MOST_WORDS]:
+            if any(isinstance(n, tree.Name) and n.name in given for n in tree.walk(node)):
+                continue
             try:
                 value = self._close(interpret(node, self.setting.values, self.field))
             except (DerivationError, KeyError):
                 continue
             yield Candidate(node, value)
+
+    def _others(self) -> Iterator[Candidate]:
+        """Multipliers of constraints, and vectors that the spec gives short names."""
+        if not self.closed:
+            for each in self.spec.constraints:
+                if len(each.shape) == 1:
+                    self.shapes[each.reaction] = each.shape
+                    yield Candidate(tree.Name(each.reaction), self.setting.reactions[each.reaction])
+        for each in self.spec.definitions:
+            if each.shape and not each.arguments and len(each.shape) == 1:
+                try:
+                    value = self._close(interpret(each.tree, self.setting.values, self.field))
+                except (DerivationError, KeyError):
+                    continue
+                self.shapes[each.name] = each.shape
+                yield Candidate(tree.Name(each.name), value)
 
     def _formulas(self) -> Iterator[tree.Node]:
         spec = self.spec
@@ -206,7 +276,7 @@ class _Maker:
         """Vectors that a formula is made of: matrices times vectors, and other parts of it."""
         try:
             known = shapes(formula, self.shapes)
-        except Exception:  # noqa: BLE001 - names of observables, which this scope has not
+        except ExpressionError:  # names of multipliers, which this scope has not
             return
         for node in tree.walk(formula):
             if len(known[id(node)]) == 1 and not isinstance(node, tree.Name):
@@ -261,10 +331,26 @@ class _Maker:
             for variable in self.spec.variables:
                 if len(variable.value_shape) != 1:
                     continue
-                found = gradient(formula.tree, tree.Name(variable.name), self.shapes)
+                node, parts = tree.Name(variable.name), variable.components
+                found = gradient(formula.tree, node, parts, self.shapes)
                 if found:
+                    yield from (self._without_scalars(each).tree for each in found if each.vector)
                     yield total_of(found)
-                    yield from (each.tree for each in found if len(found) > 1 and each.vector)
+
+    def _without_scalars(self, addend: Addend) -> Addend:
+        """An addend without its number and its parameters, which a line has before it."""
+        names = self._scalar_names()
+        above, below = (
+            tuple(each for each in part if not _is_power_of(each, names))
+            for part in (addend.above, addend.below)
+        )
+        return Addend(Fraction(1), above, below, addend.vector)
+
+    def _scalar_names(self) -> frozenset[str]:
+        scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
+        if not self.closed:
+            scalars |= {each.reaction for each in self.spec.constraints if not each.shape}
+        return frozenset(scalars)
 
     def _velocity(self, targets: Iterable[Candidate]) -> Iterator[Candidate]:
         """The velocity of a momentum that is a matrix, where it has no name: dh/dM."""

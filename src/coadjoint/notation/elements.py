@@ -52,9 +52,7 @@ def write_element(field: Field, element: Element) -> Written:
     return replace(whole, text=element_text(field, element))
 
 
-def _write_term(
-    field: Field, monomial: Monomial, bottom: list[tuple[Written, int]]
-) -> Written:
+def _write_term(field: Field, monomial: Monomial, bottom: list[tuple[Written, int]]) -> Written:
     """One addend over its divisors, numbers and parameters first."""
     value, upper = monomial.number, list[tuple[tuple[bool, bool], Written]]()
     lower = [power(part, exponent) for part, exponent in bottom]

@@ -11,17 +11,23 @@ from dataclasses import replace
 from functools import cache
 from typing import Final
 
-from coadjoint.notation.written import SUM, Written, add, attach, divide, literal, number, operator, row
+from coadjoint.notation.written import (
+    SUM,
+    Written,
+    add,
+    attach,
+    divide,
+    literal,
+    number,
+    operator,
+    row,
+)
 
 _GREEK: Final = {
     name: (rf"\{name}", letter)
     for name, letter in (
         pair.split(":")
-        for pair in (
-            "alpha:α beta:β gamma:γ delta:δ epsilon:ε zeta:ζ eta:η theta:θ iota:ι kappa:κ "
-            "lambda:λ mu:μ nu:ν xi:ξ pi:π rho:ρ sigma:σ tau:τ upsilon:υ phi:φ chi:χ psi:ψ omega:ω "
-            "Gamma:Γ Delta:Δ Theta:Θ Lambda:Λ Xi:Ξ Pi:Π Sigma:Σ Upsilon:Υ Phi:Φ Psi:Ψ Omega:Ω"
-        ).split()
+        for pair in ["alpha:α", "beta:β", "gamma:γ", "delta:δ", "epsilon:ε", "zeta:ζ", "eta:η", "theta:θ", "iota:ι", "kappa:κ", "lambda:λ", "mu:μ", "nu:ν", "xi:ξ", "pi:π", "rho:ρ", "sigma:σ", "tau:τ", "upsilon:υ", "phi:φ", "chi:χ", "psi:ψ", "omega:ω", "Gamma:Γ", "Delta:Δ", "Theta:Θ", "Lambda:Λ", "Xi:Ξ", "Pi:Π", "Sigma:Σ", "Upsilon:Υ", "Phi:Φ", "Psi:Ψ", "Omega:Ω"]
     )
 }
 _SHORT: Final = {"eps": "epsilon", "lam": "lambda"}
@@ -150,7 +156,9 @@ def partial(function: Written, by: Written) -> Written:
     """A partial derivative."""
     d = operator("&#x2202;")
     made = divide(
-        Written("", rf"\partial {function.latex}", row(d, function.mathml), f"diff {function.typst}"),
+        Written(
+            "", rf"\partial {function.latex}", row(d, function.mathml), f"diff {function.typst}"
+        ),
         Written("", rf"\partial {by.latex}", row(d, by.mathml), f"diff {by.typst}"),
     )
     return replace(made, text=f"d{function.text}/d{by.text}")

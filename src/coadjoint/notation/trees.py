@@ -195,7 +195,7 @@ def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Writ
     return Written(
         f"sum({text}, {term.text})",
         rf"\sum_{{{latex}}} {own.latex}",
-        row(f'<munder><mo>∑</mo>{row(mathml)}</munder>', own.mathml),
+        row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
         f"sum_({typst}) {own.typst}",
         SUM + 1,
         outer,

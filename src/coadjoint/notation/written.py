@@ -64,8 +64,7 @@ def number(value: Fraction | int) -> Written:
     value = Fraction(value)
     size, sign = abs(value), -1 if value < 0 else 1
     top, bottom = (
-        Written(str(n), str(n), f"<mn>{n}</mn>", str(n))
-        for n in (size.numerator, size.denominator)
+        Written(str(n), str(n), f"<mn>{n}</mn>", str(n)) for n in (size.numerator, size.denominator)
     )
     if size.denominator == 1:
         return replace(top, sign=sign)
@@ -188,9 +187,9 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
     """A function of arguments, by its name in upright letters."""
     inner = [add([part]) if part.sign < 0 else part for part in arguments]
     known = function in _LATEX_FUNCTIONS
-    comma = "".join(
-        piece for part in inner for piece in (operator(","), part.mathml)
-    ).removeprefix(operator(","))
+    comma = "".join(piece for part in inner for piece in (operator(","), part.mathml)).removeprefix(
+        operator(",")
+    )
     latex_name = rf"\{function}" if known else rf"\operatorname{{{function}}}"
     return Written(
         f"{function}({', '.join(part.text for part in inner)})",
@@ -203,7 +202,7 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
 
 
 _LATEX_FUNCTIONS: Final = frozenset(
-    "sin cos tan exp log arcsin arccos arctan sinh cosh tanh det min max".split()
+    ["sin", "cos", "tan", "exp", "log", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "det", "min", "max"]
 )
 
 
@@ -233,8 +232,10 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
     inner = [add([part]) if part.sign < 0 else part for part in parts]
     first, last = marks
     braces = {"{": r"\{", "}": r"\}"}
-    opens, closes = (r"\lvert ", r"\rvert") if first == "|" else (
-        braces.get(first, first), braces.get(last, last)
+    opens, closes = (
+        (r"\lvert ", r"\rvert")
+        if first == "|"
+        else (braces.get(first, first), braces.get(last, last))
     )
     typst = ", ".join(part.typst for part in inner)
     return Written(
