@@ -34,6 +34,8 @@ from coadjoint.spec.model import Variable
 MOST_TERMS = 4000
 #: Nodes of a formula beyond which it is no shorter than its components.
 LONGEST = 70
+#: Words beyond which products whose terms cancel are not searched for.
+MOST_WORDS = 20
 #: Products that one line may have.
 MOST_PRODUCTS = 8
 
@@ -118,12 +120,24 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
         vocabulary: What may stand in the sum.
         value: A vector or a matrix of elements, closed.
     """
-    field, rest, found = vocabulary.field, value, list[Addend]()
-    if _count(field, rest) > MOST_TERMS:
+    field = vocabulary.field
+    if _count(field, value) > MOST_TERMS:
         return None
+    # products of which every term is there; else those whose terms cancel with one another's
+    matrix, words = isinstance(value[0], tuple), len(vocabulary.words)
+    for whole in (True, False) if not matrix and words <= MOST_WORDS else (True,):
+        found = _search(vocabulary, value, whole=whole)
+        if found is not None:
+            return found
+    return None
+
+
+def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend] | None:
+    """Addends taken one by one, the simplest kind of product first."""
+    like, found = rest, list[Addend]()
     for level in range(vocabulary.levels):
         while len(found) < MOST_PRODUCTS and any(map(bool, entries(rest))):
-            step = _best(vocabulary, vocabulary.candidates(value, level), rest)
+            step = _best(vocabulary, vocabulary.candidates(like, level), rest, whole=whole)
             if step is None:
                 break
             addend, rest = step
@@ -134,22 +148,23 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
 
 
 def _best(
-    vocabulary: Vocabulary, candidates: Iterable[Candidate], rest: Value
+    vocabulary: Vocabulary, candidates: Iterable[Candidate], rest: Value, *, whole: bool
 ) -> tuple[Addend, Value] | None:
     """The candidate that leaves fewest terms, with what it leaves."""
     field, best = vocabulary.field, None
-    fewest = _count(field, rest)
+    fewest = before = _count(field, rest)
     for candidate in candidates:
         for factor in _factors(vocabulary, candidate.value, rest):
             left = subtract(rest, scale(factor, candidate.value))
             count = _count(field, left)
-            if count < fewest:
-                written = vocabulary.write_scalar(factor)
-                if written is None:
-                    continue
-                fewest, best = count, (_put(written, candidate.node), left)
-                if not count:
-                    return best
+            if count >= fewest or (whole and before - count < _count(field, candidate.value)):
+                continue
+            written = vocabulary.write_scalar(factor)
+            if written is None:
+                continue
+            fewest, best = count, (_put(written, candidate.node), left)
+            if not count:
+                return best
     return best
 
 

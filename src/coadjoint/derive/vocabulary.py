@@ -180,7 +180,7 @@ class _Maker:
         self.setting, self.field = equations.setting, equations.setting.field
         quantities = [*self.spec.variables, *self.spec.parameters, *self.spec.inputs]
         quantities += self.spec.jets
-        self.shapes: dict[str, Shape] = {q.name: _shape(q) for q in quantities}
+        self.shapes: dict[str, Shape] = {q.name: value_shape(q) for q in quantities}
         self.shapes |= {name: () for q in quantities for name in q.components}
         self.velocities = self._find_velocities()
         whole = [name for name, shape in self.shapes.items() if shape]
@@ -374,7 +374,7 @@ class _Maker:
         yield Candidate(tree.Name(name), value)
 
 
-def _shape(quantity: object) -> Shape:
+def value_shape(quantity: object) -> Shape:
     if isinstance(quantity, Variable) and quantity.elements:
         from coadjoint.algebra.matrices import size
 

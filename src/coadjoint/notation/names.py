@@ -27,7 +27,42 @@ _GREEK: Final = {
     name: (rf"\{name}", letter)
     for name, letter in (
         pair.split(":")
-        for pair in ["alpha:α", "beta:β", "gamma:γ", "delta:δ", "epsilon:ε", "zeta:ζ", "eta:η", "theta:θ", "iota:ι", "kappa:κ", "lambda:λ", "mu:μ", "nu:ν", "xi:ξ", "pi:π", "rho:ρ", "sigma:σ", "tau:τ", "upsilon:υ", "phi:φ", "chi:χ", "psi:ψ", "omega:ω", "Gamma:Γ", "Delta:Δ", "Theta:Θ", "Lambda:Λ", "Xi:Ξ", "Pi:Π", "Sigma:Σ", "Upsilon:Υ", "Phi:Φ", "Psi:Ψ", "Omega:Ω"]
+        for pair in [
+            "alpha:α",
+            "beta:β",
+            "gamma:γ",
+            "delta:δ",
+            "epsilon:ε",
+            "zeta:ζ",
+            "eta:η",
+            "theta:θ",
+            "iota:ι",
+            "kappa:κ",
+            "lambda:λ",
+            "mu:μ",
+            "nu:ν",
+            "xi:ξ",
+            "pi:π",
+            "rho:ρ",
+            "sigma:σ",
+            "tau:τ",
+            "upsilon:υ",
+            "phi:φ",
+            "chi:χ",
+            "psi:ψ",
+            "omega:ω",
+            "Gamma:Γ",
+            "Delta:Δ",
+            "Theta:Θ",
+            "Lambda:Λ",
+            "Xi:Ξ",
+            "Pi:Π",
+            "Sigma:Σ",
+            "Upsilon:Υ",
+            "Phi:Φ",
+            "Psi:Ψ",
+            "Omega:Ω",
+        ]
     )
 }
 _SHORT: Final = {"eps": "epsilon", "lam": "lambda"}

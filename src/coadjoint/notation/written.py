@@ -202,7 +202,22 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
 
 
 _LATEX_FUNCTIONS: Final = frozenset(
-    ["sin", "cos", "tan", "exp", "log", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "det", "min", "max"]
+    [
+        "sin",
+        "cos",
+        "tan",
+        "exp",
+        "log",
+        "arcsin",
+        "arccos",
+        "arctan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "det",
+        "min",
+        "max",
+    ]
 )
 
 
