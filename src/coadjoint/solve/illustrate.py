@@ -1,0 +1,41 @@
+"""Pictures of motions for documents: drawn from the generated code, as an address of data.
+
+Comes in: a System. Goes out: the picture and its caption. Read next: `coadjoint.solve.plot`.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coadjoint.solve.system import System
+
+#: Units of time that a picture covers, and samples along it.
+SPAN, SAMPLES = 20.0, 1500
+
+
+def illustrate(system: System) -> dict[str, str]:
+    """A motion from the defaults of the spec.
+
+    Raises:
+        CoadjointError: matplotlib is not installed, or the motion has no defaults to begin at.
+    """
+    from coadjoint.solve.plot import draw
+
+    solution = system.simulate(
+        None, (0.0, SPAN), samples=SAMPLES, target="numpy", progress=False
+    )
+    place = io.BytesIO()
+    draw(solution).savefig(place, format="png", dpi=120)
+    data = base64.b64encode(place.getvalue()).decode("ascii")
+    return {"picture": f"data:image/png;base64,{data}", "caption": describe(system)}
+
+
+def describe(system: System) -> str:
+    """What the picture shows."""
+    return (
+        f"A motion from the defaults of the spec over {SPAN:g} {system.unit('time')}, by the "
+        "generated code. Colour is time, dark at the start."
+    )
