@@ -83,7 +83,10 @@ def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     total = ", ".join(f"{number} {verdict}" for verdict, number in counts.items())
     words = [(about, " ".join(sentences)) for about, sentences in _sentences(claims)]
     words += [
-        ("Found", f"{each['statement']} ({each['method']}; {each.get('scope', '')})".replace("; )", ")"))
+        (
+            "Found",
+            f"{each['statement']} ({each['method']}; {each.get('scope', '')})".replace("; )", ")"),
+        )
         for each in certificate.get("findings", ())
     ]
     yield section("What was proved", "proofs", law=f"{len(claims)} claims: {total}", words=words)

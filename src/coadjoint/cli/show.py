@@ -95,10 +95,12 @@ def make_chapter(
 
 def draw_motion(system: str) -> dict[str, Any]:
     """A picture of a motion as an address of data, with its caption; empty without matplotlib."""
+    from coadjoint.cli.simulate import find_start
     from coadjoint.errors import CoadjointError
     from coadjoint.solve.illustrate import illustrate
 
     try:
-        return illustrate(load_system(system))
+        loaded = load_system(system)
+        return illustrate(loaded, find_start(loaded, ()))
     except CoadjointError:
         return {}

@@ -174,7 +174,9 @@ def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
     widths = [min(width, 58) for width in widths]
     listed = list[str]()
     for row in texts:
-        cells = [textwrap.wrap(cell, width) or [""] for cell, width in zip(row, widths, strict=True)]
+        cells = [
+            textwrap.wrap(cell, width) or [""] for cell, width in zip(row, widths, strict=True)
+        ]
         for n in range(max(map(len, cells))):
             parts = [c[n] if n < len(c) else "" for c in cells]
             line = "  ".join(part.ljust(w) for part, w in zip(parts, widths, strict=True))

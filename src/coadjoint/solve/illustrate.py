@@ -7,35 +7,35 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
 
 
-def illustrate(system: System) -> dict[str, str]:
-    """A motion from the defaults of the spec.
+def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
+    """A motion from a state, with the default parameters.
 
     Raises:
-        CoadjointError: matplotlib is not installed, or the motion has no defaults to begin at.
+        CoadjointError: matplotlib is not installed, or the motion cannot begin there.
     """
     from coadjoint.solve.plot import draw
 
-    solution = system.simulate(
-        None, (0.0, SPAN), samples=SAMPLES, target="numpy", progress=False
-    )
+    solution = system.simulate(state, (0.0, SPAN), samples=SAMPLES, progress=False)
     place = io.BytesIO()
     draw(solution).savefig(place, format="png", dpi=120)
     data = base64.b64encode(place.getvalue()).decode("ascii")
-    return {"picture": f"data:image/png;base64,{data}", "caption": describe(system)}
+    return {"picture": f"data:image/png;base64,{data}", "caption": describe(solution)}
 
 
-def describe(system: System) -> str:
+def describe(solution: Solution) -> str:
     """What the picture shows."""
     return (
-        f"A motion from the defaults of the spec over {SPAN:g} {system.unit('time')}, by the "
+        f"A motion with the default parameters over {SPAN:g} {solution.unit('time')}, by the "
         "generated code. Colour is time, dark at the start."
     )
