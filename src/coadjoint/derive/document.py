@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 
 from coadjoint.derive.charts import declared_charts
@@ -21,6 +21,7 @@ from coadjoint.derive.setting import Declared
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vocabulary import value_shape
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.notation.names import unit
 from coadjoint.notation.trees import write_tree
 from coadjoint.notation.written import Written
 from coadjoint.spec.core import tree
@@ -57,7 +58,9 @@ def document(equations: Equations) -> Document:
     names = _Names.of(equations, form)
     sections = [_motion(equations, form, names)]
     if spec.family is not None:
-        sections += show_members(equations)
+        generic, *others = show_members(equations)
+        whole = f"{sections[0].law}; {generic.law}" if sections[0].vectors else generic.law
+        sections = [replace(sections[0], law=whole, lines=generic.lines), *others]
     sections.append(_symbols(equations, names))
     if spec.definitions:
         sections.append(_definitions(spec.definitions, names))
@@ -115,7 +118,7 @@ def _motion(equations: Equations, form: VectorForm | None, names: _Names) -> Sec
         for line in (form.lines if form else ())
     )
     family = equations.spec.family is not None
-    law = _say_what_is_left(form.missing if form else (), bool(vectors), family)
+    law = _say_what_is_left(form.missing if form else (), bool(vectors))
     return Section(
         title="Equations of motion",
         law=law,
@@ -131,14 +134,14 @@ def _is_solved(field: Field, value: Element) -> bool:
     return any(is_of_kernel(name) and field[name] == value for name in field.reach(value))
 
 
-def _say_what_is_left(missing: Sequence[str], some: bool, family: bool) -> str:
+def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
     """What a reader is told of the vector form."""
     if some and missing:
         listed = ", ".join(dict.fromkeys(missing))
         return f"by vectors where that form was found; those of {listed} in components alone"
     if some:
         return "by vectors, each line found equal to its components in exact arithmetic"
-    return "of the generic member, which follow" if family else "in components"
+    return "in components"
 
 
 def _principle(equations: Equations) -> Section:
@@ -179,17 +182,34 @@ def _symbols(equations: Equations, names: _Names) -> Section:
             seen.add(base)
             shown = names.write(tree.Member(base, family.index.name, 0, ()))
             label = f"{base}[{family.index.name}]"
-        rows.append((whole_line(shown), label, getattr(each, "doc", "") or _role(each), each.unit))
+        rows.append(
+            (
+                whole_line(shown),
+                label,
+                getattr(each, "doc", "") or _role(each),
+                unit_line(each.unit),
+            )
+        )
     if family is None:
         for own in equations.exact.emitted:
             if own.name not in known:
-                doc = "energy" if own.name == "energy" else "emitted with the motion"
+                doc = _EMITTED.get(own.name.rstrip("0123456789"), "emitted with the motion")
+                if own.name.endswith("_reaction"):
+                    doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
                 shown = names.write(tree.Name(own.name))
-                rows.append((whole_line(shown), own.name, doc, own.unit))
-    rows.append((whole_line(symbol("t")), "time", "time", spec.units.time))
+                rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
+    rows.append((whole_line(symbol("t")), "time", "time", unit_line(spec.units.time)))
     return Section(
         title="Symbols", law="", law_latex="", lines=(), rows=tuple(rows), kind="symbols"
     )
+
+
+def unit_line(text: str) -> Line | str:
+    """A unit as a formula; words where the spec does not tell."""
+    return whole_line(unit(text)) if text else "not told by the spec"
+
+
+_EMITTED = {"energy": "energy", "casimir": "Casimir, kept by every motion of the bracket"}
 
 
 def _role(quantity: object) -> str:

@@ -23,7 +23,8 @@ from coadjoint.notation.written import (
     row,
 )
 
-_GREEK: Final = {
+
+GREEK: Final = {
     name: (rf"\{name}", letter)
     for name, letter in (
         pair.split(":")
@@ -97,6 +98,10 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     numbers = parts["numbers"] or ""
     below = [number(int(each)) for each in numbers.split("_") if each]
     base, words = _split_word(parts["base"])
+    inner = _PARTS.fullmatch(base)
+    if words and inner is not None and inner["numbers"]:  # p1_pairs
+        base = inner["base"]
+        below = [*(number(int(each)) for each in inner["numbers"].split("_") if each), *below]
     symbol = _letter(base, bold=bold) or _word(parts["base"], bold=bold)
     if _letter(base, bold=bold) is not None and words:
         below = [_letter(words, bold=False) or _word(words, bold=False), *below]
@@ -110,7 +115,10 @@ def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Wri
     own = literal(index, mathml=f"<mn>{index}</mn>") if index.isdigit() else literal(index)
     if shift:
         own = add([own, number(int(shift))])
-    base = name(parts["base"] if parts else of, bold=bold)
+    word = parts["base"] if parts else of
+    if _split_word(word)[1]:
+        return replace(attach(name(of, bold=bold), below=[own]), text=f"{of}[{place}]")
+    base = name(word, bold=bold)
     numbers = [number(int(n)) for n in ((parts and parts["numbers"]) or "").split("_") if n]
     shown = f"{of}[{place}]"
     made = attach(base, below=[own, *numbers], dot=dot)
@@ -139,14 +147,15 @@ def _is_symbol(text: str) -> bool:
 def _split_word(base: str) -> tuple[str, str]:
     """A letter and the word below it: ``p_phi``, ``Omega_momentum``, ``I_s``."""
     head, _, rest = base.partition("_")
-    return (head, rest) if rest and _letter(head, bold=False) is not None else (base, "")
+    plain = head.rstrip("0123456789")
+    return (head, rest) if rest and _letter(plain, bold=False) is not None else (base, "")
 
 
 def _letter(base: str, *, bold: bool) -> Written | None:
     """A letter, Latin or Greek; None for a word."""
     base = _SHORT.get(base, base)
-    if base in _GREEK:
-        latex, letter = _GREEK[base]
+    if base in GREEK:
+        latex, letter = GREEK[base]
     elif len(base) == 1:
         latex = letter = base
     else:
@@ -197,3 +206,24 @@ def partial(function: Written, by: Written) -> Written:
         Written("", rf"\partial {by.latex}", row(d, by.mathml), f"diff {by.typst}"),
     )
     return replace(made, text=f"d{function.text}/d{by.text}")
+
+
+def unit(text: str) -> Written:
+    r"""A unit, upright, with its exponents raised.
+
+    >>> unit("kg m^2/s").latex
+    '\\mathrm{kg\\,m^{2}/s}'
+    """
+    spaced = text.replace("*", " ")
+    latex = re.sub(r"\^(-?\d+)", r"^{\1}", spaced).replace(" ", r"\,")
+    pieces = list[str]()
+    for label, exponent, sign in re.findall(r"([^\s/^]+)(?:\^(-?\d+))?([\s/]*)", spaced):
+        shown = f'<mi mathvariant="normal">{label}</mi>'
+        if exponent:
+            minus = operator("−") if exponent.startswith("-") else ""
+            shown = f"<msup>{shown}{row(minus, f'<mn>{exponent.lstrip(chr(45))}</mn>')}</msup>"
+        pieces.append(shown)
+        if sign:
+            pieces.append(operator("/") if "/" in sign else '<mspace width="0.2em"/>')
+    typst = re.sub(r"([A-Za-z]+)", r'"\1"', re.sub(r"\^(-?\d+)", r"^(\1)", spaced))
+    return literal(text, rf"\mathrm{{{latex}}}", row(*pieces) if pieces else "<mrow></mrow>", typst)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
-from coadjoint.notation.names import differentiate_along, name
+from coadjoint.notation.names import differentiate_along, name, partial
 from coadjoint.notation.written import (
     ATOM,
     CROSS,
@@ -94,9 +94,9 @@ def write_tree(
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
                 return attach(name(text), below=[number(i) for i in indices])
-            case tree.Member(name=text, index=index, shift=shift, indices=indices):
+            case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
-                place = literal(index) if not shift else add([literal(index), number(shift)])
+                place = _place(part)
                 made = attach(whole, below=[place, *map(number, indices)])
                 return replace(made, text=f"{text}[{', '.join([place.text, *map(str, indices)])}]")
             case tree.Entry(name=text):
@@ -119,8 +119,18 @@ def write_tree(
                 return write_sum(indices, below, sign)
             case tree.Call(function="diag"):
                 return call("diag", below)
+            case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
+                written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)
+                return written if text not in known else _rate(below[0])
+            case tree.Call(function="rate_of", arguments=(tree.Member() as of,)) if not of.indices:
+                whole = name(of.name, bold=len(shapes.get(of.name, ())) == 1)
+                place = _place(of)
+                shown = attach(whole, below=[place], dot=True)
+                return replace(shown, text=f"d{of.name}[{place.text}]/dt")
             case tree.Call(function="rate_of"):
                 return _rate(below[0])
+            case tree.Call(function="slope_of"):
+                return partial(*below)
             case tree.Call(function="along_space"):
                 return differentiate_along(below[0])
             case tree.Call(function=function) if function in CALLS:
@@ -130,6 +140,15 @@ def write_tree(
         raise AssertionError(part)
 
     return tree.fold(node, value)
+
+
+def _place(member: tree.Member) -> Written:
+    """The place of a member: ``i+1``."""
+    own = literal(member.index)
+    if not member.shift:
+        return own
+    shifted = add([own, number(member.shift)])
+    return replace(shifted, text=shifted.text.replace(" ", ""))
 
 
 def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:

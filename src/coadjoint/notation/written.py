@@ -20,6 +20,8 @@ POWER: Final = 3
 ATOM: Final = 4
 #: Addends on one line of LaTeX.
 ADDENDS: Final = 7
+#: Characters of text that a line of a page may be long, about.
+WIDTH: Final = 80
 
 
 @dataclass(frozen=True)
@@ -91,22 +93,34 @@ def add(parts: Sequence[Written]) -> Written:
         return number(0)
     if len(parts) == 1 and parts[0].sign > 0:
         return parts[0]
-    texts, mathml = (["", "", ""], list[str]())
+    texts, rows, width = ["", "", ""], [list[str]()], 0
     for n, part in enumerate(parts):
         plain = bracket(replace(part, sign=1), PRODUCT if part.sign < 0 else SUM)
         sign = "-" if part.sign < 0 else "+"
         first = sign if sign == "-" else ""
-        own = (plain.text, plain.latex, plain.typst)
         breaks = n and n % ADDENDS == 0
-        for k, text in enumerate(own):
+        for k, text in enumerate((plain.text, plain.latex, plain.typst)):
             joint = f" {sign} "
             if k == 1 and breaks:
                 joint = f" \\\\\n&\\quad {sign} "
             texts[k] += (joint if n else first) + text
+        width += len(plain.text)
+        if width > WIDTH and n:
+            rows.append([])
+            width = len(plain.text)
         if n or first:
-            mathml.append(operator("&#x2212;" if sign == "-" else "+"))
-        mathml.append(plain.mathml)
-    return Written(texts[0], texts[1], row(*mathml), texts[2], SUM)
+            rows[-1].append(operator("&#x2212;" if sign == "-" else "+"))
+        rows[-1].append(plain.mathml)
+    return Written(texts[0], texts[1], _stack(rows), texts[2], SUM)
+
+
+def _stack(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of a sum below each other."""
+    if len(rows) == 1:
+        return row(*rows[0])
+    left = 'style="text-align: left; padding: 0.25em 0"'
+    cells = (f"<mtr><mtd {left}>{row(*each)}</mtd></mtr>" for each in rows)
+    return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
 
 
 def negate(part: Written) -> Written:

@@ -17,6 +17,7 @@ from typing import Any, Final
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 
+from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.render.environment import make_environment
 
 FORMATS: Final = ("text", "latex", "html", "typst")
@@ -99,6 +100,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "abreast": count_abreast,
         "described": describe,
         "listed": list_rows,
+        "law": write_law,
         "sides": split_sides,
         "tabulated": tabulate,
         "wrapped": wrap,
@@ -136,7 +138,7 @@ def escape_typst(text: str) -> str:
     r"""Text in which Typst sees no command.
 
     >>> escape_typst("#read('x')")
-    "\\\\#read('x')"
+    "\\#read('x')"
     """
     return make_printable(text).translate(_TYPST_ESCAPES)
 
@@ -147,11 +149,20 @@ _ESCAPES: Final[Mapping[str, Callable[[str], str]]] = {
 }
 
 
+def write_law(section: Mapping[str, Any]) -> Markup | str:
+    """The general law of a section: a formula where it is one that is known, else its words."""
+    if is_formula(section["law_latex"], section["law"]):
+        maths = to_mathml(section["law_latex"])
+        if maths is not None:
+            return Markup(maths)  # noqa: S704 - made of elements alone, its letters escaped
+    return str(section["law"])
+
+
 def split_sides(mathml: str) -> tuple[str, str]:
     """The two sides of an equation as formulas of their own, the sign with the second one.
 
     >>> split_sides("<math><mrow><mi>a</mi><mo>=</mo><mi>b</mi></mrow></math>")[0]
-    '<math><mi>a</mi></math>'
+    '<math displaystyle="true"><mi>a</mi></math>'
     """
     inner = mathml.removeprefix("<math>").removesuffix("</math>")
     inner = inner.removeprefix("<mrow>").removesuffix("</mrow>")
@@ -159,7 +170,7 @@ def split_sides(mathml: str) -> tuple[str, str]:
     if not sign:
         return "", mathml
     shown = f'<mrow><mo rspace="0.3em">=</mo>{right}</mrow>'
-    return f"<math>{left}</math>", f'<math displaystyle="true">{shown}</math>'
+    return f'<math displaystyle="true">{left}</math>', f'<math displaystyle="true">{shown}</math>'
 
 
 def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
