@@ -15,7 +15,7 @@ from coadjoint.derive.records import Left
 from coadjoint.exact import Element, Field
 from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import name
-from coadjoint.notation.written import Written, add
+from coadjoint.notation.written import Written, add, stack
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def equal(left: Left, right: Written) -> Line:
     return Line(
         f"{left.text} = {right.text}",
         f"{left.latex} &= {right.latex}",
-        f"<math><mrow>{left.mathml}<mo>=</mo>{right.mathml}</mrow></math>",
+        f"<math><mrow>{left.mathml}<mo>=</mo>{stack(right)}</mrow></math>",
         f"{left.typst} &= {right.typst}",
     )
 

@@ -12,7 +12,7 @@ from typing import Final
 from markupsafe import escape
 
 from coadjoint.notation.names import GREEK
-from coadjoint.notation.written import row
+from coadjoint.notation.written import DOT_ABOVE, row
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+|[^\s]")
 _OPERATORS: Final = {
@@ -23,7 +23,7 @@ _OPERATORS: Final = {
     "otimes": "⊗", "top": "⊤", "infty": "∞",
 }  # fmt: skip
 _SPACES: Final = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", " ": "0.3em"}
-_ACCENTS: Final = {"dot": "˙", "ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯"}
+_ACCENTS: Final = {"ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯"}
 _SIZES: Final = ("left", "right", "big", "Big", "bigl", "bigr", "Bigl", "Bigr")
 _WORDS: Final = ("sin", "cos", "tan", "exp", "log", "det", "min", "max")
 _LETTERS: Final = {"varphi": "φ", "ell": "ℓ"}
@@ -36,8 +36,8 @@ class _UnknownError(Exception):
 def to_mathml(latex: str) -> str | None:
     r"""MathML of a law.
 
-    >>> to_mathml(r"\dot\mu")
-    '<math><mover accent="true"><mi>μ</mi><mo>˙</mo></mover></math>'
+    >>> to_mathml(r"\mu_1")
+    '<math><msub><mi>μ</mi><mn>1</mn></msub></math>'
     >>> to_mathml(r"\unknown") is None
     True
     """
@@ -97,6 +97,8 @@ class _Reader:
             return f"<mo>{_OPERATORS[name]}</mo>"
         if name in _SPACES:
             return f'<mspace width="{_SPACES[name]}"/>'
+        if name == "dot":
+            return f"<mover>{self._atom()}{DOT_ABOVE}</mover>"
         if name in _ACCENTS:
             return f'<mover accent="true">{self._atom()}<mo>{_ACCENTS[name]}</mo></mover>'
         if name in _SIZES:

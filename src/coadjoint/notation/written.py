@@ -13,6 +13,8 @@ from typing import Final
 
 from markupsafe import escape
 
+#: The dot of a rate; the accent of fonts is too small to be seen on a bold letter.
+DOT_ABOVE: Final = '<mo style="font-size: 1.3em">.</mo>'
 #: How tightly a piece binds: a sum, a product, a power, a single symbol.
 SUM: Final = 1
 PRODUCT: Final = 2
@@ -35,6 +37,7 @@ class Written:
         typst: Typst in math mode.
         level: How tightly it binds: `SUM`, `PRODUCT`, `POWER` or `ATOM`.
         sign: -1 where the piece is minus what is written, for a sum to write between addends.
+        rows: Of a sum, the pieces of MathML that fit on each line of a page.
     """
 
     text: str
@@ -43,6 +46,7 @@ class Written:
     typst: str
     level: int = ATOM
     sign: int = 1
+    rows: tuple[tuple[str, ...], ...] = ()
 
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
@@ -111,15 +115,16 @@ def add(parts: Sequence[Written]) -> Written:
         if n or first:
             rows[-1].append(operator("&#x2212;" if sign == "-" else "+"))
         rows[-1].append(plain.mathml)
-    return Written(texts[0], texts[1], _stack(rows), texts[2], SUM)
+    whole = row(*(piece for each in rows for piece in each))
+    return Written(texts[0], texts[1], whole, texts[2], SUM, rows=tuple(map(tuple, rows)))
 
 
-def _stack(rows: Sequence[Sequence[str]]) -> str:
-    """Rows of a sum below each other."""
-    if len(rows) == 1:
-        return row(*rows[0])
+def stack(part: Written) -> str:
+    """The MathML of a right side, a long sum in rows below each other."""
+    if len(part.rows) < 2:
+        return part.mathml
     left = 'style="text-align: left; padding: 0.25em 0"'
-    cells = (f"<mtr><mtd {left}>{row(*each)}</mtd></mtr>" for each in rows)
+    cells = (f"<mtr><mtd {left}>{row(*each)}</mtd></mtr>" for each in part.rows)
     return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
 
 
@@ -286,7 +291,7 @@ def attach(
     latex, mathml, typst = base.latex, base.mathml, base.typst
     if dot:
         latex = rf"\dot{{{latex}}}"
-        mathml = f'<mover accent="true">{mathml}{operator("&#x2D9;")}</mover>'
+        mathml = f"<mover>{mathml}{DOT_ABOVE}</mover>"
         typst = f"dot({typst})"
     if below:
         comma = ",".join(each.latex for each in below)

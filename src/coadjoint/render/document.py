@@ -12,6 +12,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import groupby
 from typing import Any, Final
 
 from jinja2.sandbox import ImmutableSandboxedEnvironment
@@ -69,16 +70,21 @@ def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     return {"picture": "", "caption": "", **document, "sections": sections}
 
 
-def render_book(chapters: Sequence[Mapping[str, Any]], parts: Sequence[Mapping[str, Any]]) -> str:
+def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
     """One page of many derivations, with a table of contents and a table of all proofs.
 
     Args:
-        chapters: Documents with ``name``, ``number`` and ``kernel`` in addition.
-        parts: What each part of the contents is called, and the numbers of its chapters.
+        chapters: Documents in order with, in addition, ``name``, ``part``, ``routes``, ``marks``
+            by route, and how many claims are ``proved``, and how many ``others`` there are.
     """
     filled = [_fill(chapter) for chapter in chapters]
+    contents = [
+        {"title": part, "chapters": list(own)}
+        for part, own in groupby(filled, key=lambda chapter: chapter["part"])
+    ]
+    routes = list(dict.fromkeys(route for chapter in filled for route in chapter["routes"]))
     template = _environment("html").get_template("document/book.html.j2")
-    return template.render(chapters=filled, parts=parts)
+    return template.render(chapters=filled, parts_of_book=contents, routes=routes)
 
 
 @cache
