@@ -107,7 +107,7 @@ def mark_routes(routes: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[st
         if verdict == "proved" and statement.startswith(f"the route {route} gives the same")
     }
     marks = {route: "=" if route in proved else "?" for route in routes}
-    return marks | {route: "1" for route in routes[:1]}
+    return marks | dict.fromkeys(routes[:1], "1")
 
 
 def find_place(source: str) -> tuple[int, int]:

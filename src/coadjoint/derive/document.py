@@ -16,7 +16,7 @@ from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.generic import show_members
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
-from coadjoint.derive.records import Step, is_of_kernel, rate, symbol
+from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vocabulary import value_shape
@@ -24,6 +24,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.notation.names import unit
 from coadjoint.notation.trees import write_tree
 from coadjoint.notation.written import Written
+from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.model import Definition, Reconstructed
@@ -55,7 +56,7 @@ def document(equations: Equations) -> Document:
     """The document of a derivation: what was found, how, and what is emitted with it."""
     spec = equations.spec
     form = vector_form(equations) if equations.chart is None else None
-    names = _Names.of(equations, form)
+    names = _Names.of(spec, form)
     sections = [_motion(equations, form, names)]
     if spec.family is not None:
         generic, *others = show_members(equations)
@@ -87,9 +88,8 @@ class _Names:
     written: Mapping[str, Written]
 
     @classmethod
-    def of(cls, equations: Equations, form: VectorForm | None) -> _Names:
-        """Of Equations, and of the vectors that were found in them."""
-        spec = equations.spec
+    def of(cls, spec: Spec, form: VectorForm | None) -> _Names:
+        """Of a spec, and of the vectors that were found in its equations."""
         quantities = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
         shapes = {each.name: value_shape(each) for each in quantities}
         shapes |= {each.name: each.shape for each in spec.definitions if each.shape}
@@ -167,7 +167,30 @@ def theorem_of(route: str) -> str:
 
 def _symbols(equations: Equations, names: _Names) -> Section:
     """Every name with its meaning and its unit."""
-    spec = equations.spec
+    spec, emitted = equations.spec, equations.exact.emitted
+    rows = _list_symbols(spec, names, emitted if spec.family is None else ())
+    return Section(
+        title="Symbols", law="", law_latex="", lines=(), rows=tuple(rows), kind="symbols"
+    )
+
+
+def symbol_rows(spec: Spec) -> list[tuple[Line | str, ...]]:
+    """The names of a spec with meaning and unit, under their heads."""
+    return _list_symbols(spec, _Names.of(spec, None), ())
+
+
+def write_formulas(spec: Spec) -> list[Line]:
+    """The Lagrangian and the Hamiltonian of a spec."""
+    names, given = _Names.of(spec, None), (("l", spec.lagrangian), ("h", spec.hamiltonian))
+    return [
+        equal(symbol(name), names.write(each.sums or each.tree)) for name, each in given if each
+    ]
+
+
+def _list_symbols(
+    spec: Spec, names: _Names, emitted: Sequence[Emitted]
+) -> list[tuple[Line | str, ...]]:
+    """Names, as they are written, with meaning and unit."""
     declared: list[Declared | Reconstructed] = [*spec.variables, *spec.parameters, *spec.inputs]
     declared += spec.reconstruction
     rows = list[tuple[Line | str, ...]]([("symbol", "name", "meaning", "unit")])
@@ -190,18 +213,15 @@ def _symbols(equations: Equations, names: _Names) -> Section:
                 unit_line(each.unit),
             )
         )
-    if family is None:
-        for own in equations.exact.emitted:
-            if own.name not in known:
-                doc = _EMITTED.get(own.name.rstrip("0123456789"), "emitted with the motion")
-                if own.name.endswith("_reaction"):
-                    doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
-                shown = names.write(tree.Name(own.name))
-                rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
+    for own in emitted:
+        if own.name not in known:
+            doc = _EMITTED.get(own.name.rstrip("0123456789"), "emitted with the motion")
+            if own.name.endswith("_reaction"):
+                doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
+            shown = names.write(tree.Name(own.name))
+            rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
     rows.append((whole_line(symbol("t")), "time", "time", unit_line(spec.units.time)))
-    return Section(
-        title="Symbols", law="", law_latex="", lines=(), rows=tuple(rows), kind="symbols"
-    )
+    return rows
 
 
 def unit_line(text: str) -> Line | str:

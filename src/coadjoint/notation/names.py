@@ -23,7 +23,6 @@ from coadjoint.notation.written import (
     row,
 )
 
-
 GREEK: Final = {
     name: (rf"\{name}", letter)
     for name, letter in (

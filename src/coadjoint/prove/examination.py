@@ -63,6 +63,16 @@ class Examination:
     casimirs: Completeness
     certificate: Certificate
 
+    def __repr__(self) -> str:
+        facts = f"Lie-Poisson rank {self.rank}, {len(self.casimirs.found)} Casimirs found"
+        return f"<Examination of {self.algebra.name}: {facts}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_examination
+
+        return show_examination(self)
+
     def as_record(self) -> dict[str, Any]:
         """The examination as JSON values; the README says what each key holds."""
         algebra = self.algebra

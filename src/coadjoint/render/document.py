@@ -70,6 +70,12 @@ def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     return {"picture": "", "caption": "", **document, "sections": sections}
 
 
+def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
+    """Sections as HTML without a page around them."""
+    filled = _fill({"sections": sections})["sections"]
+    return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
+
+
 def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
     """One page of many derivations, with a table of contents and a table of all proofs.
 

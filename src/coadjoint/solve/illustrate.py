@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import io
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
+#: Dots for an inch of it: two for each point of a page.
+RESOLUTION = 100
 
 
 def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
@@ -26,9 +29,11 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
     """
     from coadjoint.solve.plot import draw
 
-    solution = system.simulate(state, (0.0, SPAN), samples=SAMPLES, progress=False)
+    with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
+        warnings.simplefilter("ignore")
+        solution = system.simulate(state, (0.0, SPAN), samples=SAMPLES, progress=False)
     place = io.BytesIO()
-    draw(solution).savefig(place, format="png", dpi=120)
+    draw(solution).savefig(place, format="png", dpi=RESOLUTION)
     data = base64.b64encode(place.getvalue()).decode("ascii")
     return {"picture": f"data:image/png;base64,{data}", "caption": describe(solution)}
 

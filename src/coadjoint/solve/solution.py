@@ -476,4 +476,6 @@ class Solution:
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        return f"<pre>{escape(repr(self))}</pre>"
+        from coadjoint.notebook import show_solution
+
+        return show_solution(self)
