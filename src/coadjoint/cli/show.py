@@ -15,6 +15,7 @@ from typing import Any
 import click
 
 from coadjoint.cli.arguments import (
+    complete_route,
     format_option,
     is_path,
     load_system,
@@ -31,7 +32,11 @@ from coadjoint.resources import systems_folder
 
 @click.command("show")
 @system_argument
-@click.option("--route", help="One of the spec's routes. Default: the first, which is emitted.")
+@click.option(
+    "--route",
+    shell_complete=complete_route,
+    help="One of the spec's routes. Default: the first, which is emitted.",
+)
 @click.option("--methods", is_flag=True, help="Which methods of integration keep what, and why.")
 @format_option("text", "latex", "html", "typst", "json")
 @output_option

@@ -30,7 +30,7 @@ _SLOPES = {
 }
 
 
-class _GivesUp(Exception):
+class _GivesUpError(Exception):
     """The formula holds something of which no adjoint is known here."""
 
 
@@ -102,7 +102,7 @@ def gradient(
         known = shapes(formula, scope)
         found = _collect(_pull(formula, Addend(), by, known))
         slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
-    except (_GivesUp, AssertionError, ExpressionError):
+    except (_GivesUpError, AssertionError, ExpressionError):
         return None
     if any(slopes):
         found.append(Addend(vector=tree.Call("vector", tuple(map(total_of, slopes)))))
@@ -175,7 +175,7 @@ def _pull(
         case tree.Call(function="sqrt", arguments=(a,)):
             yield from down(a, _over(replace(adjoint, number=adjoint.number / 2), node))
         case _:
-            raise _GivesUp
+            raise _GivesUpError
 
 
 def _pull_product(left, right, adjoint, down, known, by):  # type: ignore[no-untyped-def]
@@ -194,7 +194,7 @@ def _pull_product(left, right, adjoint, down, known, by):  # type: ignore[no-unt
         g = _vector_of(adjoint)
         yield from down(right, replace(adjoint, vector=tree.Binary("*", turned, g)))
     else:
-        raise _GivesUp
+        raise _GivesUpError
 
 
 def _is_symmetric(node: tree.Node) -> bool:
@@ -211,14 +211,14 @@ def _is_symmetric(node: tree.Node) -> bool:
 
 def _vector_of(adjoint: Addend) -> tree.Node:
     if adjoint.vector is None:
-        raise _GivesUp
+        raise _GivesUpError
     return adjoint.vector
 
 
 def _with(adjoint: Addend, vector: tree.Node) -> Addend:
     """A scalar adjoint times a vector."""
     if adjoint.vector is not None:
-        raise _GivesUp
+        raise _GivesUpError
     sign = 1
     while isinstance(vector, tree.Negate):
         vector, sign = vector.operand, -sign

@@ -50,10 +50,10 @@ def rate(name: str) -> Left:
 
 
 def member(of: str, place: str, *, dot: bool = False) -> Left:
-    """What a member has, by its place: ``q[i+1]``.
+    r"""What a member has, by its place: ``q[i+1]``.
 
     >>> member("q", "i+1").text, member("r2", "i", dot=True).latex
-    ('q[i+1]', '\\\\dot{r}_{i,2}')
+    ('q[i+1]', '\\dot{r}_{i,2}')
     """
     return names.member(of, place, dot=dot)
 

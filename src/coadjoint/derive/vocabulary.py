@@ -354,7 +354,7 @@ class _Maker:
 
     def _velocity(self, targets: Iterable[Candidate]) -> Iterator[Candidate]:
         """The velocity of a momentum that is a matrix, where it has no name: dh/dM."""
-        energy, momenta = self.equations.exact.energy, self.setting.momenta
+        energy = self.equations.exact.energy
         if energy is None or self.setting.velocities or self.spec.algebra is None:
             return
         whole = [v for v in self.spec.state if v.role == "momentum" and v.value_shape]
@@ -375,6 +375,7 @@ class _Maker:
 
 
 def value_shape(quantity: object) -> Shape:
+    """The shape of a declared quantity in formulas."""
     if isinstance(quantity, Variable) and quantity.elements:
         from coadjoint.algebra.matrices import size
 

@@ -14,7 +14,7 @@ from markupsafe import escape
 from coadjoint.notation.names import GREEK
 from coadjoint.notation.written import DOT_ABOVE, row
 
-_TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+|[^\s]")
+_PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+|[^\s]")
 _OPERATORS: Final = {
     "partial": "∂", "nabla": "∇", "cdot": "⋅", "times": "×", "diamond": "⋄", "sum": "∑",
     "int": "∫", "circ": "∘", "mp": "∓", "pm": "±", "mapsto": "↦", "wedge": "∧", "to": "→",
@@ -42,7 +42,7 @@ def to_mathml(latex: str) -> str | None:
     True
     """
     try:
-        reader = _Reader(_TOKEN.findall(latex))
+        reader = _Reader(_PIECE.findall(latex))
         return f"<math>{row(*reader.row(stop=''))}</math>"
     except (_UnknownError, IndexError):
         return None
@@ -51,13 +51,13 @@ def to_mathml(latex: str) -> str | None:
 class _Reader:
     """One reading of one law."""
 
-    def __init__(self, tokens: list[str]) -> None:
-        self.tokens, self.at = tokens, 0
+    def __init__(self, pieces: list[str]) -> None:
+        self.pieces, self.at = pieces, 0
 
     def row(self, stop: str) -> list[str]:
-        """Elements up to a token, with what is above and below them."""
+        """Elements up to a piece, with what is above and below them."""
         parts = list[str]()
-        while self.at < len(self.tokens) and self.tokens[self.at] != stop:
+        while self.at < len(self.pieces) and self.pieces[self.at] != stop:
             parts.append(self._scripted())
         if stop:
             self._take()
@@ -65,12 +65,12 @@ class _Reader:
 
     def _take(self) -> str:
         self.at += 1
-        return self.tokens[self.at - 1]
+        return self.pieces[self.at - 1]
 
     def _scripted(self) -> str:
         """One element with its subscript and its superscript."""
         base, scripts = self._atom(), dict[str, str]()
-        while self.at < len(self.tokens) and self.tokens[self.at] in ("_", "^", "'"):
+        while self.at < len(self.pieces) and self.pieces[self.at] in ("_", "^", "'"):
             kind = self._take()
             scripts["^" if kind == "'" else kind] = "<mo>′</mo>" if kind == "'" else self._atom()
         match sorted(scripts):
@@ -83,12 +83,12 @@ class _Reader:
         return base
 
     def _atom(self) -> str:
-        token = self._take()
-        if token == "{":
+        piece = self._take()
+        if piece == "{":
             return row(*self.row(stop="}"))
-        if not token.startswith("\\"):
-            return _plain(token)
-        name = token[1:]
+        if not piece.startswith("\\"):
+            return _plain(piece)
+        name = piece[1:]
         if name in GREEK:
             return f"<mi>{GREEK[name][1]}</mi>"
         if name in _LETTERS:
@@ -118,19 +118,19 @@ class _Reader:
         if self._take() != "{":
             raise _UnknownError
         letters = list[str]()
-        while (token := self._take()) != "}":
-            letters.append(token)
+        while (piece := self._take()) != "}":
+            letters.append(piece)
         text = escape("".join(letters))
         return f'<mi mathvariant="normal">{text}</mi>' if upright else f"<mi>{text}</mi>"
 
 
-def _plain(token: str) -> str:
+def _plain(piece: str) -> str:
     """A letter, a number or a sign."""
-    if token.isdigit():
-        return f"<mn>{token}</mn>"
-    if token.isalpha():
-        return f"<mi>{token}</mi>"
-    return f"<mo>{'−' if token == '-' else escape(token)}</mo>"
+    if piece.isdigit():
+        return f"<mn>{piece}</mn>"
+    if piece.isalpha():
+        return f"<mi>{piece}</mi>"
+    return f"<mo>{'−' if piece == '-' else escape(piece)}</mo>"
 
 
 def is_formula(latex: str, text: str) -> bool:

@@ -19,6 +19,7 @@ from coadjoint.algebra.matrices import convert_entries
 from coadjoint.derive.document import Document
 from coadjoint.derive.lines import Line, Section, formula, formula_line, whole_line
 from coadjoint.derive.records import algebra_bracket, symbol
+from coadjoint.errors import check_type
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.numbers import parameters_in, room_for
 from coadjoint.exact.ranks import CHANCE
@@ -263,6 +264,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     >>> [element_text(found.field, casimir) for casimir in found.casimirs.found]
     ['J1*P1 + J2*P2 + J3*P3', 'P1^2 + P2^2 + P3^2']
     """
+    check_type("examine", algebra, LieAlgebra, 'coadjoint.algebra_by_name("so(3)")')
     field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
     local = algebra.over(field.adopt)
     structure = lie_poisson(local, field, local.basis)

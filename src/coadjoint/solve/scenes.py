@@ -62,10 +62,10 @@ def find_paths(solution: Solution) -> Paths | None:
             values = np.asarray(solution[name]).reshape(dimensions, -1, len(solution))
             names = tuple(f"{name}{n + 1}" for n in range(dimensions))
             return _paths(names, quantity.unit, values.swapaxes(0, 1))
-    if {"x", "y"} <= state.keys() and state["x"].unit == state["y"].unit:
-        if state["x"].shape == state["y"].shape and len(state["x"].shape) <= 1:
-            values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
-            return _paths(("x", "y"), state["x"].unit, values.swapaxes(0, 1))
+    x, y = state.get("x"), state.get("y")
+    if x and y and (x.unit, x.shape) == (y.unit, y.shape) and len(x.shape) <= 1:
+        values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
+        return _paths(("x", "y"), x.unit, values.swapaxes(0, 1))
     return None
 
 

@@ -7,7 +7,6 @@ name, print, plot and export.
 from __future__ import annotations
 
 from functools import cached_property
-from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
