@@ -122,8 +122,13 @@ def _print_blocks(
         for head, cell in zip(heads[1:], others, strict=True):
             if cell:
                 whole = f"{head}: {cell}" if head else cell
-                indent = {"initial_indent": "  ", "subsequent_indent": "    "}
-                lines += textwrap.wrap(whole, max(width, 24), break_on_hyphens=False, **indent)
+                lines += textwrap.wrap(
+                    whole,
+                    max(width, 24),
+                    initial_indent="  ",
+                    subsequent_indent="    ",
+                    break_on_hyphens=False,
+                )
     say("\n".join(lines))
 
 

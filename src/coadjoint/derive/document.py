@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
+from typing import Any
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
@@ -19,7 +20,7 @@ from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, 
 from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.vectors import VectorForm, vector_form
-from coadjoint.derive.vocabulary import value_shape
+from coadjoint.derive.vectors.vocabulary import value_shape
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.notation.names import unit
 from coadjoint.notation.trees import write_tree
@@ -90,7 +91,7 @@ class _Names:
     @classmethod
     def of(cls, spec: Spec, form: VectorForm | None) -> _Names:
         """Of a spec, and of the vectors that were found in its equations."""
-        quantities = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
+        quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
         shapes = {each.name: value_shape(each) for each in quantities}
         shapes |= {each.name: each.shape for each in spec.definitions if each.shape}
         if spec.family is not None:
@@ -147,11 +148,13 @@ def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
 def _principle(equations: Equations) -> Section:
     """The theorem that the route follows."""
     route = equations.route
-    words = (("route", route), ("theorem", theorem_of(route)))
+    words = [("route", route), ("theorem", theorem_of(route))]
     others = [each for each in equations.spec.routes if each != route]
     if others:
-        words += (("proved equal to", ", ".join(others)),)
-    return Section(title="Principle", law="", law_latex="", lines=(), words=words, kind="principle")
+        words.append(("proved equal to", ", ".join(others)))
+    return Section(
+        title="Principle", law="", law_latex="", lines=(), words=tuple(words), kind="principle"
+    )
 
 
 def theorem_of(route: str) -> str:

@@ -264,7 +264,7 @@ OUTER: Final = ("(x)", r"\otimes", "&#x2297;", "times.circle")
 def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
     """Pieces with commas between them, in brackets of a kind: ``[]``, ``{}``, ``()`` or ``||``."""
     inner = [add([part]) if part.sign < 0 else part for part in parts]
-    first, last = marks
+    first, last = marks[0], marks[1]
     braces = {"{": r"\{", "}": r"\}"}
     opens, closes = (
         (r"\lvert ", r"\rvert")

@@ -135,10 +135,12 @@ def draw_coloured(axes: Any, path: Array, time: Array, **options: Any) -> Any:
     from matplotlib.collections import LineCollection
 
     points = path.T  # (T, d)
-    pieces = np.stack([points[:-1], points[1:]], axis=1)
+    pieces: Any = np.stack([points[:-1], points[1:]], axis=1)
     shown = {"cmap": TIME_MAP, "linewidth": 1.3, "capstyle": "round", **options}
     if path.shape[0] == 3:
-        from mpl_toolkits.mplot3d.art3d import Line3DCollection
+        from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
+            Line3DCollection,
+        )
 
         lines: Any = Line3DCollection(pieces, **shown)
         lines.set_array(time[:-1])
@@ -175,7 +177,7 @@ def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
 
     maker = contour_generator(longitude, latitude, energy)
     heights = np.linspace(energy.min(), energy.max(), LEVELS + 2)[1:-1]
-    lines = [line for height in heights for line in maker.lines(height)]
+    lines: list[Any] = [line for height in heights for line in maker.lines(height)]
     return [_on_sphere(line[:, 0], line[:, 1], 1.002 * radius) for line in lines]
 
 

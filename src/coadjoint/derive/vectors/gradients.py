@@ -11,7 +11,7 @@ Read next: `coadjoint.derive.vectors`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -22,7 +22,7 @@ from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.shapes import shapes
 
 #: Derivatives of functions of one scalar.
-_SLOPES = {
+_SLOPES: Mapping[str, Callable[[tree.Node], tree.Node]] = {
     "exp": lambda u: tree.Call(function="exp", arguments=(u,)),
     "sin": lambda u: tree.Call(function="cos", arguments=(u,)),
     "cos": lambda u: tree.Negate(operand=tree.Call(function="sin", arguments=(u,))),
@@ -54,8 +54,10 @@ class Addend:
         whole = parts[0]
         for part in parts[1:]:
             whole = tree.Binary("*", whole, part)
-        lower = [tree.Number(Fraction(size.denominator))] * (size.denominator != 1)
-        lower += list(under)
+        lower = list[tree.Node]()
+        if size.denominator != 1:
+            lower.append(tree.Number(Fraction(size.denominator)))
+        lower += under
         if lower:
             bottom = lower[0]
             for part in lower[1:]:
@@ -178,7 +180,14 @@ def _pull(
             raise _GivesUpError
 
 
-def _pull_product(left, right, adjoint, down, known, by):  # type: ignore[no-untyped-def]
+def _pull_product(
+    left: tree.Node,
+    right: tree.Node,
+    adjoint: Addend,
+    down: Callable[[tree.Node, Addend], Iterator[Addend]],
+    known: Mapping[int, Shape],
+    by: tree.Node,
+) -> Iterator[Addend]:
     """A product: of scalars and anything, or a matrix times a vector."""
     first, second = known[id(left)], known[id(right)]
     if not first:

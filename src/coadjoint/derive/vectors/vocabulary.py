@@ -2,7 +2,7 @@
 
 Comes in: Equations. Goes out: a `Vocabulary`: what the rates of whole quantities are, and products
 of the spec's own vectors, its velocities and the gradients of its energy, by how simple they are.
-Read next: `coadjoint.derive.vectors`, which searches among them.
+Read next: `coadjoint.derive.vectors.recognise`, which searches among them.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from dataclasses import field as attribute
 from fractions import Fraction
 from itertools import product as pairs
+from typing import Any
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.gradients import Addend, gradient, total_of
 from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.setting import assemble, weigh
+from coadjoint.derive.vectors.gradients import Addend, gradient, total_of
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, dense
 from coadjoint.groups.quaternions import Quaternion
@@ -56,6 +57,8 @@ class Vocabulary:
         scalars: Names that may stand before a vector: parameters, and inputs, without components.
         named: Further names and what they stand for.
         shapes: Shapes of whole quantities.
+        values: The value of each name that a printed tree may hold.
+        levels: How many kinds of candidates there are, the simplest first.
     """
 
     field: Field
@@ -64,7 +67,28 @@ class Vocabulary:
     scalars: frozenset[str]
     named: tuple[tuple[tree.Node, tree.Node], ...] = ()
     shapes: Mapping[str, Shape] = attribute(default_factory=dict)
+    values: Mapping[str, Value] = attribute(default_factory=dict)
     levels: int = 4
+
+    def evaluate(self, node: tree.Node) -> Value:
+        """The value of a printed tree, from that of each name in it."""
+        names, spare = dict(self.values), list[tree.Node]()
+
+        def plain(part: tree.Node) -> tree.Node:
+            rebuilt = tree.rebuild(part, [plain(each) for each in tree.children(part)])
+            match rebuilt:
+                case tree.Call(function="qmul", arguments=(a, b)):
+                    sides = (interpret(each, names, self.field) for each in (a, b))
+                    left, right = (
+                        Quaternion(*x) if len(x) == len("wxyz") else Quaternion.pure(x)
+                        for x in sides
+                    )
+                    spare.append(rebuilt)
+                    names[f"_q{len(spare)}"] = (left * right).components
+                    return tree.Name(f"_q{len(spare)}")
+            return rebuilt
+
+        return interpret(plain(node), names, self.field)
 
     def candidates(self, like: Value, level: int) -> Iterator[Candidate]:
         """Candidates of the shape of a value: the words; their products; products of products."""
@@ -178,8 +202,8 @@ class _Maker:
     def __init__(self, equations: Equations, *, closed: bool) -> None:
         self.equations, self.spec, self.closed = equations, equations.spec, closed
         self.setting, self.field = equations.setting, equations.setting.field
-        quantities = [*self.spec.variables, *self.spec.parameters, *self.spec.inputs]
-        quantities += self.spec.jets
+        spec = self.spec
+        quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
         self.shapes: dict[str, Shape] = {q.name: value_shape(q) for q in quantities}
         self.shapes |= {name: () for q in quantities for name in q.components}
         self.velocities = self._find_velocities()
@@ -198,7 +222,19 @@ class _Maker:
             scalars=self._scalar_names(),
             named=tuple(self.named),
             shapes=self.shapes,
+            values=self._name_values(words),
         )
+
+    def _name_values(self, words: Iterable[Candidate]) -> dict[str, Value]:
+        """What every name stands for in a printed tree."""
+        field, setting = self.field, self.setting
+        values = {name: self._close(value) for name, value in setting.values.items()}
+        values |= {word.node.name: word.value for word in words if isinstance(word.node, tree.Name)}
+        values |= {name: field[name] for name in self._scalar_names() if name not in values}
+        uses = {each.function for each in field.adjoined.values()}
+        if "atan" in uses:
+            values.setdefault("pi", 4 * field.call("atan", field.one))
+        return values
 
     def _close(self, value: Value) -> Value:
         if isinstance(value, tuple):
@@ -255,14 +291,14 @@ class _Maker:
                 if len(each.shape) == 1:
                     self.shapes[each.reaction] = each.shape
                     yield Candidate(tree.Name(each.reaction), self.setting.reactions[each.reaction])
-        for each in self.spec.definitions:
-            if each.shape and not each.arguments and len(each.shape) == 1:
+        for short in self.spec.definitions:
+            if short.shape and not short.arguments and len(short.shape) == 1:
                 try:
-                    value = self._close(interpret(each.tree, self.setting.values, self.field))
+                    value = self._close(interpret(short.tree, self.setting.values, self.field))
                 except (DerivationError, KeyError):
                     continue
-                self.shapes[each.name] = each.shape
-                yield Candidate(tree.Name(each.name), value)
+                self.shapes[short.name] = short.shape
+                yield Candidate(tree.Name(short.name), value)
 
     def _formulas(self) -> Iterator[tree.Node]:
         spec = self.spec
