@@ -96,15 +96,19 @@ def _routes(record: Mapping[str, Any]) -> list[str]:
 def mark_routes(routes: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[str, str]:
     """A mark for each route: the code's own, proved equal to it, or neither.
 
-    >>> rows = [("the route b gives the same motion and energy as a", "proved", "normal form")]
+    >>> rows = [("a and b give the same motion, through the map of c", "proved", "normal form")]
     >>> mark_routes(["a", "b", "c"], rows)
     {'a': '1', 'b': '=', 'c': '?'}
     """
+    same = [
+        statement.partition(", through")[0]
+        for statement, verdict, _ in rows
+        if verdict == "proved" and "the same motion" in statement
+    ]
     proved = {
         route
-        for statement, verdict, _ in rows
         for route in routes
-        if verdict == "proved" and statement.startswith(f"the route {route} gives the same")
+        if any(re.search(rf"(?<![\w-]){re.escape(route)}(?![\w-])", each) for each in same)
     }
     marks = {route: "=" if route in proved else "?" for route in routes}
     return marks | dict.fromkeys(routes[:1], "1")

@@ -37,6 +37,7 @@ class Written:
         typst: Typst in math mode.
         level: How tightly it binds: `SUM`, `PRODUCT`, `POWER` or `ATOM`.
         sign: -1 where the piece is minus what is written, for a sum to write between addends.
+        between: Whether it is a product with a sign between its factors.
         rows: Of a sum, the pieces of MathML that fit on each line of a page.
     """
 
@@ -46,6 +47,7 @@ class Written:
     typst: str
     level: int = ATOM
     sign: int = 1
+    between: bool = False
     rows: tuple[tuple[str, ...], ...] = ()
 
 
@@ -142,7 +144,10 @@ def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
     plain = [part for part in plain if part.text != "1"] or [number(1)]
     if len(plain) == 1:
         return replace(plain[0], sign=sign)
-    own = [bracket(part, PRODUCT) for part in plain]
+    *before, last = plain
+    # a product of vectors before another factor could be taken for a part of it
+    own = [bracket(part, POWER if part.between else PRODUCT) for part in before]
+    own.append(bracket(last, PRODUCT))
     return Written(
         joint.join(part.text for part in own),
         r"\,".join(part.latex for part in own),
@@ -252,6 +257,7 @@ def between(left: Written, sign: tuple[str, str, str, str], right: Written) -> W
         f"{a.typst} {typst} {b.typst}",
         PRODUCT,
         outer,
+        between=True,
     )
 
 
