@@ -148,7 +148,8 @@ def _declared(context: click.Context) -> dict[str, Any]:
     """The tables of the spec that a command line names; a shell waits, so nothing is checked."""
     import tomllib
 
-    word = str(context.params.get("system") or "")
+    # behind an option without its value, what was read before it is not yet a parameter
+    word = str(context.params.get("system") or next(iter(context.args), ""))
     path = Path(f"{word}.toml") if _is_own(word) else Path(word)
     if not is_path(word):
         path = derivations_folder() / f"{word}.toml"

@@ -38,6 +38,7 @@ class Written:
         level: How tightly it binds: `SUM`, `PRODUCT`, `POWER` or `ATOM`.
         sign: -1 where the piece is minus what is written, for a sum to write between addends.
         between: Whether it is a product with a sign between its factors.
+        factors: Of a product, its factors; empty for all else.
         rows: Of a sum, the pieces of MathML that fit on each line of a page.
     """
 
@@ -48,6 +49,7 @@ class Written:
     level: int = ATOM
     sign: int = 1
     between: bool = False
+    factors: tuple[Written, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
 
 
@@ -140,7 +142,7 @@ def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
     sign = 1
     for part in parts:
         sign *= part.sign
-    plain = [replace(part, sign=1) for part in parts]
+    plain = [each for p in parts for each in (p.factors or (replace(p, sign=1),))]
     plain = [part for part in plain if part.text != "1"] or [number(1)]
     if len(plain) == 1:
         return replace(plain[0], sign=sign)
@@ -155,6 +157,8 @@ def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
         " ".join(part.typst for part in own),
         PRODUCT,
         sign,
+        between=last.between,
+        factors=tuple(plain),
     )
 
 
