@@ -216,9 +216,12 @@ def _list_symbols(
                 unit_line(each.unit),
             )
         )
+    docs = {each.name: each.doc for each in spec.observables}
     for own in emitted:
         if own.name not in known:
-            doc = _EMITTED.get(own.name.rstrip("0123456789"), "emitted with the motion")
+            doc = docs.get(own.name) or _EMITTED.get(
+                own.name.rstrip("0123456789"), "emitted with the motion"
+            )
             if own.name.endswith("_reaction"):
                 doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
             shown = names.write(tree.Name(own.name))

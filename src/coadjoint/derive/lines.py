@@ -15,7 +15,7 @@ from coadjoint.derive.records import Left
 from coadjoint.exact import Element, Field
 from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import name
-from coadjoint.notation.written import Written, add, stack
+from coadjoint.notation.written import Written, add, stack, stack_latex
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def formula(field: Field, element: Element) -> Line:
 def whole_line(written: Written) -> Line:
     """A formula by itself."""
     whole = add([written]) if written.sign < 0 else written
-    return Line(whole.text, whole.latex, f"<math>{whole.mathml}</math>", whole.typst)
+    return Line(whole.text, stack_latex(whole), f"<math>{whole.mathml}</math>", whole.typst)
 
 
 def formula_line(field: Field, left: Left, right: Element) -> Line:
@@ -76,7 +76,7 @@ def equal(left: Left, right: Written) -> Line:
     right = add([right]) if right.sign < 0 else right
     return Line(
         f"{left.text} = {right.text}",
-        f"{left.latex} &= {right.latex}",
+        f"{left.latex} &= {stack_latex(right)}",
         f"<math><mrow>{left.mathml}<mo>=</mo>{stack(right)}</mrow></math>",
         f"{left.typst} &= {right.typst}",
     )

@@ -42,11 +42,15 @@ def write_element(field: Field, element: Element) -> Written:
     parts = [q for each in field.partial_fractions(element) for q in field.quotients(each)]
     addends = list[Written]()
     for part in parts:
-        bottom = [(_write_factor(field, d), e) for d, e in part.divisors]
-        if not bottom or len(part.monomials) == 1:
-            addends += [_write_term(field, each, bottom) for each in part.monomials]
+        turns = sum(e for d, e in part.divisors if _is_eighth(field, d))
+        scaled = [replace(m, number=m.number * 4**turns) for m in part.monomials]  # 1/atan(1)
+        bottom = [
+            (PI if _is_eighth(field, d) else write_element(field, d), e) for d, e in part.divisors
+        ]
+        if not bottom or len(scaled) == 1:
+            addends += [_write_term(field, each, bottom) for each in scaled]
             continue
-        top = add([_write_term(field, each, []) for each in part.monomials])
+        top = add([_write_term(field, each, []) for each in scaled])
         addends.append(divide(top, multiply([power(d, e) for d, e in bottom])))
     whole = add(addends) if addends else number(0)
     return replace(whole, text=element_text(field, element))
@@ -76,8 +80,12 @@ def _write_term(field: Field, monomial: Monomial, bottom: list[tuple[Written, in
     return negate(made) if value < 0 else made
 
 
-def _write_factor(field: Field, divisor: Element) -> Written:
-    return write_element(field, divisor)
+def _is_eighth(field: Field, divisor: Element) -> bool:
+    """Whether a divisor is an eighth of a turn, ``atan(1)``, and nothing else."""
+    return any(
+        known.function == "atan" and known.argument == 1 and divisor == field[name]
+        for name, known in field.adjoined.items()
+    )
 
 
 def _write_symbol(field: Field, text: str) -> Written:

@@ -40,6 +40,7 @@ class Written:
         between: Whether it is a product with a sign between its factors.
         factors: Of a product, its factors; empty for all else.
         rows: Of a sum, the pieces of MathML that fit on each line of a page.
+        lines: Of a sum, the LaTeX of what fits on each line.
     """
 
     text: str
@@ -51,6 +52,7 @@ class Written:
     between: bool = False
     factors: tuple[Written, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
+    lines: tuple[str, ...] = ()
 
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
@@ -101,17 +103,16 @@ def add(parts: Sequence[Written]) -> Written:
         return number(0)
     if len(parts) == 1 and parts[0].sign > 0:
         return parts[0]
-    texts, rows, width = ["", "", ""], [list[str]()], 0
+    texts, rows, width, lines = ["", "", ""], [list[str]()], 0, list[str]()
     for n, part in enumerate(parts):
         plain = bracket(replace(part, sign=1), PRODUCT if part.sign < 0 else SUM)
         sign = "-" if part.sign < 0 else "+"
         first = sign if sign == "-" else ""
-        breaks = n and n % ADDENDS == 0
+        if n % ADDENDS == 0:
+            lines.append("")
         for k, text in enumerate((plain.text, plain.latex, plain.typst)):
-            joint = f" {sign} "
-            if k == 1 and breaks:
-                joint = f" \\\\\n&\\quad {sign} "
-            texts[k] += (joint if n else first) + text
+            texts[k] += (f" {sign} " if n else first) + text
+        lines[-1] += (f"{' ' * bool(lines[-1])}{sign} " if n else first) + plain.latex
         width += len(plain.text)
         if width > WIDTH and n:
             rows.append([])
@@ -120,7 +121,14 @@ def add(parts: Sequence[Written]) -> Written:
             rows[-1].append(operator("&#x2212;" if sign == "-" else "+"))
         rows[-1].append(plain.mathml)
     whole = row(*(piece for each in rows for piece in each))
-    return Written(texts[0], texts[1], whole, texts[2], SUM, rows=tuple(map(tuple, rows)))
+    return Written(
+        texts[0], texts[1], whole, texts[2], SUM, rows=tuple(map(tuple, rows)), lines=tuple(lines)
+    )
+
+
+def stack_latex(part: Written) -> str:
+    """The LaTeX of a right side, a long sum on further lines of an ``align``."""
+    return " \\\\\n&\\quad ".join(part.lines) if len(part.lines) > 1 else part.latex
 
 
 def stack(part: Written) -> str:

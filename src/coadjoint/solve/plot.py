@@ -171,7 +171,8 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
         axes.plot(*path[:, :1], marker="o", markersize=5, fillstyle="none", linestyle="", **own)
     _limit_space(axes, paths)
     if several:
-        axes.legend(fontsize=8, frameon=False, ncols=min(6, len(paths.members)), loc="upper center")
+        beside = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5)}
+        axes.legend(fontsize=8, frameon=False, **beside)
     axes.set_title("open circle: start, filled: end", fontsize=9, color="#5b6570")
 
 

@@ -32,6 +32,8 @@ MOST_PATHS: Final = 12
 LEVELS, ALONG, ACROSS = 9, 90, 45
 #: Sines of the lowest and the highest elevation of a viewer.
 STEEPEST: Final = (-0.6, 0.72)
+#: Sine of the elevation below which circles are seen from their edge.
+LEAST: Final = 0.3
 #: Extent along an axis, over the largest one, below which a motion is in a plane.
 FLAT: Final = 1e-9
 #: Length of a coordinate in units of the spec.
@@ -110,7 +112,9 @@ def choose_view(vector: Array) -> Array:
     # never along an axis, whose ticks would lie on each other
     across = np.hypot(toward[0], toward[1])
     sideways = toward[:2] / across if across > 0.2 else np.array([0.77, -0.64])
-    height = np.clip(toward[2] + 0.3, STEEPEST[0], STEEPEST[1])
+    height = float(np.clip(toward[2] + 0.3, *STEEPEST))
+    if abs(height) < LEAST:
+        height = LEAST
     return np.array([*(np.sqrt(1 - height**2) * sideways), height])
 
 
