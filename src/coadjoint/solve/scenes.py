@@ -111,7 +111,7 @@ def choose_view(vector: Array) -> Array:
     toward = toward / np.linalg.norm(toward)
     # never along an axis, whose ticks would lie on each other
     across = np.hypot(toward[0], toward[1])
-    sideways = toward[:2] / across if across > 0.2 else np.array([0.77, -0.64])
+    sideways = toward[:2] / across if across > 0.2 else np.array([0.8, -0.6])
     height = float(np.clip(toward[2] + 0.3, *STEEPEST))
     if abs(height) < LEAST:
         height = LEAST
