@@ -64,7 +64,7 @@ def _write_term(field: Field, monomial: Monomial, bottom: list[tuple[Written, in
         written, fixed = _write_symbol(field, factor), factor in field.region.parameters
         if written is PI:
             value /= 4**exponent  # the field has atan(1)
-        rank = (not (fixed or written is PI), factor[-1].isdigit())
+        rank = (not (fixed or written is PI), fixed and factor[-1].isdigit())
         upper.append((rank, power(written, exponent)))
     whole, parts = abs(value), [part for _, part in sorted(upper, key=lambda each: each[0])]
     if whole.numerator != 1 or not parts:
