@@ -248,3 +248,18 @@ class PeriodicityWarning(UserWarning):
 
 class ShockWarning(UserWarning):
     """A run goes on beyond the time at which the waves of a field break."""
+
+
+def check_type(function: str, value: object, kind: type | tuple[type, ...], expected: str) -> None:
+    """Refuse an argument of another type, and say what to pass.
+
+    Raises:
+        TypeError: It is of another type.
+
+    >>> check_type("derive", "heavy_top", int, "what coadjoint.read_spec returns")
+    Traceback (most recent call last):
+    TypeError: derive was given 'heavy_top', a str; expected what coadjoint.read_spec returns.
+    """
+    if not isinstance(value, kind):
+        found = f"{shorten(repr(value))}, a {type(value).__name__}"
+        raise TypeError(f"{function} was given {found}; expected {expected}.")

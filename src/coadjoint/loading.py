@@ -7,12 +7,15 @@ and without SymPy.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 
 from coadjoint.build.cache import cache_folder, note_use
+from coadjoint.errors import check_type
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, is_written_out, regenerate
 from coadjoint.solve.family import lacks_size
@@ -26,7 +29,7 @@ def load(
     sizes: Mapping[str, int] = MappingProxyType({}),
     derivatives: str = "differences",
     seconds: float | None = None,
-    progress: Progress = lambda *_: None,
+    progress: Progress | None = None,
 ) -> System:
     """Derive, prove, compile and load the system of a spec file.
 
@@ -41,7 +44,8 @@ def load(
             says, or ``"fourier"``, as in `System.with_derivatives`.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
-        progress: Told of every stage: system, stage, stages done, stages in all.
+        progress: Told of every stage: system, stage, stages done, stages in all. By default they
+            are shown on standard error where that is a terminal or a notebook.
 
     Raises:
         SpecError: The file is not a spec.
@@ -52,6 +56,7 @@ def load(
             memory than there is.
         KernelArgumentError: A size is none of a spec's index, or too small.
     """
+    check_type("load", path, (str, PathLike), 'the path of a spec, "my.toml"')
     source = Path(path)
     # One folder for each place of a spec, so that equal names of different people do not collide.
     place = str(source.resolve())
@@ -60,7 +65,8 @@ def load(
         own = sizes
     else:
         folder, own = cache_folder() / "systems" / digest(place)[:16], MappingProxyType({})
-    outcome = regenerate([source], folder, seconds=seconds, sizes=own, progress=progress)
+    with _tell(progress) as told:
+        outcome = regenerate([source], folder, seconds=seconds, sizes=own, progress=told)
     for error in outcome.failures.values():
         raise error
     note_use(folder)
@@ -68,3 +74,22 @@ def load(
     chosen = {} if own else sizes
     system = system.resize(chosen) if chosen or lacks_size(system) else system
     return system.with_derivatives(derivatives)
+
+
+@contextmanager
+def _tell(progress: Progress | None) -> Iterator[Progress]:
+    """Who is told of stages: whom the caller names, else a terminal or a notebook, else nobody."""
+    if progress is not None:
+        yield progress
+        return
+    shown = sys.stderr is not None and (sys.stderr.isatty() or "ipykernel" in sys.modules)
+
+    def tell(system: str, stage: str, done: int, total: int) -> None:
+        sys.stderr.write(f"\r{system}: {stage} ({done} of {total})".ljust(60))
+        sys.stderr.flush()
+
+    try:
+        yield tell if shown else lambda *_: None
+    finally:
+        if shown:
+            sys.stderr.write("\r" + " " * 60 + "\r")

@@ -20,7 +20,7 @@ def test_each_format_is_shown(run, form, mark):
 
 def test_the_other_route_is_shown_on_request(run):
     """--route chooses among the declared ones; an undeclared one is refused by name."""
-    assert "Poisson bracket" not in run("show", "rigid_body").stdout
+    assert "Lie-Poisson bracket on the dual" not in run("show", "rigid_body").stdout
     assert "{Pi1, Pi2} = -Pi3" in run("show", "rigid_body", "--route", "lie-poisson").stdout
     refused = run("show", "rigid_body", "--route", "kaluza-klein")
     assert refused.exit_code == 2

@@ -362,7 +362,7 @@ def test_a_document_shows_the_generic_member_and_the_ends():
         "dq[i]/dt = p[i]",
         "dp[i]/dt = -exp(-q[i+1] + q[i]) + exp(q[i-1] - q[i])",
     ]
-    assert generic.lines[0].latex == r"\dot{q}^{(i)} &= p^{(i)}"
+    assert generic.lines[0].latex == r"\dot{q}_i &= p_i"
     assert [line.text for line in ends.lines[1::2]] == [
         "dp[0]/dt = -exp(q[0] - q[1])",
         "dp[N-1]/dt = exp(-q[N-1] + q[N-2])",

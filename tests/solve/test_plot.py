@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.plot import _faces_viewer, plot
+from coadjoint.solve.plot import plot
+from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import heavy_top, heisenberg_lattice, rigid_body, so8_body
 
@@ -87,7 +88,7 @@ def test_only_the_near_side_is_drawn_strong(body):
     """Points toward the viewer are near, those opposite are not, and the parts touch."""
     toward = np.array([0.6, -0.71, 0.37])
     path = np.stack([toward, toward, -toward, -toward, -toward, toward], axis=1)
-    assert _faces_viewer(path).tolist() == [True, True, True, False, True, True]
+    assert faces_viewer(path, toward).tolist() == [True, True, True, False, True, True]
 
 
 def test_a_trajectory_of_one_sample_and_one_that_is_not_finite_are_drawn(body, tmp_path):

@@ -92,6 +92,16 @@ class LieAlgebra(Invariants):
     matrices: tuple[SparseMatrix, ...] = ()
     elements: tuple[SparseMatrix, ...] = ()
 
+    def __repr__(self) -> str:
+        listed = ", ".join(self.basis[:8]) + ", ..." * (len(self.basis) > 8)
+        return f"<LieAlgebra {self.name}: dimension {len(self.basis)}, basis {listed}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_algebra
+
+        return show_algebra(self)
+
     def __post_init__(self) -> None:
         frozen = {
             pair: MappingProxyType({k: exact(c) for k, c in sorted(row.items()) if c != 0})

@@ -18,6 +18,7 @@ import click
 from coadjoint import limits
 from coadjoint.budget import allowed_seconds
 from coadjoint.cli.arguments import (
+    complete_algebra,
     format_option,
     is_path,
     output_option,
@@ -52,7 +53,7 @@ Keys of --format json:
 
 
 @click.command("algebra", epilog=KEYS)
-@click.argument("algebra", metavar="NAME|SPEC")
+@click.argument("algebra", metavar="NAME|SPEC", shell_complete=complete_algebra)
 @format_option("text", "latex", "html", "json")
 @click.option(
     "--degree",

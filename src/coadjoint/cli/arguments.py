@@ -40,7 +40,13 @@ def is_path(system: str) -> bool:
     >>> is_path("heavy_top"), is_path("my.toml"), is_path("./heavy_top")
     (False, True, True)
     """
-    return "/" in system or os.sep in system or system.endswith(".toml")
+    return "/" in system or os.sep in system or system.endswith(".toml") or _is_own(system)
+
+
+def _is_own(system: str) -> bool:
+    """Whether a word is the name of a spec in this folder, and of no shipped system."""
+    plain = system.isidentifier() and system not in shipped_names()
+    return plain and Path(f"{system}.toml").is_file()
 
 
 def spec_path(system: str) -> Path:
@@ -50,13 +56,15 @@ def spec_path(system: str) -> Path:
         SpecError: No shipped system of that name; the nearest one is named.
     """
     if is_path(system):
-        return Path(system)
+        return Path(f"{system}.toml" if _is_own(system) else system)
     names = shipped_names()
     if system not in names:
         near = get_close_matches(system, names, n=1)
-        hint = f"Did you mean {near[0]!r}?" if near else "A spec of your own is a path: ./my.toml."
+        own = f"A spec of your own is a path: ./{system}.toml."
+        hint = f"Did you mean {near[0]!r}?" if near else own
         raise SpecError(
-            f"no shipped system is called {system!r}; expected one of {', '.join(names)}. {hint}",
+            f"no shipped system is called {system!r}, and there is no {system}.toml here; expected "
+            f"one of {', '.join(names)}. {hint}",
             found=system,
         )
     return derivations_folder() / f"{system}.toml"
@@ -105,6 +113,51 @@ def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: 
 
 #: The argument ``SYSTEM|SPEC`` of a command.
 system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=_complete)
+
+
+def complete_route(
+    context: click.Context, _parameter: click.Parameter, incomplete: str
+) -> list[str]:
+    """Routes of the system that the command line names, or all routes."""
+    declared = _declared(context).get("routes") or ()
+    return [route for route in declared if route.startswith(incomplete)]
+
+
+def complete_names(table: str) -> Callable[..., list[str]]:
+    """A completion for names of a table of the spec that the command line names."""
+
+    def complete(context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+        names = _declared(context).get(table) or {}
+        return [f"{name}=" for name in names if name.startswith(incomplete)]
+
+    return complete
+
+
+def complete_algebra(
+    _context: click.Context, _parameter: click.Parameter, incomplete: str
+) -> list[str]:
+    """Named algebras, then what `system_argument` completes."""
+    named = [f"{kind}({n})" for kind in ("so", "se", "su", "h") for n in (2, 3, 4)]
+    named += ["sl(2,R)", "gl(2,R)", "sp(2,R)", "so(3,1)", "g(3)", "bargmann", "aff(1)"]
+    return [word for word in named if word.startswith(incomplete)] + _complete(
+        _context, _parameter, incomplete
+    )
+
+
+def _declared(context: click.Context) -> dict[str, Any]:
+    """The tables of the spec that a command line names; a shell waits, so nothing is checked."""
+    import tomllib
+
+    # behind an option without its value, what was read before it is not yet a parameter
+    word = str(context.params.get("system") or next(iter(context.args), ""))
+    path = Path(f"{word}.toml") if _is_own(word) else Path(word)
+    if not is_path(word):
+        path = derivations_folder() / f"{word}.toml"
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return {}
+
 
 #: The option ``--output`` of commands that show a document.
 output_option = click.option(

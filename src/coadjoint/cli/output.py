@@ -13,6 +13,7 @@ import math
 import os
 import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -23,6 +24,8 @@ import click
 from coadjoint.errors import OutputError, plain
 from coadjoint.files import write_whole
 
+#: Characters of a column that never wraps, and of one that does, at the least.
+RIGID, FLEXIBLE = 16, 12
 #: Called with system, stage, stages done, stages in all.
 Progress = Callable[[str, str, int, int], None]
 
@@ -72,26 +75,61 @@ def printable(text: str) -> str:
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> None:
     """A table on standard output; columns whose name begins with ``>`` are aligned to the right.
 
-    In a pipe no cell is ever cut or wrapped, whatever the width.
+    In a pipe no cell is ever cut or wrapped, whatever the width. On a terminal long cells go on
+    below themselves and short ones, such as names, stay whole; where even these do not fit next to
+    each other, each row is a block with a line for each column.
     """
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else 10_000
+    cells = [[printable(cell) for cell in row] for row in rows]
+    heads = [column.removeprefix(">") for column in columns]
+    natural = [max(map(len, column)) for column in zip(heads, *cells, strict=True)]
+    rigid = [n == 0 or size <= RIGID for n, size in enumerate(natural)]
+    least = sum(size if fixed else FLEXIBLE for size, fixed in zip(natural, rigid, strict=True))
+    if least + 3 * len(columns) > width:
+        _print_blocks(heads, cells, title, width)
+        return
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else 10_000
     drawn = io.StringIO()
     console = Console(file=drawn, width=width, force_terminal=False, color_system=None)
     has_lines = (sys.stdout.encoding or "").lower().startswith("utf")
     table = Table(box=SIMPLE_HEAD if has_lines else None)
-    for column in columns:
-        justify = "right" if column.startswith(">") else "left"
-        table.add_column(column.removeprefix(">"), justify=justify)  # type: ignore[arg-type]
-    for row in rows:
-        table.add_row(*(Text(printable(cell)) for cell in row))
+    for column, fixed, size in zip(columns, rigid, natural, strict=True):
+        table.add_column(
+            column.removeprefix(">"),
+            justify="right" if column.startswith(">") else "left",
+            no_wrap=fixed,
+            min_width=size if fixed else None,
+            overflow="fold",
+        )
+    for row in cells:
+        table.add_row(*map(Text, row))
     console.print(table)
     lines = [*([title] if title else []), *drawn.getvalue().splitlines()]
     say("\n".join(line.rstrip() for line in lines if line.strip()))
+
+
+def _print_blocks(
+    heads: Sequence[str], rows: Sequence[Sequence[str]], title: str, width: int
+) -> None:
+    """Each row as its first cell, and a line for each of the others that is not empty."""
+    lines = [title] if title else []
+    for name, *others in rows:
+        lines.append(name)
+        for head, cell in zip(heads[1:], others, strict=True):
+            if cell:
+                whole = f"{head}: {cell}" if head else cell
+                lines += textwrap.wrap(
+                    whole,
+                    max(width, 24),
+                    initial_indent="  ",
+                    subsequent_indent="    ",
+                    break_on_hyphens=False,
+                )
+    say("\n".join(lines))
 
 
 def print_json(value: Any) -> None:

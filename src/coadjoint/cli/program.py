@@ -37,6 +37,7 @@ COMMANDS: Final = (
     "regenerate",
     "list",
     "show",
+    "book",
     "algebra",
     "prove",
     "crosscheck",

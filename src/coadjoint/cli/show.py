@@ -6,12 +6,19 @@ Comes in: a spec. Goes out: a document, or a table. Read next: `coadjoint.derive
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import click
 
 from coadjoint.cli.arguments import (
+    complete_route,
     format_option,
+    is_path,
+    load_system,
     output_option,
     seconds_option,
     size_option,
@@ -20,13 +27,18 @@ from coadjoint.cli.arguments import (
 )
 from coadjoint.cli.methods import print_methods
 from coadjoint.cli.output import json_option, print_json, show_text
+from coadjoint.resources import systems_folder
 
 
 @click.command("show")
 @system_argument
-@click.option("--route", help="One of the spec's routes. Default: the first, which is emitted.")
+@click.option(
+    "--route",
+    shell_complete=complete_route,
+    help="One of the spec's routes. Default: the first, which is emitted.",
+)
 @click.option("--methods", is_flag=True, help="Which methods of integration keep what, and why.")
-@format_option("text", "latex", "html")
+@format_option("text", "latex", "html", "typst", "json")
 @output_option
 @size_option
 @seconds_option
@@ -42,15 +54,58 @@ def command(
     as_json: bool,
 ) -> None:
     """Show a derivation, step by step, or methods of integration."""
-    from coadjoint.bounded import derive_bounded, methods_bounded
-    from coadjoint.render.document import render_document
-
     if methods:
+        from coadjoint.bounded import methods_bounded
+
         judged = methods_bounded(spec_path(system), sizes=sizes, seconds=seconds)
         print_json(judged) if as_json else print_methods(judged)
         return
-    record = derive_bounded(spec_path(system), route, sizes=sizes, seconds=seconds)
-    if as_json:
-        print_json(record)
-        return
-    show_text(render_document(record, form), output)
+    record = make_chapter(system, route, form, sizes=sizes, seconds=seconds)
+    if as_json or form == "json":
+        text = json.dumps(record, indent=2) + "\n"
+    else:
+        from coadjoint.render.document import render_document
+
+        text = render_document(record, form)
+    show_text(text, output)
+
+
+def make_chapter(
+    system: str,
+    route: str | None,
+    form: str,
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: int | None = None,
+) -> dict[str, Any]:
+    """The record of a chapter: the derivation, its proofs and, on a page, a picture.
+
+    Claims of a shipped system stand in its folder; those of a spec are proved for the formats that
+    show them.
+    """
+    from coadjoint.bounded import derive_bounded, prove_bounded
+    from coadjoint.chapter import complete, read_certificate
+
+    path = spec_path(system)
+    record = derive_bounded(path, route, sizes=sizes, seconds=seconds)
+    folder = None if is_path(system) else systems_folder() / path.stem
+    certificate = read_certificate(folder) if folder is not None else None
+    if certificate is None and form != "text":
+        certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
+    record = complete(record, certificate, folder)
+    if form == "html" and folder is not None and certificate is not None:
+        record |= draw_motion(system)
+    return record
+
+
+def draw_motion(system: str) -> dict[str, Any]:
+    """A picture of a motion as an address of data, with its caption; empty without matplotlib."""
+    from coadjoint.cli.simulate import find_start
+    from coadjoint.errors import CoadjointError
+    from coadjoint.solve.illustrate import illustrate
+
+    try:
+        loaded = load_system(system)
+        return illustrate(loaded, find_start(loaded, ()))
+    except CoadjointError:
+        return {}

@@ -15,7 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coadjoint.cli.arguments import load_system, seconds_option, size_option, system_argument
+from coadjoint.cli.arguments import (
+    complete_names,
+    load_system,
+    seconds_option,
+    size_option,
+    system_argument,
+)
 from coadjoint.cli.events import describe_events, events_options, print_events, take_events
 from coadjoint.cli.members import (
     Members,
@@ -64,15 +70,18 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 @_repeatable(
     "--set",
     "parameters",
+    shell_complete=complete_names("parameters"),
     help="A parameter, e.g. I=1,2,3. Default: that of the spec. Repeatable.",
 )
 @_repeatable(
     "--input",
     "inputs",
+    shell_complete=complete_names("inputs"),
     help="A constant input, e.g. u=0.5. Default: that of the spec. Repeatable.",
 )
 @_repeatable(
     "--state",
+    shell_complete=complete_names("variables"),
     help="Initial value of a variable or component, also of a reconstructed one, e.g. Pi=1,0,0, or "
     "of the whole state, e.g. 1,0,0. Default: that of the spec, else 1 for scalars and unit "
     "vectors, projected onto the constraints. Repeatable.",

@@ -11,7 +11,7 @@ from coadjoint.derive.mechanics import external, noise, slipping
 from coadjoint.derive.records import Chart, Exact, Relation, Step
 from coadjoint.derive.registry import load_route, make_setting
 from coadjoint.derive.setting import Setting
-from coadjoint.errors import DerivationError
+from coadjoint.errors import DerivationError, check_type
 from coadjoint.spec import Spec
 
 __all__ = [
@@ -39,6 +39,7 @@ def derive(spec: Spec, route: str | None = None, *, setting: Setting | None = No
     Raises:
         DerivationError: The spec does not declare the route, or the route cannot be followed.
     """
+    check_type("derive", spec, Spec, "what coadjoint.read_spec returns")
     chosen = route or spec.routes[0]
     if chosen not in spec.routes:
         raise DerivationError(

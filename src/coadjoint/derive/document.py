@@ -7,17 +7,33 @@ of a format must escape. Read next: `coadjoint.render.document`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib import import_module
+from typing import Any
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.generic import show_members
-from coadjoint.derive.lines import Section, formula_line
-from coadjoint.derive.records import Emitted, Step, symbol
+from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
+from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
-from coadjoint.exact import element_text
+from coadjoint.derive.vectors import VectorForm, vector_form
+from coadjoint.derive.vectors.vocabulary import value_shape
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.notation.names import unit
+from coadjoint.notation.trees import write_tree
+from coadjoint.notation.written import Written
+from coadjoint.spec import Spec
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import Shape
 from coadjoint.spec.model import Definition, Reconstructed
+
+#: Components of a state beyond which its bracket is no matrix that a page holds.
+LARGEST_BRACKET = 9
+#: Characters of an entry beyond which it is too wide for a matrix.
+WIDEST_ENTRY = 24
 
 
 @dataclass(frozen=True)
@@ -38,14 +54,21 @@ class Document:
 
 
 def document(equations: Equations) -> Document:
-    """The document of a derivation: its steps, what is emitted as well, and declared charts."""
+    """The document of a derivation: what was found, how, and what is emitted with it."""
     spec = equations.spec
-    sections = [_section(equations, step) for step in equations.steps]
+    form = vector_form(equations) if equations.chart is None else None
+    names = _Names.of(spec, form)
+    sections = [_motion(equations, form, names)]
     if spec.family is not None:
-        sections[:0] = show_members(equations)
+        generic, *others = show_members(equations)
+        whole = f"{sections[0].law}; {generic.law}" if sections[0].vectors else generic.law
+        sections = [replace(sections[0], law=whole, lines=generic.lines), *others]
+    sections.append(_symbols(equations, names))
     if spec.definitions:
-        sections.insert(0, _definitions(spec.definitions))
-    sections += [*_observables(equations), *_units(equations)]
+        sections.append(_definitions(spec.definitions, names))
+    sections.append(_principle(equations))
+    sections += [_section(equations, step) for step in equations.steps]
+    sections += [*_bracket(equations), *_observables(equations, names)]
     if equations.chart is None and equations.route == spec.routes[0]:
         sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
     about = f"System {spec.name}, route {equations.route}."
@@ -54,47 +77,219 @@ def document(equations: Equations) -> Document:
         about=about,
         source=spec.source,
         description=spec.description,
-        sections=tuple(sections),
+        sections=tuple(each for each in sections if each is not None),
     )
 
 
-def _observables(equations: Equations) -> Iterator[Section]:
+@dataclass(frozen=True)
+class _Names:
+    """How the names of a system are written."""
+
+    shapes: Mapping[str, Shape]
+    written: Mapping[str, Written]
+
+    @classmethod
+    def of(cls, spec: Spec, form: VectorForm | None) -> _Names:
+        """Of a spec, and of the vectors that were found in its equations."""
+        quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
+        shapes = {each.name: value_shape(each) for each in quantities}
+        shapes |= {each.name: each.shape for each in spec.definitions if each.shape}
+        if spec.family is not None:
+            for name, shape in list(shapes.items()):
+                shapes.setdefault(name.rpartition("_")[0], shape)
+        return cls({**shapes, **(form.shapes if form else {})}, form.written if form else {})
+
+    def write(self, node: tree.Node) -> Written:
+        """A tree."""
+        return write_tree(node, self.shapes, self.written)
+
+
+def _motion(equations: Equations, form: VectorForm | None, names: _Names) -> Section:
+    """The equations of motion: by vectors as far as they were found, and in components."""
+    field, rates = equations.setting.field, equations.exact.rates
+    pairs = list(zip(equations.variables, rates, strict=True))
+    solved = [name for name, value in pairs if value == field.zero or _is_solved(field, value)]
+    lines = tuple(
+        formula_line(field, rate(name), value)
+        for name, value in pairs
+        if name not in solved or value == field.zero
+    )
+    vectors = tuple(
+        equal(names.write(line.left), names.write(line.right))
+        for line in (form.lines if form else ())
+    )
+    family = equations.spec.family is not None
+    law = _say_what_is_left(form.missing if form else (), bool(vectors))
+    return Section(
+        title="Equations of motion",
+        law=law,
+        law_latex="",
+        lines=() if family else lines,
+        vectors=vectors,
+        kind="motion",
+    )
+
+
+def _is_solved(field: Field, value: Element) -> bool:
+    """Whether a rate is what the kernel solves for, a symbol by itself."""
+    return any(is_of_kernel(name) and field[name] == value for name in field.reach(value))
+
+
+def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
+    """What a reader is told of the vector form."""
+    if some and missing:
+        listed = ", ".join(dict.fromkeys(missing))
+        return f"by vectors where that form was found; those of {listed} in components alone"
+    if some:
+        return "by vectors, each line found equal to its components in exact arithmetic"
+    return "in components"
+
+
+def _principle(equations: Equations) -> Section:
+    """The theorem that the route follows."""
+    route = equations.route
+    words = [("route", route), ("theorem", theorem_of(route))]
+    others = [each for each in equations.spec.routes if each != route]
+    if others:
+        words.append(("proved equal to", ", ".join(others)))
+    return Section(
+        title="Principle", law="", law_latex="", lines=(), words=tuple(words), kind="principle"
+    )
+
+
+def theorem_of(route: str) -> str:
+    """Where the theorem of a route stands, as its module says.
+
+    >>> theorem_of("lie-poisson")
+    'Holm 2011, sections 2.5.2 and 9.4'
+    """
+    module = import_module(f"coadjoint.derive.routes.{route.replace('-', '_')}")
+    found = re.search(r"(?:Theorem|Law|Principle) \(([^)]*)\)", module.__doc__ or "")
+    return " ".join(found[1].split()) if found else "see the steps"
+
+
+def _symbols(equations: Equations, names: _Names) -> Section:
+    """Every name with its meaning and its unit."""
+    spec, emitted = equations.spec, equations.exact.emitted
+    rows = _list_symbols(spec, names, emitted if spec.family is None else ())
+    return Section(
+        title="Symbols", law="", law_latex="", lines=(), rows=tuple(rows), kind="symbols"
+    )
+
+
+def symbol_rows(spec: Spec) -> list[tuple[Line | str, ...]]:
+    """The names of a spec with meaning and unit, under their heads."""
+    return _list_symbols(spec, _Names.of(spec, None), ())
+
+
+def write_formulas(spec: Spec) -> list[Line]:
+    """The Lagrangian and the Hamiltonian of a spec."""
+    names, given = _Names.of(spec, None), (("l", spec.lagrangian), ("h", spec.hamiltonian))
+    return [
+        equal(symbol(name), names.write(each.sums or each.tree)) for name, each in given if each
+    ]
+
+
+def _list_symbols(
+    spec: Spec, names: _Names, emitted: Sequence[Emitted]
+) -> list[tuple[Line | str, ...]]:
+    """Names, as they are written, with meaning and unit."""
+    declared: list[Declared | Reconstructed] = [*spec.variables, *spec.parameters, *spec.inputs]
+    declared += spec.reconstruction
+    rows = list[tuple[Line | str, ...]]([("symbol", "name", "meaning", "unit")])
+    known = {each.name for each in declared}
+    family, seen = spec.family, set[str]()
+    for each in declared:
+        label, shown = each.name, names.write(tree.Name(each.name))
+        base, _, number = label.rpartition("_")
+        if family is not None and number.isdigit():
+            if base in seen:
+                continue
+            seen.add(base)
+            shown = names.write(tree.Member(base, family.index.name, 0, ()))
+            label = f"{base}[{family.index.name}]"
+        rows.append(
+            (
+                whole_line(shown),
+                label,
+                getattr(each, "doc", "") or _role(each),
+                unit_line(each.unit),
+            )
+        )
+    docs = {each.name: each.doc for each in spec.observables}
+    for own in emitted:
+        if own.name not in known:
+            doc = docs.get(own.name) or _EMITTED.get(
+                own.name.rstrip("0123456789"), "emitted with the motion"
+            )
+            if own.name.endswith("_reaction"):
+                doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
+            shown = names.write(tree.Name(own.name))
+            rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
+    rows.append((whole_line(symbol("t")), "time", "time", unit_line(spec.units.time)))
+    return rows
+
+
+def unit_line(text: str) -> Line | str:
+    """A unit as a formula; words where the spec does not tell."""
+    return whole_line(unit(text)) if text else "not told by the spec"
+
+
+_EMITTED = {"energy": "energy", "casimir": "Casimir, kept by every motion of the bracket"}
+
+
+def _role(quantity: object) -> str:
+    """What a quantity without words of its own is."""
+    return str(getattr(quantity, "role", "parameter"))
+
+
+def _bracket(equations: Equations) -> Iterator[Section]:
+    """The bracket as a matrix, where it fits on a page."""
+    tensor, field = equations.exact.poisson_tensor, equations.setting.field
+    names = equations.variables
+    if tensor is None or len(names) > LARGEST_BRACKET or equations.spec.family is not None:
+        return
+    heads = tuple(whole_line(symbol(name)) for name in names)
+    rows = [(Line("", "", "", ""), *heads)]
+    for head, row in zip(heads, tensor, strict=True):
+        rows.append((head, *(formula(field, entry) for entry in row)))
+    if max(len(cell.text) for row in rows for cell in row) > WIDEST_ENTRY:
+        return
+    yield Section(
+        title="Bracket",
+        law="{x_i, x_j}, x_i at the left of a row, x_j above a column",
+        law_latex="",
+        lines=(),
+        table=tuple(rows),
+        kind="bracket",
+    )
+
+
+def _observables(equations: Equations, names: _Names) -> Iterator[Section]:
     """Observables and Casimirs as they are declared, and the values of momentum maps."""
     spec, field = equations.spec, equations.setting.field
-    words = [(f"casimir{n}", f"= {each.in_one_line}") for n, each in enumerate(spec.casimirs, 1)]
-    for each in spec.observables:
-        unit = f" ({each.unit})" * (each.unit != "1")
-        words.append((each.name, f"= {each.formula.in_one_line}{unit}"))
-    named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
     lines = [
+        equal(symbol(f"casimir{n}"), names.write(each.sums or each.tree))
+        for n, each in enumerate(spec.casimirs, 1)
+    ]
+    lines += [
+        equal(symbol(each.name), names.write(each.formula.sums or each.formula.tree))
+        for each in spec.observables
+    ]
+    named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
+    lines += [
         formula_line(field, symbol(name), value)
         for each in equations.exact.emitted
         if each.name in named
         for name, value in zip(each.components, each.values, strict=True)
     ]
-    if words or lines:
+    if lines:
         yield Section(
-            title="Observables",
+            title="Casimirs, observables and momentum maps",
             law="emitted with the motion",
             law_latex="",
             lines=tuple(lines),
-            words=tuple(words),
-        )
-
-
-def _units(equations: Equations) -> Iterator[Section]:
-    """The units of all that a kernel takes and gives, where the spec has any."""
-    spec = equations.spec
-    named: list[Declared | Emitted | Reconstructed] = [*spec.state, *spec.parameters, *spec.inputs]
-    named += [*equations.exact.emitted, *spec.reconstruction]
-    words = [(each.name, each.unit or "not told by the spec") for each in named]
-    if {unit for _, unit in words} - {"1"}:
-        yield Section(
-            title="Units",
-            law="1 for a pure number; those that are not declared are inferred",
-            law_latex="",
-            lines=(),
-            words=(*words, ("time", spec.units.time)),
+            kind="observables",
         )
 
 
@@ -111,11 +306,23 @@ def _chart(chart: Equations) -> Iterator[Section]:
     yield from (_section(chart, step) for step in chart.steps)
 
 
-def _definitions(definitions: Sequence[Definition]) -> Section:
+def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
     """The short names of a spec; the steps below show what they stand for in its place."""
-    words = tuple((each.signature, f"= {each.in_one_line}") for each in definitions)
+    lines = tuple(
+        equal(symbol(each.name), names.write(each.tree))
+        for each in definitions
+        if not each.arguments
+    )
+    words = tuple(
+        (each.signature, f"= {each.in_one_line}") for each in definitions if each.arguments
+    )
     return Section(
-        title="Definitions", law="short names in the spec", law_latex="", lines=(), words=words
+        title="Definitions",
+        law="short names in the spec",
+        law_latex="",
+        lines=lines,
+        words=words,
+        kind="definitions",
     )
 
 

@@ -28,6 +28,7 @@ from coadjoint.derive.pairs import LaxPair
 from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import STEP, Setting, vector_names
 from coadjoint.exact import Element
+from coadjoint.notation.elements import write_element
 from coadjoint.spec import Spec
 
 
@@ -257,9 +258,19 @@ class Equations:
         field = self.setting.field
         lines = [(symbol(name), value) for name, value in self.exact.definitions]
         lines += zip(map(rate, self.variables), self.exact.rates, strict=True)
-        rows = [f"{left.latex} &= {sympy.latex(field.to_sympy(value))}" for left, value in lines]
+        rows = [f"{left.latex} &= {write_element(field, value).latex}" for left, value in lines]
         return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
-    def _repr_latex_(self) -> str:
+    def __repr__(self) -> str:
+        count = f"{len(self.variables)} rates"
+        return f"<Equations of {self.spec.name} by {self.way}: {count}>"
+
+    def _repr_html_(self) -> str:
         """What a notebook shows."""
+        from coadjoint.notebook import show_equations
+
+        return show_equations(self)
+
+    def _repr_latex_(self) -> str:
+        """What a notebook shows that takes no HTML, and an export to LaTeX."""
         return f"$\\displaystyle {self.latex()}$"

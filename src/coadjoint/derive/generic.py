@@ -7,14 +7,18 @@ ends of an open chain. Read next: `coadjoint.derive.indexed`, which reads them o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import sympy
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.indexed import derive_family
-from coadjoint.derive.lines import Line, Section, write_line
-from coadjoint.derive.records import Left, member, rate, symbol
+from coadjoint.derive.lines import Line, Section, equal, write_line
+from coadjoint.derive.records import Left, member, symbol
 from coadjoint.families import Family
+from coadjoint.notation.elements import write_sympy
+from coadjoint.notation.trees import write_sum
+from coadjoint.notation.written import add, literal, multiply
 
 Names = Mapping[sympy.Symbol, Left]
 
@@ -67,10 +71,10 @@ def _name_at(family: Family, end: int) -> Names:
 def _name_around(family: Family, own: str, near: Mapping[int, str]) -> Names:
     """How symbols are written; those of the member itself come first."""
     listed = (*family.own, *family.indexed_noise)
-    names = {s: member(symbol(s.name), own) for s in listed}
-    names |= {s: member(symbol(of.name), near[n]) for (of, n), s in family.neighbours.items()}
-    names |= {s: member(symbol(of.name), _other(family)) for of, s in family.partners.items()}
-    return names | {each.symbol: member(symbol(each.symbol.name), own) for each in family.pair_sums}
+    names = {s: member(s.name, own) for s in listed}
+    names |= {s: member(of.name, near[n]) for (of, n), s in family.neighbours.items()}
+    names |= {s: member(of.name, _other(family)) for of, s in family.partners.items()}
+    return names | {each.symbol: member(each.symbol.name, own) for each in family.pair_sums}
 
 
 def _other(family: Family) -> str:
@@ -83,10 +87,8 @@ def _write_rates(
 ) -> Iterator[Line]:
     """The rates of a member."""
     for state, value in zip(states, rates, strict=True):
-        own, plain = names[state], symbol(state.name)
-        latex = rate(state.name).latex + own.latex.removeprefix(plain.latex)
-        maths = rate(state.name).mathml.replace(plain.mathml, own.mathml)
-        left = Left(f"d{own.text}/dt", latex, maths)
+        place = names[state].text.partition("[")[2].removesuffix("]")
+        left = member(state.name, place, dot=True)
         yield write_line(left, _write(value, names), value.as_ordered_terms(), names)
 
 
@@ -94,21 +96,18 @@ def _write_noise(names: Names, family: Family) -> Iterator[Line]:
     """What the noise does to each component of a member."""
     for state, value in zip(family.states, family.noise, strict=True):
         own = names[state]
-        left = Left(f"noise of {own.text}", rf"\delta {own.latex}", f"<mi>&#x3B4;</mi>{own.mathml}")
+        delta = literal(f"noise of {own.text}", r"\delta", "<mi>δ</mi>", "delta")
+        left = replace(multiply([delta, own]), text=delta.text)
         yield write_line(left, _write(value, names), value.as_ordered_terms(), names)
 
 
 def _write_pairs(names: Names, of: sympy.Symbol, term: sympy.Expr, family: Family) -> Line:
     """A sum over the partners of a member."""
     i, j = family.index.name, _other(family)
-    plain = write_line(names[of], _write(term, names), [term], names)
-    under = f"<mrow><mi>{j}</mi><mo>&#x2260;</mo><mi>{i}</mi></mrow>"
-    total = f"<munder><mo>&#x2211;</mo>{under}</munder>"
-    return Line(
-        f"{names[of].text} = sum({j} != {i}, {_write(term, names)})",
-        plain.latex.replace("&= ", rf"&= \sum_{{{j} \ne {i}}} ", 1),
-        plain.mathml.replace("<mo>=</mo>", f"<mo>=</mo>{total}", 1),
-    )
+    known = {s.name: written for s, written in names.items()}
+    below = [literal(j), literal(i), write_sympy(term, lambda s: known.get(s) or symbol(s))]
+    total = add([write_sum((j,), below, "!=")])
+    return equal(names[of], replace(total, text=f"sum({j} != {i}, {_write(term, names)})"))
 
 
 def _write(value: sympy.Expr, names: Names) -> str:

@@ -1,4 +1,4 @@
-"""Lines of a derivation: formulas as text, LaTeX and presentation MathML.
+"""Lines of a derivation: formulas in every format.
 
 Comes in: elements of a field, or SymPy expressions with names for their symbols. Goes out: a
 `Line`, and a `Section` of some. Read next: `coadjoint.derive.document`.
@@ -6,30 +6,26 @@ Comes in: elements of a field, or SymPy expressions with names for their symbols
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from html.entities import html5
+from dataclasses import dataclass, replace
 
 import sympy
-from sympy.printing.mathml import mathml
 
-from coadjoint.derive.records import Left, is_of_kernel, symbol
-from coadjoint.exact import Element, Field, element_text
-
-#: A character by its name, but for those that XML has: &InvisibleTimes; &pi; &ExponentialE;
-_ENTITY = re.compile(r"&(?!(?:amp|lt|gt|quot|apos);)(\w+;)")
-#: Addends on one line of LaTeX; nine fill a landscape page.
-ADDENDS = 9
+from coadjoint.derive.records import Left
+from coadjoint.exact import Element, Field
+from coadjoint.notation.elements import write_element, write_sympy
+from coadjoint.notation.names import name
+from coadjoint.notation.written import Written, add, stack, stack_latex
 
 
 @dataclass(frozen=True)
 class Line:
-    """A formula, or ``left = right``, as text, LaTeX and presentation MathML."""
+    """A formula, or ``left = right``, as text, LaTeX, presentation MathML and Typst."""
 
     text: str
     latex: str
     mathml: str
+    typst: str
 
 
 @dataclass(frozen=True)
@@ -43,6 +39,9 @@ class Section:
         lines: What the law gives here.
         words: Names and what is said of them, both free text.
         table: Rows of formulas, the first one and the first column being heads; empty if none.
+        vectors: The lines once more for whole vectors and matrices; empty where none was found.
+        kind: What part of a chapter it is: a ``step``, ``symbols``, ``bracket`` and others.
+        rows: Rows of words, the first one being the heads; empty if none.
     """
 
     title: str
@@ -51,20 +50,36 @@ class Section:
     lines: tuple[Line, ...]
     words: tuple[tuple[str, str], ...] = ()
     table: tuple[tuple[Line, ...], ...] = ()
+    vectors: tuple[Line, ...] = ()
+    kind: str = "step"
+    rows: tuple[tuple[Line | str, ...], ...] = ()
 
 
 def formula(field: Field, element: Element) -> Line:
     """An element in every format."""
-    terms = _terms(field, element)
-    names = _name_kernel(terms)
-    maths = f"<math>{_mathml(terms, names)}</math>"
-    return Line(element_text(field, element), _latex(terms, names), maths)
+    return whole_line(write_element(field, element))
+
+
+def whole_line(written: Written) -> Line:
+    """A formula by itself."""
+    whole = add([written]) if written.sign < 0 else written
+    return Line(whole.text, stack_latex(whole), f"<math>{whole.mathml}</math>", whole.typst)
 
 
 def formula_line(field: Field, left: Left, right: Element) -> Line:
     """``left = right`` in every format."""
-    terms = _terms(field, right)
-    return write_line(left, element_text(field, right), terms, _name_kernel(terms))
+    return equal(left, write_element(field, right))
+
+
+def equal(left: Left, right: Written) -> Line:
+    """``left = right``."""
+    right = add([right]) if right.sign < 0 else right
+    return Line(
+        f"{left.text} = {right.text}",
+        f"{left.latex} &= {stack_latex(right)}",
+        f"<math><mrow>{left.mathml}<mo>=</mo>{stack(right)}</mrow></math>",
+        f"{left.typst} &= {right.typst}",
+    )
 
 
 def write_line(
@@ -76,41 +91,8 @@ def write_line(
         left: The left side.
         text: The right side as text.
         terms: Its addends, in order.
-        names: How symbols are written that are not written as they are called, each before those
-            in whose names it occurs.
+        names: How symbols are written that are not written as they are called.
     """
-    return Line(
-        f"{left.text} = {text}",
-        f"{left.latex} &= {_latex(terms, names)}",
-        f"<math><mrow>{left.mathml}<mo>=</mo>{_mathml(terms, names)}</mrow></math>",
-    )
-
-
-def _terms(field: Field, element: Element) -> list[sympy.Expr]:
-    """Addends in the order in which SymPy prints them."""
-    whole = sympy.Add(*(field.to_sympy(part) for part in field.partial_fractions(element)))
-    return list(whole.as_ordered_terms())
-
-
-def _latex(terms: Sequence[sympy.Expr], names: Mapping[sympy.Symbol, Left]) -> str:
-    """A sum, continued on further lines if it is long."""
-    written = {s: left.latex for s, left in names.items()}
-    texts = [sympy.latex(term, symbol_names=written) for term in terms]
-    signed = [text if text.startswith("-") else f"+ {text}" for text in texts]
-    rows = [" ".join(signed[n : n + ADDENDS]) for n in range(0, len(signed), ADDENDS)]
-    return " \\\\\n&\\quad ".join(rows).removeprefix("+ ")
-
-
-def _mathml(terms: Sequence[sympy.Expr], names: Mapping[sympy.Symbol, Left]) -> str:
-    """A sum as MathML, which browsers show without any script."""
-    text: str = mathml(sympy.Add(*terms), printer="presentation")
-    for s, left in names.items():
-        text = text.replace(mathml(s, printer="presentation"), left.mathml)
-    # SymPy prints entities by names that are none of XML's own, so that readers of XML refuse them
-    return _ENTITY.sub(lambda name: html5.get(name[1], name[0]), text)
-
-
-def _name_kernel(terms: Sequence[sympy.Expr]) -> dict[sympy.Symbol, Left]:
-    """The symbols whose names are those of kernels, in order, as a book would write them."""
-    symbols = {s for term in terms for s in term.free_symbols if is_of_kernel(s.name)}
-    return {s: symbol(s.name) for s in sorted(symbols, key=str)}
+    known = {s.name: written for s, written in names.items()}
+    parts = [write_sympy(term, lambda text: known.get(text) or name(text)) for term in terms]
+    return equal(left, replace(add(parts), text=text))

@@ -8,29 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
-from functools import cache
-
-import sympy
-from sympy.printing.mathml import mathml
 
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.setting import shape
 from coadjoint.exact import Element
+from coadjoint.notation import names
+from coadjoint.notation.written import Written, enclose
 from coadjoint.spec.model import Shape
 
-
-@dataclass(frozen=True)
-class Left:
-    """The left side of a line of a derivation: plain text, LaTeX and presentation MathML."""
-
-    text: str
-    latex: str
-    mathml: str
-
-
+#: The left side of a line of a derivation, in every format.
+Left = Written
 #: How kernels call a time derivative.
 _RATE = re.compile(r"d(?P<of>.+)_dt")
 
@@ -40,14 +30,9 @@ def is_of_kernel(name: str) -> bool:
     return name.startswith("_") or _RATE.fullmatch(name) is not None
 
 
-@cache  # every route writes the same names
 def symbol(name: str) -> Left:
     """The symbol itself: ``Pi1``; names of kernels as a book would write them."""
-    moving = _RATE.fullmatch(name)
-    if moving:
-        return replace(rate(moving["of"]), text=name)
-    plain = sympy.Symbol(name.removeprefix("_"))
-    return Left(name, sympy.latex(plain), mathml(plain, printer="presentation"))
+    return names.name(name)
 
 
 def sign_text(sign: int, text: str) -> str:
@@ -61,52 +46,42 @@ def sign_text(sign: int, text: str) -> str:
 
 def rate(name: str) -> Left:
     """Its time derivative: ``dPi1/dt``."""
-    of = symbol(name)
-    fraction = f"<mfrac><mrow><mi>d</mi>{of.mathml}</mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>"
-    return Left(f"d{name}/dt", rf"\dot{{{of.latex}}}", fraction)
+    return names.name(name, dot=True)
 
 
-def member(of: Left, place: str) -> Left:
-    """What a member has, by its place: ``q[i+1]``.
+def member(of: str, place: str, *, dot: bool = False) -> Left:
+    r"""What a member has, by its place: ``q[i+1]``.
 
-    >>> member(symbol("q"), "i+1").text, member(symbol("q"), "i+1").latex
-    ('q[i+1]', 'q^{(i+1)}')
+    >>> member("q", "i+1").text, member("r2", "i", dot=True).latex
+    ('q[i+1]', '\\dot{r}_{i,2}')
     """
-    inner = f"<mrow><mo>(</mo><mi>{place}</mi><mo>)</mo></mrow>"
-    raised = f"<msup><mrow>{of.mathml}</mrow>{inner}</msup>"
-    return Left(f"{of.text}[{place}]", f"{of.latex}^{{({place})}}", raised)
+    return names.member(of, place, dot=dot)
 
 
 def partial(function: str, name: str) -> Left:
     """A partial derivative: ``dl/dOmega1``."""
-    by = symbol(name)
-    fraction = (
-        f"<mfrac><mrow><mo>&#x2202;</mo><mi>{function}</mi></mrow>"
-        f"<mrow><mo>&#x2202;</mo>{by.mathml}</mrow></mfrac>"
-    )
-    return Left(f"d{function}/d{name}", rf"\partial {function} / \partial {by.latex}", fraction)
+    return names.partial(symbol(function), symbol(name))
 
 
 def component(text: str, latex: str, n: int) -> Left:
     """A component of a vector that is written out: ``(M eta')_1``."""
-    inner = f"<mo>(</mo><mtext>{text}</mtext><mo>)</mo>"
+    inner = f"<mrow><mo>(</mo><mtext>{text}</mtext><mo>)</mo></mrow>"
     return Left(
-        f"({text})_{n}", f"({latex})_{{{n}}}", f"<msub><mrow>{inner}</mrow><mn>{n}</mn></msub>"
+        f"({text})_{n}",
+        f"({latex})_{{{n}}}",
+        f"<msub>{inner}<mn>{n}</mn></msub>",
+        f'("{text}")_{n}',
     )
 
 
 def bracket(a: str, b: str) -> Left:
     """A Poisson bracket: ``{Pi1, Pi2}``."""
-    x, y = symbol(a), symbol(b)
-    braced = f"<mo>{{</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>}}</mo>"
-    return Left(f"{{{a}, {b}}}", rf"\{{{x.latex}, {y.latex}\}}", braced)
+    return enclose([symbol(a), symbol(b)], "{}")
 
 
 def algebra_bracket(a: str, b: str) -> Left:
     """A bracket of a Lie algebra: ``[J1, J2]``."""
-    x, y = symbol(a), symbol(b)
-    braced = f"<mo>[</mo>{x.mathml}<mo>,</mo>{y.mathml}<mo>]</mo>"
-    return Left(f"[{a}, {b}]", rf"[{x.latex}, {y.latex}]", braced)
+    return enclose([symbol(a), symbol(b)])
 
 
 @dataclass(frozen=True)

@@ -139,6 +139,16 @@ class Certificate:
     claims: tuple[Claim, ...]
     findings: tuple[Finding, ...] = ()
 
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{self.count(v)} {v}" for v in Verdict if self.count(v))
+        return f"<Certificate of {self.system}: {counts or 'no claims'}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_certificate
+
+        return show_certificate(self)
+
     @property
     def refuted(self) -> tuple[Claim, ...]:
         """The claims that are false."""

@@ -16,6 +16,7 @@ from typing import Any
 
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.domain import region
+from coadjoint.errors import check_type
 from coadjoint.exact import Element, Field, Region
 from coadjoint.prove import indexed
 from coadjoint.prove.agreement import about_equality, about_legendre
@@ -243,6 +244,7 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
         DerivationError: A route cannot be followed.
         UndecidedError: No point is found at which a claim has a value.
     """
+    check_type("prove", spec, Spec, "what coadjoint.read_spec returns")
     if spec.family is None:
         return indexed.bind_size(spec, _certify(spec, routes))
     windows = indexed.list_windows(spec)

@@ -9,7 +9,7 @@ Read next: `coadjoint.poisson.casimirs`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from time import perf_counter
 from typing import Any
@@ -17,8 +17,9 @@ from typing import Any
 from coadjoint.algebra import LieAlgebra
 from coadjoint.algebra.matrices import convert_entries
 from coadjoint.derive.document import Document
-from coadjoint.derive.lines import Line, Section, formula, formula_line
+from coadjoint.derive.lines import Line, Section, formula, formula_line, whole_line
 from coadjoint.derive.records import algebra_bracket, symbol
+from coadjoint.errors import check_type
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.numbers import parameters_in, room_for
 from coadjoint.exact.ranks import CHANCE
@@ -34,7 +35,7 @@ TABLE = 94
 #: formulas takes longer than to find them.
 TERMS = 60
 #: The bracket of two members of the basis that commute.
-COMMUTE = Line(".", r"\cdot", "<math><mo>&#xB7;</mo></math>")
+COMMUTE = Line(".", r"\cdot", "<math><mo>&#xB7;</mo></math>", "dot.op")
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,16 @@ class Examination:
     rank: int
     casimirs: Completeness
     certificate: Certificate
+
+    def __repr__(self) -> str:
+        facts = f"Lie-Poisson rank {self.rank}, {len(self.casimirs.found)} Casimirs found"
+        return f"<Examination of {self.algebra.name}: {facts}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_examination
+
+        return show_examination(self)
 
     def as_record(self) -> dict[str, Any]:
         """The examination as JSON values; the README says what each key holds."""
@@ -147,7 +158,7 @@ class Examination:
         whole, basis = {**cells, **turned}, self.algebra.basis
         heads = tuple(map(_head, basis))
         return (
-            (Line("", "", ""), *heads),
+            (Line("", "", "", ""), *heads),
             *(
                 (heads[i], *(whole.get((i, j), COMMUTE) for j in range(len(basis))))
                 for i in range(len(basis))
@@ -201,8 +212,7 @@ class Examination:
                 told = f"{describe(self.field, casimir)}; as JSON it is there in full"
                 words.append((name.text, told))
             else:
-                upright = replace(name, latex=rf"\mathrm{{casimir}}_{{{n}}}")
-                lines.append(formula_line(self.field, upright, casimir))
+                lines.append(formula_line(self.field, name, casimir))
         if not self.casimirs.found:
             words.append(("none", self.casimirs.statement))
         return Section(
@@ -228,8 +238,7 @@ class Examination:
 
 def _head(name: str) -> Line:
     """A name of the basis at the edge of the table."""
-    shown = symbol(name)
-    return Line(shown.text, shown.latex, f"<math>{shown.mathml}</math>")
+    return whole_line(symbol(name))
 
 
 def _count_in_words(number: int, noun: str) -> str:
@@ -255,6 +264,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     >>> [element_text(found.field, casimir) for casimir in found.casimirs.found]
     ['J1*P1 + J2*P2 + J3*P3', 'P1^2 + P2^2 + P3^2']
     """
+    check_type("examine", algebra, LieAlgebra, 'coadjoint.algebra_by_name("so(3)")')
     field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
     local = algebra.over(field.adopt)
     structure = lie_poisson(local, field, local.basis)

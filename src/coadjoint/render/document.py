@@ -12,14 +12,16 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import groupby
 from typing import Any, Final
 
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 
+from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.render.environment import make_environment
 
-FORMATS: Final = ("text", "latex", "html")
+FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
 WIDTH: Final = 100
 #: Columns that the text format leaves at the left of formulas.
@@ -47,7 +49,7 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
         form: ``"text"``, ``"latex"`` or ``"html"``.
 
     >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": ""}
-    >>> section |= {"lines": (), "words": (), "table": ()}
+    >>> section |= {"lines": (), "words": (), "table": (), "vectors": (), "rows": ()}
     >>> top = {"title": "A top", "about": "System top.", "source": "", "description": ""}
     >>> print(render_document({**top, "sections": [section]}))
     A top
@@ -58,7 +60,37 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
        mu = dl/dxi
     <BLANKLINE>
     """
-    return _environment(form).get_template(f"document/{form}.j2").render(document=document)
+    return _environment(form).get_template(f"document/{form}.j2").render(document=_fill(document))
+
+
+def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
+    """A document with everything that templates ask for, which may be empty."""
+    empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
+    sections = [{**empty, **section} for section in document["sections"]]
+    return {"picture": "", "caption": "", **document, "sections": sections}
+
+
+def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
+    """Sections as HTML without a page around them."""
+    filled = _fill({"sections": sections})["sections"]
+    return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
+
+
+def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
+    """One page of many derivations, with a table of contents and a table of all proofs.
+
+    Args:
+        chapters: Documents in order with, in addition, ``name``, ``part``, ``routes``, ``marks``
+            by route, and how many claims are ``proved``, and how many ``others`` there are.
+    """
+    filled = [_fill(chapter) for chapter in chapters]
+    contents = [
+        {"title": part, "chapters": list(own)}
+        for part, own in groupby(filled, key=lambda chapter: chapter["part"])
+    ]
+    routes = list(dict.fromkeys(route for chapter in filled for route in chapter["routes"]))
+    template = _environment("html").get_template("document/book.html.j2")
+    return template.render(chapters=filled, parts_of_book=contents, routes=routes)
 
 
 @cache
@@ -72,13 +104,16 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
     }
     made = make_environment(
         autoescape=form == "html",
-        finalize=_escape_unless_safe(escape_latex if form == "latex" else make_printable),
+        finalize=_escape_unless_safe(_ESCAPES.get(form, make_printable)),
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
     made.filters |= {
         "aligned": align,
         "abreast": count_abreast,
         "described": describe,
+        "listed": list_rows,
+        "law": write_law,
+        "sides": split_sides,
         "tabulated": tabulate,
         "wrapped": wrap,
     }
@@ -106,6 +141,70 @@ def escape_latex(text: str) -> str:
     '\\textbackslash{}write18\\{rm\\}'
     """
     return make_printable(text).translate(_LATEX_ESCAPES)
+
+
+_TYPST_ESCAPES: Final = str.maketrans({c: f"\\{c}" for c in "\\#*_`$<>@[]=-+/~"})
+
+
+def escape_typst(text: str) -> str:
+    r"""Text in which Typst sees no command.
+
+    >>> escape_typst("#read('x')")
+    "\\#read('x')"
+    """
+    return make_printable(text).translate(_TYPST_ESCAPES)
+
+
+_ESCAPES: Final[Mapping[str, Callable[[str], str]]] = {
+    "latex": escape_latex,
+    "typst": escape_typst,
+}
+
+
+def write_law(section: Mapping[str, Any]) -> Markup | str:
+    """The general law of a section: a formula where it is one that is known, else its words."""
+    if is_formula(section["law_latex"], section["law"]):
+        maths = to_mathml(section["law_latex"])
+        if maths is not None:
+            return Markup(maths)  # noqa: S704 - made of elements alone, its letters escaped
+    return str(section["law"])
+
+
+def split_sides(mathml: str) -> tuple[str, str]:
+    """The two sides of an equation as formulas of their own, the sign with the second one.
+
+    >>> split_sides("<math><mrow><mi>a</mi><mo>=</mo><mi>b</mi></mrow></math>")[0]
+    '<math displaystyle="true"><mi>a</mi></math>'
+    """
+    inner = mathml.removeprefix("<math>").removesuffix("</math>")
+    inner = inner.removeprefix("<mrow>").removesuffix("</mrow>")
+    left, sign, right = inner.partition("<mo>=</mo>")
+    if not sign:
+        return "", mathml
+    shown = f'<mrow><mo rspace="0.3em">=</mo>{right}</mrow>'
+    return f'<math displaystyle="true">{left}</math>', f'<math displaystyle="true">{shown}</math>'
+
+
+def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Rows of words in columns, the last one wrapped.
+
+    >>> list_rows([["name", "unit"], ["m", "kg"]])
+    ['name  unit', 'm     kg']
+    """
+    texts = [[cell["text"] if isinstance(cell, Mapping) else str(cell) for cell in r] for r in rows]
+    texts = [row[1:] if len(row) > 3 else row for row in texts]  # a symbol is its name in text
+    widths = [max(len(row[n]) for row in texts) for n in range(len(texts[0]))]
+    widths = [min(width, 58) for width in widths]
+    listed = list[str]()
+    for row in texts:
+        cells = [
+            textwrap.wrap(cell, width) or [""] for cell, width in zip(row, widths, strict=True)
+        ]
+        for n in range(max(map(len, cells))):
+            parts = [c[n] if n < len(c) else "" for c in cells]
+            line = "  ".join(part.ljust(w) for part, w in zip(parts, widths, strict=True))
+            listed.append(line.rstrip())
+    return listed
 
 
 def wrap(text: str, indent: int = 0) -> list[str]:

@@ -7,7 +7,7 @@ is imported here alone.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,16 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.scenes import (
+    Paths,
+    angles,
+    choose_view,
+    draw_coloured,
+    energy_levels,
+    faces_viewer,
+    find_paths,
+    find_sphere,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,10 +43,6 @@ STYLES = ("solid", "dashed", "dotted", "dashdot")
 LEGEND_ROWS, LINES = 14, 28
 #: Pictures of members, one above the other.
 STACKED = 3
-#: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
-ON_SPHERE = 1e-6
-#: From where the sphere is seen: elevation and azimuth, degrees.
-VIEW = (22, -50)
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -51,15 +57,46 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
         OutputError: The file cannot be written.
     """
     figure = begin_figure(path)
-    sphere = _sphere_quantity(solution)
-    heights = [3.0, 1.0] if sphere else [2.2, 1.0]
-    grid = figure.add_gridspec(2, 1, height_ratios=heights)
-    if sphere:
+    _draw_all(figure, solution)
+    if path is None:
+        figure = _shown_once(figure)
+    return finish(figure, solution, path)
+
+
+def draw(solution: Solution) -> Any:
+    """The figure alone, which no display knows of."""
+    figure = new_figure(headless=True)
+    _draw_all(figure, solution)
+    figure.suptitle(solution.system.title, fontsize=13)
+    return figure
+
+
+def _draw_all(figure: Any, solution: Solution) -> None:
+    """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
+    paths = find_paths(solution) if len(solution) > 1 else None
+    sphere = "" if paths else find_sphere(solution)
+    strip = 0.14 if paths or sphere else 0.2  # drift is no third of a picture
+    if sphere or (paths and paths.members.shape[1] == 3):
+        figure.set_size_inches(7.2, 6.4)
+    conserved = bool(solution.conserved)
+    grid = figure.add_gridspec(1 + conserved, 1, height_ratios=[1.0, strip][: 1 + conserved])
+    if paths:
+        _draw_paths(figure, grid[0], solution, paths)
+    elif sphere:
         _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
     else:
         _draw_components(figure, grid[0], solution)
-    _draw_drift(figure.add_subplot(grid[1]), solution)
-    return finish(figure, solution, path)
+    if conserved:
+        _draw_drift(figure.add_subplot(grid[1]), solution)
+
+
+def _shown_once(figure: Any) -> Any:
+    """A figure that a notebook shows as the value of a cell, and not at the end of it again."""
+    from matplotlib import pyplot as plt
+
+    if "inline" in plt.get_backend():
+        plt.close(figure)
+    return figure
 
 
 def begin_figure(path: str | PathLike[str] | None) -> Any:
@@ -117,21 +154,67 @@ def check_picture(path: Path) -> None:
     check_writable(path)
 
 
-def _sphere_quantity(solution: Solution) -> str:
-    """The first three-vector of the state whose length is conserved, or ""."""
-    for name, quantity in solution.system.STATE.items():
-        if quantity.shape == (3,):
-            with np.errstate(over="ignore", invalid="ignore"):  # what is infinite has no sphere
-                square = (solution[name] ** 2).sum(axis=0)
-                if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
-                    return name
-    return ""
+def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> None:
+    """Orbits in the plane or in space; of several members each has a colour of its own."""
+    in_space = paths.members.shape[1] == 3
+    axes = figure.add_subplot(place, projection="3d" if in_space else None)
+    several = len(paths.members) > 1
+    for n, path in enumerate(paths.members):
+        colour = COLOURS[n % len(COLOURS)]
+        if several:
+            axes.plot(*path, color=colour, linewidth=1.1, label=f"member {n}")
+        else:
+            lines = draw_coloured(axes, path, solution.time)
+            _time_bar(figure, axes, lines, solution)
+        own = {"color": colour} if several else {"color": "#000000"}
+        axes.plot(*path[:, -1:], marker="o", markersize=5, linestyle="", **own)
+        axes.plot(*path[:, :1], marker="o", markersize=5, fillstyle="none", linestyle="", **own)
+    _limit_space(axes, paths)
+    if several:
+        beside = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5)}
+        axes.legend(fontsize=8, frameon=False, **beside)
+    axes.set_title("open circle: start, filled: end", fontsize=9, color="#5b6570")
+
+
+def _limit_space(axes: Any, paths: Paths) -> None:
+    """Equal scales, and a view of the plane of the motion."""
+    low, high = paths.members.min(axis=(0, 2)), paths.members.max(axis=(0, 2))
+    middle, half = (low + high) / 2, 0.55 * float((high - low).max()) or 1.0
+    limits = (axes.set_xlim, axes.set_ylim, *([axes.set_zlim] if len(middle) == 3 else []))
+    for limit, centre in zip(limits, middle, strict=True):
+        limit(centre - half, centre + half)
+    labels = [f"{_component(name)} {unit_label(paths.unit)}" for name in paths.names]
+    if len(labels) == 3:
+        whole = np.concatenate(list(paths.members), axis=1)
+        axes.view_init(*angles(choose_view(whole - whole.mean(axis=1, keepdims=True))))
+        _style_space(axes, labels)
+        return
+    axes.set_aspect("equal")
+    axes.set_xlabel(labels[0], fontsize=9)
+    axes.set_ylabel(labels[1], fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.grid(alpha=0.3)
+
+
+def _component(name: str) -> str:
+    """A component as a symbol with its number below."""
+    base = name.rstrip("0123456789")
+    number = name.removeprefix(base)
+    return f"{_symbol(base)}$_{{{number}}}$" if number else _symbol(base)
+
+
+def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
+    """What the colours mean."""
+    bar = figure.colorbar(lines, ax=axes, shrink=0.6, pad=0.06, aspect=32)
+    bar.set_label(f"time {unit_label(solution.unit('time'))}", fontsize=9)
+    bar.ax.tick_params(labelsize=8)
 
 
 def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
     """The trajectory of a vector on its sphere, the side that faces away drawn faint."""
     vector = solution[name]
     radius = float(np.sqrt((vector[:, 0] ** 2).sum()))
+    toward = choose_view(vector)
     angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
     ball = (
         radius * np.sin(height) * np.cos(angle),
@@ -139,56 +222,42 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
         radius * np.cos(height),
     )
     axes.computed_zorder = False
-    axes.plot_surface(*ball, color="#d9e2ec", alpha=0.3, linewidth=0, shade=False, zorder=2)
-    axes.plot_wireframe(
-        *ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6, zorder=2
-    )
-    near = _faces_viewer(vector)
-    for shown, strength, order in ((~near, 0.3, 1), (near, 1.0, 3)):
-        part = np.where(shown, vector, np.nan)
-        axes.plot(*part, color=COLOURS[0], linewidth=1.1, alpha=strength, zorder=order)
+    axes.plot_surface(*ball, color="#d9e2ec", alpha=0.35, linewidth=0, shade=False, zorder=2)
+    levels = energy_levels(solution, name, radius)
+    for level in levels:
+        near = np.where(faces_viewer(level, toward), level, np.nan)
+        axes.plot(*near, color="#8fa3b5", linewidth=0.7, zorder=2.5)
+    if not levels:
+        axes.plot_wireframe(
+            *ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6, zorder=2
+        )
+    near = faces_viewer(vector, toward)
+    axes.plot(*np.where(near, np.nan, vector), color="#56657a", linewidth=0.9, alpha=0.35, zorder=1)
+    if len(solution) > 1:
+        shown = np.where(near, vector, np.nan)
+        lines = draw_coloured(axes, shown, solution.time, zorder=3, linewidth=1.6)
+        _time_bar(axes.figure, axes, lines, solution)
     axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
-    axes.scatter(*vector[:, -1:], color=COLOURS[2], s=36, marker="s", zorder=4, label="end")
-    _label_sphere(axes, solution, name, radius)
+    axes.scatter(*vector[:, -1:], color="#000000", s=36, marker="s", zorder=4, label="end")
+    symbol, unit = _symbol(name), unit_label(solution.system.STATE[name].unit)
+    _style_space(axes, [f"{symbol}$_{n}$ {unit}" for n in (1, 2, 3)])
+    axes.set_proj_type("ortho")  # its horizon is where `faces_viewer` has it
+    axes.view_init(*angles(toward))
+    axes.legend(loc="upper left", fontsize=8, frameon=False)
+    curves = ", with levels of the energy" if levels else ""
+    axes.set_title(f"{symbol} on the sphere |{symbol}| = {radius:.4g}{curves}", fontsize=10)
 
 
-def _faces_viewer(vector: Array) -> NDArray[np.bool_]:
-    """Which points lie on the near side of the sphere, ``(T,)``."""
-    elevation, azimuth = np.radians(VIEW)
-    toward = np.array(
-        [
-            np.cos(elevation) * np.cos(azimuth),
-            np.cos(elevation) * np.sin(azimuth),
-            np.sin(elevation),
-        ]
-    )
-    side: NDArray[np.bool_] = toward @ vector >= 0  # (T,)
-    # A sample beyond the edge joins the parts; they would be drawn with a gap between them.
-    near = side.copy()
-    near[:-1] |= side[1:]
-    near[1:] |= side[:-1]
-    return near
-
-
-def _label_sphere(axes: Any, solution: Solution, name: str, radius: float) -> None:
-    """Axes, ticks, legend and title of the sphere."""
-    unit, symbol = unit_label(solution.system.STATE[name].unit), _symbol(name)
-    for n, axis in enumerate((axes.xaxis, axes.yaxis, axes.zaxis), 1):
-        axis.set_label_text(f"{symbol}$_{n}$ {unit}", fontsize=9)
-        axis.labelpad = 0
-        axis.get_major_locator().set_params(nbins=5)
+def _style_space(axes: Any, labels: Sequence[str]) -> None:
+    """Axes in space: labels, few ticks, no walls."""
+    for axis, label in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, strict=True):
+        axis.set_label_text(label, fontsize=9)
+        axis.labelpad = 2
+        axis.get_major_locator().set_params(nbins=4)
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis._axinfo["grid"].update(color="#e3e6ea", linewidth=0.6)
     axes.set_box_aspect((1, 1, 1), zoom=1.0)
     axes.tick_params(labelsize=7, pad=0)
-    axes.set_proj_type("ortho")  # its horizon is where `_faces_viewer` has it
-    axes.view_init(*VIEW)
-    axes.legend(loc="upper left", fontsize=8, frameon=False)
-    axes.set_title(
-        f"{symbol} on the sphere |{symbol}| = {radius:.4g}, "
-        f"t = {solution.time[0]:g} .. {solution.time_reached:g} s",
-        fontsize=10,
-    )
 
 
 def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
@@ -251,13 +320,15 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
     axes.set_yscale("log")
     _limit_time(axes, solution)
     axes.set_xlabel(f"time {unit_label(solution.unit('time'))}", fontsize=9)
-    axes.set_ylabel("relative change", fontsize=9)
-    axes.set_title("Invariants: change since the start (in parentheses: the largest)", fontsize=10)
+    axes.set_ylabel("relative\nchange", fontsize=8)
+    axes.yaxis.get_major_locator().set_params(numticks=4)
+    axes.yaxis.set_minor_formatter("")
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
     if solution.conserved:
-        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.3)}
-        axes.legend(fontsize=8, ncols=min(4, len(solution.conserved)), frameon=False, **below)
+        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+        columns = -(-len(solution.conserved) // 4)
+        axes.legend(fontsize=7 if columns == 1 else 6, ncols=columns, frameon=False, **beside)
 
 
 def _limit_time(axes: Any, solution: Solution) -> None:

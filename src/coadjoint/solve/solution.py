@@ -7,7 +7,6 @@ name, print, plot and export.
 from __future__ import annotations
 
 from functools import cached_property
-from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -478,4 +477,6 @@ class Solution:
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        return f"<pre>{escape(repr(self))}</pre>"
+        from coadjoint.notebook import show_solution
+
+        return show_solution(self)

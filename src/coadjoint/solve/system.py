@@ -463,6 +463,12 @@ class System(Functions):
         told = (f"{name} {q.listed or 'none'}" for name, q in tables.items())
         return f"<System {self.name}: {'; '.join(told)}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_system
+
+        return show_system(self)
+
 
 def _name_below(quantity: Quantity) -> Quantity:
     """A quantity of the state as what stands below it: the same rows of a vector."""

@@ -285,6 +285,16 @@ class Spec:
     written: str = ""
     units: KnownUnits = field(default=KnownUnits({}, {}), repr=False)
 
+    def __repr__(self) -> str:
+        on = self.algebra.name if self.algebra is not None else self.kind
+        return f"<Spec {self.name}: {self.title!r} on {on}, routes {', '.join(self.routes)}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from coadjoint.notebook import show_spec
+
+        return show_spec(self)
+
     def having_role(self, role: str) -> tuple[Variable, ...]:
         """The variables of one role, in declared order."""
         return tuple(variable for variable in self.variables if variable.role == role)

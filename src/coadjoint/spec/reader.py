@@ -20,8 +20,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.errors import CoadjointError, LimitError, SpecError, check_type
 from coadjoint.limits import SPEC_BYTES
+from coadjoint.resources import derivations_folder
 from coadjoint.spec.consistency import (
     check_blocks,
     check_covered,
@@ -72,6 +73,7 @@ def read_spec(
     >>> [name for variable in spec.state for name in variable.components]
     ['Pi1', 'Pi2', 'Pi3', 'Gamma1', 'Gamma2', 'Gamma3']
     """
+    check_type("read_spec", path, (str, os.PathLike), 'the path of a spec, "my.toml"')
     data = read_file(os.fspath(path))
     try:
         return read_spec_text(data.decode("utf-8"), path, sizes)
@@ -250,12 +252,23 @@ def _explain_unopened(path: str, error: OSError | ValueError) -> CoadjointError:
         return file_fault(path, "this is a symbolic link", "a regular file", hint, found=target)
     if number == errno.ENOENT:
         near = [str(p) for p in Path(path).parent.glob("*.toml")]
-        hint = did_you_mean(path, near)
+        hint = _name_shipped(path) or did_you_mean(path, near)
         return file_fault(path, "there is no such file", "a spec in TOML", hint, found=path)
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return file_fault(
         path, f"cannot be read: {reason}", "a readable regular file", found=str(reason)
     )
+
+
+def _name_shipped(path: str) -> str:
+    """How to get the spec or the shipped system that a name without an ending means."""
+    if not path.isidentifier():
+        return ""
+    if Path(f"{path}.toml").is_file():
+        return f"Did you mean './{path}.toml'?"
+    if (derivations_folder() / f"{path}.toml").is_file():
+        return f"The shipped system is loaded by: from coadjoint.systems import {path}."
+    return ""
 
 
 def _kind(mode: int) -> str:

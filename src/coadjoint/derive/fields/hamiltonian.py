@@ -79,5 +79,9 @@ def _name_term(of: Left, term: Term) -> Left:
         return of
     power = f"D^{term.order}" if term.order > 1 else "D"
     after = f" behind {power}" if term.right != 1 else f" before {power}"
-    inner = f"<mtext>{after}</mtext>"
-    return Left(of.text + after, rf"{of.latex}\text{{{after}}}", f"<mrow>{of.mathml}{inner}</mrow>")
+    return Left(
+        of.text + after,
+        rf"{of.latex}\text{{{after}}}",
+        f"<mrow>{of.mathml}<mtext>{after}</mtext></mrow>",
+        f'{of.typst} "{after}"',
+    )

@@ -1,0 +1,288 @@
+r"""Gradients of a spec's formulas as trees: of ``m*g*dot(Gamma, chi)`` by Gamma, ``m*g*chi``.
+
+The adjoint of a formula runs down its tree: below :math:`\langle g, Ax\rangle` stands
+:math:`A^Tg`, below :math:`\langle g, a\times b\rangle` stand :math:`b\times g` and
+:math:`g\times a`. What it gives is shown only after it was found equal to what was derived, so
+this module proves nothing and may give up.
+
+Comes in: the tree of a scalar, and the name of a variable. Goes out: addends, or None.
+Read next: `coadjoint.derive.vectors`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.shapes import shapes
+
+#: Derivatives of functions of one scalar.
+_SLOPES: Mapping[str, Callable[[tree.Node], tree.Node]] = {
+    "exp": lambda u: tree.Call(function="exp", arguments=(u,)),
+    "sin": lambda u: tree.Call(function="cos", arguments=(u,)),
+    "cos": lambda u: tree.Negate(operand=tree.Call(function="sin", arguments=(u,))),
+    "log": lambda u: tree.Power(base=u, exponent=-1),
+}
+
+
+class _GivesUpError(Exception):
+    """The formula holds something of which no adjoint is known here."""
+
+
+@dataclass(frozen=True)
+class Addend:
+    """A number times scalars over scalars, times a vector or a matrix; None for a scalar alone."""
+
+    number: Fraction = Fraction(1)
+    above: tuple[tree.Node, ...] = ()
+    below: tuple[tree.Node, ...] = ()
+    vector: tree.Node | None = None
+
+    @property
+    def tree(self) -> tree.Node:
+        """The addend as one tree, without its sign."""
+        size, upper = _write_turns(abs(self.number), self.above, 4)
+        size, under = _write_turns(size, self.below, Fraction(1, 4))
+        parts = list(upper) + ([] if self.vector is None else [self.vector])
+        if size.numerator != 1 or not parts:
+            parts.insert(0, tree.Number(Fraction(size.numerator)))
+        whole = parts[0]
+        for part in parts[1:]:
+            whole = tree.Binary("*", whole, part)
+        lower = list[tree.Node]()
+        if size.denominator != 1:
+            lower.append(tree.Number(Fraction(size.denominator)))
+        lower += under
+        if lower:
+            bottom = lower[0]
+            for part in lower[1:]:
+                bottom = tree.Binary("*", bottom, part)
+            whole = tree.Binary("/", whole, bottom)
+        return whole
+
+
+def _write_turns(
+    size: Fraction, factors: tuple[tree.Node, ...], four: Fraction | int
+) -> tuple[Fraction, list[tree.Node]]:
+    """Factors with pi in the place of atan(1), which is a quarter of it."""
+    written = [tree.Name("pi") if each == _EIGHTH else each for each in factors]
+    for each in factors:
+        size = size / four if each == _EIGHTH else size
+    return size, written
+
+
+_EIGHTH = tree.Call("atan", (tree.Number(Fraction(1)),))
+
+
+def total_of(addends: list[Addend]) -> tree.Node:
+    """The sum of addends."""
+    signed = [(each.number < 0, each.tree) for each in addends]
+    (minus, whole), *others = signed or [(False, tree.Number(Fraction(0)))]
+    whole = tree.Negate(whole) if minus else whole
+    for minus, part in others:
+        whole = tree.Binary("-" if minus else "+", whole, part)
+    return whole
+
+
+def gradient(
+    formula: tree.Node, by: tree.Node, parts: Sequence[str], scope: Mapping[str, Shape]
+) -> list[Addend] | None:
+    """The gradient of a scalar formula by a whole variable; None where it is not found.
+
+    Args:
+        formula: The tree.
+        by: The variable: a name.
+        parts: Names of its components, by which formulas may be written too.
+        scope: Shapes of quantities and components.
+    """
+    try:
+        known = shapes(formula, scope)
+        found = _collect(_pull(formula, Addend(), by, known))
+        slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
+    except (_GivesUpError, AssertionError, ExpressionError):
+        return None
+    if any(slopes):
+        found.append(Addend(vector=tree.Call("vector", tuple(map(total_of, slopes)))))
+    return found
+
+
+def _collect(addends: Iterable[Addend]) -> list[Addend]:
+    """Addends that differ by their numbers alone, added up."""
+    found = dict[tuple[object, ...], Addend]()
+    for each in addends:
+        key = (each.above, each.below, each.vector)
+        number = each.number + (found[key].number if key in found else 0)
+        found[key] = replace(each, number=number)
+    return [each for each in found.values() if each.number]
+
+
+def _is_it(node: tree.Node, by: tree.Node) -> bool:
+    """Whether a node is the variable; a component may be written with a subscript."""
+    if isinstance(node, tree.Index) and isinstance(by, tree.Name):
+        return "".join(map(str, (node.name, *node.indices))) == by.name
+    return node == by
+
+
+def _names(node: tree.Node, by: tree.Node) -> bool:
+    """Whether a formula names a variable."""
+    return any(_is_it(each, by) for each in tree.walk(node))
+
+
+def _pull(
+    node: tree.Node, adjoint: Addend, by: tree.Node, known: Mapping[int, Shape]
+) -> Iterator[Addend]:
+    """What an adjoint gives below a node."""
+    if _is_it(node, by):
+        yield adjoint
+        return
+    if not _names(node, by):
+        return
+    down = partial(_pull, by=by, known=known)
+    match node:
+        case tree.Negate(operand=operand):
+            yield from down(operand, replace(adjoint, number=-adjoint.number))
+        case tree.Binary(operator="+" | "-" as sign, left=left, right=right):
+            yield from down(left, adjoint)
+            turned = replace(adjoint, number=-adjoint.number if sign == "-" else adjoint.number)
+            yield from down(right, turned)
+        case tree.Binary(operator="/", left=left, right=right):
+            yield from down(left, _over(adjoint, right))
+            if _names(right, by):
+                grown = _times(_over(_over(adjoint, right), right), left, known[id(left)])
+                yield from down(right, replace(grown, number=-grown.number))
+        case tree.Binary(operator="*", left=left, right=right):
+            yield from _pull_product(left, right, adjoint, down, known, by)
+        case tree.Power(base=base, exponent=n) if not known[id(base)]:
+            slope = replace(adjoint, number=adjoint.number * n)
+            if n != 1:
+                raised = base if n == 2 else tree.Power(base, abs(n - 1))
+                slope = _over(slope, raised) if n < 1 else _by_scalar(slope, raised)
+            yield from down(base, slope)
+        case tree.Call(function="dot", arguments=(a, b)):
+            yield from down(a, _with(adjoint, b))
+            yield from down(b, _with(adjoint, a))
+        case tree.Call(function="cross", arguments=(a, b)):
+            g = _vector_of(adjoint)
+            yield from down(a, replace(adjoint, vector=tree.Call("cross", (b, g))))
+            yield from down(b, replace(adjoint, vector=tree.Call("cross", (g, a))))
+        case tree.Call(function="norm", arguments=(a,)):
+            yield from down(a, _over(_with(adjoint, a), node))
+        case tree.Call(function=function, arguments=(a,)) if function in _SLOPES:
+            yield from down(a, _by_scalar(adjoint, _SLOPES[function](a)))
+        case tree.Call(function="sqrt", arguments=(a,)):
+            yield from down(a, _over(replace(adjoint, number=adjoint.number / 2), node))
+        case _:
+            raise _GivesUpError
+
+
+def _pull_product(
+    left: tree.Node,
+    right: tree.Node,
+    adjoint: Addend,
+    down: Callable[[tree.Node, Addend], Iterator[Addend]],
+    known: Mapping[int, Shape],
+    by: tree.Node,
+) -> Iterator[Addend]:
+    """A product: of scalars and anything, or a matrix times a vector."""
+    first, second = known[id(left)], known[id(right)]
+    if not first:
+        yield from down(right, _by_scalar(adjoint, left))
+        if _names(left, by):
+            yield from down(left, _times(adjoint, right, second))
+    elif not second:
+        yield from down(left, _by_scalar(adjoint, right))
+        if _names(right, by):
+            yield from down(right, _times(adjoint, left, first))
+    elif len(first) == 2 and len(second) == 1 and not _names(left, by):
+        turned = left if _is_symmetric(left) else tree.Call("transpose", (left,))
+        g = _vector_of(adjoint)
+        yield from down(right, replace(adjoint, vector=tree.Binary("*", turned, g)))
+    else:
+        raise _GivesUpError
+
+
+def _is_symmetric(node: tree.Node) -> bool:
+    """Whether a matrix is diagonal, made of diagonal ones."""
+    match node:
+        case tree.Call(function="diag"):
+            return True
+        case tree.Call(function="inverse", arguments=(a,)) | tree.Power(base=a):
+            return _is_symmetric(a)
+        case tree.Binary(left=a, right=b):
+            return all(_is_symmetric(x) or isinstance(x, tree.Number) for x in (a, b))
+    return False
+
+
+def _vector_of(adjoint: Addend) -> tree.Node:
+    if adjoint.vector is None:
+        raise _GivesUpError
+    return adjoint.vector
+
+
+def _with(adjoint: Addend, vector: tree.Node) -> Addend:
+    """A scalar adjoint times a vector."""
+    if adjoint.vector is not None:
+        raise _GivesUpError
+    sign = 1
+    while isinstance(vector, tree.Negate):
+        vector, sign = vector.operand, -sign
+    return replace(adjoint, vector=vector, number=sign * adjoint.number)
+
+
+def _times(adjoint: Addend, value: tree.Node, shape: Shape) -> Addend:
+    """The adjoint of a scalar factor: the product of the adjoint with what it multiplies."""
+    if not shape:
+        return _by_scalar(adjoint, value)
+    product = tree.Call("dot", (_vector_of(adjoint), value))
+    return _by_scalar(replace(adjoint, vector=None), product)
+
+
+def _by_scalar(adjoint: Addend, factor: tree.Node) -> Addend:
+    """An adjoint times a scalar, numbers kept apart."""
+    match factor:
+        case tree.Number(value=value):
+            return replace(adjoint, number=adjoint.number * value)
+        case tree.Negate(operand=operand):
+            return _by_scalar(replace(adjoint, number=-adjoint.number), operand)
+        case tree.Binary(operator="*", left=left, right=right):
+            return _by_scalar(_by_scalar(adjoint, left), right)
+        case tree.Binary(operator="/", left=left, right=right):
+            return _over(_by_scalar(adjoint, left), right)
+        case tree.Power(base=base, exponent=n) if n < 0:
+            return _over(adjoint, base if n == -1 else tree.Power(base, -n))
+    if factor in adjoint.below:
+        rest = list(adjoint.below)
+        rest.remove(factor)
+        return replace(adjoint, below=tuple(rest))
+    return replace(adjoint, above=(*adjoint.above, factor))
+
+
+def _over(adjoint: Addend, divisor: tree.Node) -> Addend:
+    """An adjoint over a scalar; equal divisors become a power."""
+    match divisor:
+        case tree.Number(value=value):
+            return replace(adjoint, number=adjoint.number / value)
+        case tree.Binary(operator="*", left=left, right=right):
+            return _over(_over(adjoint, left), right)
+        case tree.Binary(operator="/", left=left, right=right):
+            return _by_scalar(_over(adjoint, left), right)
+    if divisor in adjoint.above:
+        rest = list(adjoint.above)
+        rest.remove(divisor)
+        return replace(adjoint, above=tuple(rest))
+    base, exponent = (
+        (divisor.base, divisor.exponent) if isinstance(divisor, tree.Power) else (divisor, 1)
+    )
+    lower, power = list(adjoint.below), exponent
+    for each in adjoint.below:
+        own = each.base if isinstance(each, tree.Power) else each
+        if own == base:
+            power += each.exponent if isinstance(each, tree.Power) else 1
+            lower.remove(each)
+    lower.append(base if power == 1 else tree.Power(base, power))
+    return replace(adjoint, below=tuple(lower))

@@ -1,0 +1,164 @@
+r"""The search for products of vectors in components, term by term.
+
+Components are searched for products of vectors: from a vocabulary of the spec's own vectors, of
+gradients of its energy, and of their products, a candidate is taken whose terms are all among those
+that remain, times a scalar of the spec; it is subtracted, and so on until nothing remains. The tree
+that is printed is evaluated once more, and found equal to the components in the exact field: a line
+is right or it is not there.
+
+Comes in: a vocabulary and the value of a rate. Goes out: addends. Read next:
+`coadjoint.derive.vectors.vocabulary`, which makes the candidates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import islice
+
+from coadjoint.derive.interpret import Value, entries
+from coadjoint.derive.vectors.gradients import Addend, total_of
+from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
+from coadjoint.exact import Element, Field
+from coadjoint.exact.dense import scale, subtract
+from coadjoint.notation.written import Written
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import Shape
+
+#: Terms of components beyond which nothing is searched for.
+MOST_TERMS = 4000
+#: Nodes of a formula beyond which it is no shorter than its components.
+LONGEST = 70
+#: Words beyond which products whose terms cancel are not searched for.
+MOST_WORDS = 20
+#: Products that one line may have.
+MOST_PRODUCTS = 8
+
+
+@dataclass(frozen=True)
+class VectorLine:
+    """An equation of a whole quantity.
+
+    Attributes:
+        left: Its left side.
+        right: Its right side.
+    """
+
+    left: tree.Node
+    right: tree.Node
+
+
+@dataclass(frozen=True)
+class VectorForm:
+    """What was found.
+
+    Attributes:
+        lines: The equations.
+        missing: Names of whole quantities of the state whose equations stand in components alone.
+        shapes: Shapes of whole quantities, for printing.
+        written: How some names are written.
+    """
+
+    lines: tuple[VectorLine, ...]
+    missing: tuple[str, ...]
+    shapes: Mapping[str, Shape]
+    written: Mapping[str, Written]
+
+
+def rate_of(node: tree.Node) -> tree.Node:
+    """The rate of a quantity."""
+    return tree.Call("rate_of", (node,))
+
+
+def tree_name(node: tree.Node) -> str:
+    """The name of a whole quantity."""
+    assert isinstance(node, tree.Name), node
+    return node.name
+
+
+def is_short(node: tree.Node) -> bool:
+    """Whether a formula can be read at one look."""
+    return sum(1 for _ in tree.walk(node)) <= LONGEST
+
+
+def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
+    """Addends whose sum is a value, exactly; None where none were found.
+
+    Args:
+        vocabulary: What may stand in the sum.
+        value: A vector or a matrix of elements, closed.
+    """
+    field = vocabulary.field
+    if _count(field, value) > MOST_TERMS:
+        return None
+    # products of which every term is there; else those whose terms cancel with one another's
+    matrix, words = isinstance(value[0], tuple), len(vocabulary.words)
+    for whole in (True, False) if not matrix and words <= MOST_WORDS else (True,):
+        found = _search(vocabulary, value, whole=whole)
+        if found == [] or (found and vocabulary.evaluate(total_of(found)) == value):
+            return found
+    return None
+
+
+def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend] | None:
+    """Addends taken one by one, the simplest kind of product first."""
+    like, found = rest, list[Addend]()
+    for level in range(vocabulary.levels):
+        while len(found) < MOST_PRODUCTS and any(map(bool, entries(rest))):
+            step = _best(vocabulary, vocabulary.candidates(like, level), rest, whole=whole)
+            if step is None:
+                break
+            addend, rest = step
+            found.append(addend)
+        if not any(map(bool, entries(rest))):
+            return found
+    return None
+
+
+def _best(
+    vocabulary: Vocabulary, candidates: Iterable[Candidate], rest: Value, *, whole: bool
+) -> tuple[Addend, Value] | None:
+    """The candidate that leaves fewest terms, with what it leaves."""
+    field, best = vocabulary.field, None
+    fewest = before = _count(field, rest)
+    for candidate in candidates:
+        for factor in _factors(vocabulary, candidate.value, rest):
+            left = subtract(rest, scale(factor, candidate.value))
+            count = _count(field, left)
+            if count >= fewest or (whole and before - count < _count(field, candidate.value)):
+                continue
+            written = vocabulary.write_scalar(factor)
+            if written is None:
+                continue
+            fewest, best = count, (_put(written, candidate.node), left)
+            if not count:
+                return best
+    return best
+
+
+def _put(scalar: Addend, vector: tree.Node) -> Addend:
+    """A scalar times a vector; minus a vector product is the product of the factors exchanged."""
+    match vector:
+        case tree.Call(function="cross" | "commutator" as function, arguments=(a, b)):
+            if scalar.number < 0:
+                return replace(scalar, number=-scalar.number, vector=tree.Call(function, (b, a)))
+    return Addend(scalar.number, scalar.above, scalar.below, vector)
+
+
+def _factors(vocabulary: Vocabulary, value: Value, rest: Value) -> list[Element]:
+    """Scalars of the spec by which a term of a candidate is a term of what remains."""
+    field = vocabulary.field
+    for own, wanted in zip(entries(value), entries(rest), strict=True):
+        if own and wanted:
+            first = field.terms(own)[0]
+            ratios = (term / first for term in islice(field.terms(wanted), 12))
+            return [each for each in ratios if vocabulary.is_scalar(each)]
+        if own:
+            # a candidate that has an entry where nothing remains can only add terms
+            return []
+    return []
+
+
+def _count(field: Field, value: Value) -> int:
+    """The number of terms of all components."""
+    return sum(len(field.terms(each)) for each in entries(value) if each)

@@ -1,0 +1,228 @@
+r"""Names as a book writes them: ``Pi1`` is :math:`\Pi_1`, ``dPi1_dt`` is :math:`\dot\Pi_1`.
+
+Comes in: a name of a spec or of a kernel. Goes out: a `Written`. Names of whole vectors are bold.
+Read next: `coadjoint.notation.trees`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from typing import Final
+
+from coadjoint.notation.written import (
+    SUM,
+    Written,
+    add,
+    attach,
+    divide,
+    literal,
+    number,
+    operator,
+    row,
+)
+
+GREEK: Final = {
+    name: (rf"\{name}", letter)
+    for name, letter in (
+        pair.split(":")
+        for pair in [
+            "alpha:α",
+            "beta:β",
+            "gamma:γ",
+            "delta:δ",
+            "epsilon:ε",
+            "zeta:ζ",
+            "eta:η",
+            "theta:θ",
+            "iota:ι",
+            "kappa:κ",
+            "lambda:λ",
+            "mu:μ",
+            "nu:ν",
+            "xi:ξ",
+            "pi:π",
+            "rho:ρ",
+            "sigma:σ",
+            "tau:τ",
+            "upsilon:υ",
+            "phi:φ",
+            "chi:χ",
+            "psi:ψ",
+            "omega:ω",
+            "Gamma:Γ",
+            "Delta:Δ",
+            "Theta:Θ",
+            "Lambda:Λ",
+            "Xi:Ξ",
+            "Pi:Π",
+            "Sigma:Σ",
+            "Upsilon:Υ",
+            "Phi:Φ",
+            "Psi:Ψ",
+            "Omega:Ω",
+        ]
+    )
+}
+_SHORT: Final = {"eps": "epsilon", "lam": "lambda"}
+_RATE = re.compile(r"d(?P<of>.+)_dt")
+#: A name and the numbers of a member, a row or a component behind it.
+_PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
+_ALONG = re.compile(r"(?P<of>.+)_(?P<s>s+)")
+_TYPST_GREEK: Final = {"phi": "phi.alt", "epsilon": "epsilon.alt"}
+
+
+@cache
+def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
+    r"""A name, with a dot if its rate is meant.
+
+    >>> name("Pi1", dot=True).latex, name("Gamma", bold=True).latex
+    ('\\dot{\\Pi}_1', '\\boldsymbol{\\Gamma}')
+    >>> name("M_1_10").latex, name("rolling_reaction2").latex
+    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2')
+    """
+    shown = f"d{text}/dt" if dot else text
+    plain = text.removeprefix("_")
+    rate = _RATE.fullmatch(plain)
+    if rate:
+        return replace(name(rate["of"], bold=bold, dot=True), text=shown)
+    along = _ALONG.fullmatch(plain)
+    if along and (along["of"][-1].isdigit() or _is_symbol(along["of"])):
+        of = name(along["of"], bold=bold)
+        return replace(differentiate_along(of, len(along["s"])), text=shown)
+    parts = _PARTS.fullmatch(plain)
+    if parts is None:
+        return replace(attach(_word(plain, bold=bold), dot=dot), text=shown)
+    numbers = parts["numbers"] or ""
+    below = [number(int(each)) for each in numbers.split("_") if each]
+    base, words = _split_word(parts["base"])
+    inner = _PARTS.fullmatch(base)
+    if words and inner is not None and inner["numbers"]:  # p1_pairs
+        base = inner["base"]
+        below = [*(number(int(each)) for each in inner["numbers"].split("_") if each), *below]
+    symbol = _letter(base, bold=bold) or _word(parts["base"], bold=bold)
+    if _letter(base, bold=bold) is not None and words:
+        below = [_letter(words, bold=False) or _word(words, bold=False), *below]
+    return replace(attach(symbol, below=below, dot=dot), text=shown)
+
+
+def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Written:
+    """What a member has: ``r2`` of the member ``i+1`` is a letter with the subscripts i+1 and 2."""
+    parts = _PARTS.fullmatch(of)
+    index, shift = re.fullmatch(r"(\w*?)([+-]\d+)?", place).groups()  # type: ignore[union-attr]
+    own = literal(index, mathml=f"<mn>{index}</mn>") if index.isdigit() else literal(index)
+    if shift:
+        own = add([own, number(int(shift))])
+    word = parts["base"] if parts else of
+    if _split_word(word)[1]:
+        return replace(attach(name(of, bold=bold), below=[own]), text=f"{of}[{place}]")
+    base = name(word, bold=bold)
+    numbers = [number(int(n)) for n in ((parts and parts["numbers"]) or "").split("_") if n]
+    shown = f"{of}[{place}]"
+    made = attach(base, below=[own, *numbers], dot=dot)
+    return replace(made, text=f"d{shown}/dt" if dot else shown)
+
+
+def differentiate_along(of: Written, times: int = 1, by: str = "s") -> Written:
+    """The derivative along space."""
+    again = f"^{times}" if times > 1 else ""
+    raised = f"<msup>{operator('&#x2202;')}<mn>{times}</mn></msup>" if times > 1 else ""
+    sign = raised or operator("&#x2202;")
+    return Written(
+        f"d{again}_{by} {of.text}" if not times > 1 else f"d_{by}^{times} {of.text}",
+        rf"\partial_{by}{again} {of.latex}",
+        row(f"<msub>{sign}<mi>{by}</mi></msub>", of.mathml),
+        f"diff_{by}{again} {of.typst}",
+        max(of.level - 1, SUM + 1),
+    )
+
+
+def _is_symbol(text: str) -> bool:
+    """Whether a name is one letter of some alphabet, with or without numbers."""
+    return _letter(text.rstrip("0123456789_"), bold=False) is not None
+
+
+def _split_word(base: str) -> tuple[str, str]:
+    """A letter and the word below it: ``p_phi``, ``Omega_momentum``, ``I_s``."""
+    head, _, rest = base.partition("_")
+    plain = head.rstrip("0123456789")
+    return (head, rest) if rest and _letter(plain, bold=False) is not None else (base, "")
+
+
+def _letter(base: str, *, bold: bool) -> Written | None:
+    """A letter, Latin or Greek; None for a word."""
+    base = _SHORT.get(base, base)
+    if base in GREEK:
+        latex, letter = GREEK[base]
+    elif len(base) == 1:
+        latex = letter = base
+    else:
+        return None
+    typst = _TYPST_GREEK.get(base, base)
+    if not bold:
+        return literal(base, latex, f"<mi>{letter}</mi>", typst)
+    return literal(
+        base,
+        rf"\boldsymbol{{{latex}}}",
+        f"<mi>{_bold(letter)}</mi>",
+        f"bold({typst})",
+    )
+
+
+def _bold(letter: str) -> str:
+    """A letter of the mathematical alphabet that is bold and italic, which needs no attribute."""
+    starts = {"A": 0x1D468, "a": 0x1D482, "Α": 0x1D71C, "α": 0x1D736}
+    for first, start in starts.items():
+        last = {"A": "Z", "a": "z", "Α": "Ω", "α": "ω"}[first]
+        if first <= letter <= last:
+            # the capitals of the mathematical alphabet have a theta symbol where Greek has a gap
+            return chr(start + ord(letter) - ord(first))
+    return letter
+
+
+def _word(base: str, *, bold: bool) -> Written:
+    """A word, upright."""
+    spaced = base.replace("_", " ").strip() or base
+    latex = spaced.replace(" ", r"\ ")
+    style = "mathbf" if bold else "mathrm"
+    weight = "bold" if bold else "normal"
+    return literal(
+        base,
+        rf"\{style}{{{latex}}}",
+        f'<mi mathvariant="{weight}">{spaced}</mi>',
+        f'bold("{spaced}")' if bold else f'"{spaced}"',
+    )
+
+
+def partial(function: Written, by: Written) -> Written:
+    """A partial derivative."""
+    d = operator("&#x2202;")
+    made = divide(
+        Written(
+            "", rf"\partial {function.latex}", row(d, function.mathml), f"diff {function.typst}"
+        ),
+        Written("", rf"\partial {by.latex}", row(d, by.mathml), f"diff {by.typst}"),
+    )
+    return replace(made, text=f"d{function.text}/d{by.text}")
+
+
+def unit(text: str) -> Written:
+    r"""A unit, upright, with its exponents raised.
+
+    >>> unit("kg m^2/s").latex
+    '\\mathrm{kg\\,m^{2}/s}'
+    """
+    spaced = text.replace("*", " ")
+    latex = re.sub(r"\^(-?\d+)", r"^{\1}", spaced).replace(" ", r"\,")
+    pieces = list[str]()
+    for label, exponent, sign in re.findall(r"([^\s/^]+)(?:\^(-?\d+))?([\s/]*)", spaced):
+        shown = f'<mi mathvariant="normal">{label}</mi>'
+        if exponent:
+            minus = operator("−") if exponent.startswith("-") else ""
+            shown = f"<msup>{shown}{row(minus, f'<mn>{exponent.lstrip(chr(45))}</mn>')}</msup>"
+        pieces.append(shown)
+        if sign:
+            pieces.append(operator("/") if "/" in sign else '<mspace width="0.2em"/>')
+    typst = re.sub(r"([A-Za-z]+)", r'"\1"', re.sub(r"\^(-?\d+)", r"^(\1)", spaced))
+    return literal(text, rf"\mathrm{{{latex}}}", row(*pieces) if pieces else "<mrow></mrow>", typst)

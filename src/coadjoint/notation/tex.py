@@ -1,0 +1,142 @@
+r"""The LaTeX of general laws as MathML, as far as laws of this package use it.
+
+Comes in: LaTeX that this package wrote, such as ``\dot\mu = \mathrm{ad}^*_\xi \mu``. Goes out:
+MathML, or None for a command that is not known here; pages then show the law as plain text.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from markupsafe import escape
+
+from coadjoint.notation.names import GREEK
+from coadjoint.notation.written import DOT_ABOVE, row
+
+_PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+|[^\s]")
+_OPERATORS: Final = {
+    "partial": "∂", "nabla": "∇", "cdot": "⋅", "times": "×", "diamond": "⋄", "sum": "∑",
+    "int": "∫", "circ": "∘", "mp": "∓", "pm": "±", "mapsto": "↦", "wedge": "∧", "to": "→",
+    "notin": "∉", "ge": "≥", "le": "≤", "ne": "≠", "langle": "⟨", "rangle": "⟩", "ldots": "…",
+    "dots": "…", "Longrightarrow": "⟹", "{": "{", "}": "}", "|": "‖", "iota": "ι", "in": "∈",
+    "otimes": "⊗", "top": "⊤", "infty": "∞",
+}  # fmt: skip
+_SPACES: Final = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", " ": "0.3em"}
+_ACCENTS: Final = {"ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯"}
+_SIZES: Final = ("left", "right", "big", "Big", "bigl", "bigr", "Bigl", "Bigr")
+_WORDS: Final = ("sin", "cos", "tan", "exp", "log", "det", "min", "max")
+_LETTERS: Final = {"varphi": "φ", "ell": "ℓ"}
+
+
+class _UnknownError(Exception):
+    """A command that stands in no table."""
+
+
+def to_mathml(latex: str) -> str | None:
+    r"""MathML of a law.
+
+    >>> to_mathml(r"\mu_1")
+    '<math><msub><mi>μ</mi><mn>1</mn></msub></math>'
+    >>> to_mathml(r"\unknown") is None
+    True
+    """
+    try:
+        reader = _Reader(_PIECE.findall(latex))
+        return f"<math>{row(*reader.row(stop=''))}</math>"
+    except (_UnknownError, IndexError):
+        return None
+
+
+class _Reader:
+    """One reading of one law."""
+
+    def __init__(self, pieces: list[str]) -> None:
+        self.pieces, self.at = pieces, 0
+
+    def row(self, stop: str) -> list[str]:
+        """Elements up to a piece, with what is above and below them."""
+        parts = list[str]()
+        while self.at < len(self.pieces) and self.pieces[self.at] != stop:
+            parts.append(self._scripted())
+        if stop:
+            self._take()
+        return parts or ["<mrow></mrow>"]
+
+    def _take(self) -> str:
+        self.at += 1
+        return self.pieces[self.at - 1]
+
+    def _scripted(self) -> str:
+        """One element with its subscript and its superscript."""
+        base, scripts = self._atom(), dict[str, str]()
+        while self.at < len(self.pieces) and self.pieces[self.at] in ("_", "^", "'"):
+            kind = self._take()
+            scripts["^" if kind == "'" else kind] = "<mo>′</mo>" if kind == "'" else self._atom()
+        match sorted(scripts):
+            case ["^"]:
+                return f"<msup>{base}{scripts['^']}</msup>"
+            case ["_"]:
+                return f"<msub>{base}{scripts['_']}</msub>"
+            case ["^", "_"]:
+                return f"<msubsup>{base}{scripts['_']}{scripts['^']}</msubsup>"
+        return base
+
+    def _atom(self) -> str:
+        piece = self._take()
+        if piece == "{":
+            return row(*self.row(stop="}"))
+        if not piece.startswith("\\"):
+            return _plain(piece)
+        name = piece[1:]
+        if name in GREEK:
+            return f"<mi>{GREEK[name][1]}</mi>"
+        if name in _LETTERS:
+            return f"<mi>{_LETTERS[name]}</mi>"
+        if name in _OPERATORS:
+            return f"<mo>{_OPERATORS[name]}</mo>"
+        if name in _SPACES:
+            return f'<mspace width="{_SPACES[name]}"/>'
+        if name == "dot":
+            return f"<mover>{self._atom()}{DOT_ABOVE}</mover>"
+        if name in _ACCENTS:
+            return f'<mover accent="true">{self._atom()}<mo>{_ACCENTS[name]}</mo></mover>'
+        if name in _SIZES:
+            return self._atom()
+        if name in _WORDS:
+            return f"<mi>{name}</mi>"
+        if name in ("frac", "tfrac"):
+            return f"<mfrac>{self._atom()}{self._atom()}</mfrac>"
+        if name == "sqrt":
+            return f"<msqrt>{self._atom()}</msqrt>"
+        if name in ("mathrm", "operatorname", "text", "mathcal", "mathbf"):
+            return self._words(upright=name != "mathcal")
+        raise _UnknownError(name)
+
+    def _words(self, *, upright: bool) -> str:
+        """Letters in braces as one word."""
+        if self._take() != "{":
+            raise _UnknownError
+        letters = list[str]()
+        while (piece := self._take()) != "}":
+            letters.append(piece)
+        text = escape("".join(letters))
+        return f'<mi mathvariant="normal">{text}</mi>' if upright else f"<mi>{text}</mi>"
+
+
+def _plain(piece: str) -> str:
+    """A letter, a number or a sign."""
+    if piece.isdigit():
+        return f"<mn>{piece}</mn>"
+    if piece.isalpha():
+        return f"<mi>{piece}</mi>"
+    return f"<mo>{'−' if piece == '-' else escape(piece)}</mo>"
+
+
+def is_formula(latex: str, text: str) -> bool:
+    """Whether the LaTeX of a law is one, and not its words once more.
+
+    >>> is_formula("imposed before the variation", "imposed before the variation")
+    False
+    """
+    return bool(latex) and (latex != text or not re.search(r"[A-Za-z]{3}", text))

@@ -1,0 +1,221 @@
+"""Trees of specs as formulas of a book: ``dot(Gamma, chi)`` is a product with a dot.
+
+Comes in: a tree of `coadjoint.spec.core.tree`, and which of its names are vectors. Goes out: a
+`Written`. Read next: `coadjoint.notation.elements`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Final
+
+from coadjoint.notation.names import differentiate_along, name, partial
+from coadjoint.notation.written import (
+    ATOM,
+    CROSS,
+    DOT,
+    OUTER,
+    SUM,
+    Written,
+    add,
+    attach,
+    between,
+    bracket,
+    call,
+    divide,
+    enclose,
+    literal,
+    multiply,
+    negate,
+    number,
+    operator,
+    power,
+    root,
+    row,
+)
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import Shape
+
+#: Functions that only printed lines have: the rate of a name, and a derivative along space.
+RATE: Final = "rate_of"
+ALONG: Final = "along_space"
+CALLS: Final[Mapping[str, Callable[..., Written]]] = {
+    "dot": lambda a, b: between(a, DOT, b),
+    "cross": lambda a, b: between(a, CROSS, b),
+    "outer": lambda a, b: between(a, OUTER, b),
+    "commutator": lambda a, b: enclose([a, b]),
+    "qmul": lambda a, b: multiply([a, b]),
+    "transpose": lambda a: _raise(a, "T", "⊤"),
+    "conjugate": lambda a: _raise(a, "*", "*"),
+    "inverse": lambda a: power(a, -1),
+    "norm": lambda a: enclose([a], "||"),
+    "abs": lambda a: enclose([a], "||"),
+    "sqrt": root,
+    "exp": lambda a: _exponential(a),
+    "vector": lambda *a: enclose(a, "()"),
+    "pow": power,
+    "hat": lambda a: _hat(a),
+}
+
+
+def write_tree(
+    node: tree.Node, shapes: Mapping[str, Shape], names: Mapping[str, Written] | None = None
+) -> Written:
+    r"""A tree as a formula.
+
+    Args:
+        node: The tree.
+        shapes: Shapes of whole quantities by name; those of vectors are bold.
+        names: How some names are written, in the place of their own way.
+
+    >>> from coadjoint.spec.core.expressions import read_expression
+    >>> formula = read_expression("m*g*dot(Gamma, chi)/2")
+    >>> shapes = {"Gamma": (3,), "chi": (3,)}
+    >>> write_tree(formula, shapes).text
+    '1/2 m g Gamma . chi'
+    >>> write_tree(formula, shapes).latex
+    '\\frac{1}{2}\\,m\\,g\\,\\boldsymbol{\\Gamma} \\cdot \\boldsymbol{\\chi}'
+    """
+    known = names or {}
+
+    def write_name(text: str) -> Written:
+        if text in known:
+            return known[text]
+        if text == "pi" and text not in shapes:
+            return literal("pi", r"\pi", "<mi>π</mi>", "pi")
+        return name(text, bold=len(shapes.get(text, ())) == 1)
+
+    def value(part: tree.Node, below: list[Written]) -> Written:
+        match part:
+            case tree.Number(value=exact):
+                return number(exact)
+            case tree.Name(name=text):
+                return write_name(text)
+            case tree.Index(name=text, indices=indices):
+                return attach(name(text), below=[number(i) for i in indices])
+            case tree.Member(name=text, indices=indices):
+                whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
+                place = _place(part)
+                made = attach(whole, below=[place, *map(number, indices)])
+                return replace(made, text=f"{text}[{', '.join([place.text, *map(str, indices)])}]")
+            case tree.Entry(name=text):
+                return attach(name(text), below=below)
+            case tree.Component(indices=indices):
+                return attach(bracket(below[0], ATOM), below=[number(i) for i in indices])
+            case tree.Negate():
+                return negate(below[0])
+            case tree.Power(exponent=exponent):
+                return power(below[0], exponent)
+            case tree.Binary(operator="+"):
+                return add(below)
+            case tree.Binary(operator="-"):
+                return add([below[0], negate(below[1])])
+            case tree.Binary(operator="*"):
+                return multiply(below)
+            case tree.Binary(operator="/"):
+                return _divide(part, *below)
+            case tree.Sum(indices=indices, sign=sign):
+                return write_sum(indices, below, sign)
+            case tree.Call(function="diag"):
+                return call("diag", below)
+            case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
+                written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)
+                return written if text not in known else _rate(below[0])
+            case tree.Call(function="rate_of", arguments=(tree.Member() as of,)) if not of.indices:
+                whole = name(of.name, bold=len(shapes.get(of.name, ())) == 1)
+                place = _place(of)
+                shown = attach(whole, below=[place], dot=True)
+                return replace(shown, text=f"d{of.name}[{place.text}]/dt")
+            case tree.Call(function="rate_of"):
+                return _rate(below[0])
+            case tree.Call(function="slope_of"):
+                return partial(*below)
+            case tree.Call(function="along_space"):
+                return differentiate_along(below[0])
+            case tree.Call(function=function) if function in CALLS:
+                return CALLS[function](*below)
+            case tree.Call(function=function):
+                return call(function, below)
+        raise AssertionError(part)
+
+    return tree.fold(node, value)
+
+
+def _place(member: tree.Member) -> Written:
+    """The place of a member: ``i+1``."""
+    own = literal(member.index)
+    if not member.shift:
+        return own
+    shifted = add([own, number(member.shift)])
+    return replace(shifted, text=shifted.text.replace(" ", ""))
+
+
+def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:
+    """A fraction; a plain number below stands before what it divides."""
+    if isinstance(node.right, tree.Number) and not isinstance(node.left, tree.Number | tree.Name):
+        return multiply([number(1 / node.right.value), top])
+    return divide(top, bottom)
+
+
+def _raise(base: Written, text: str, mark: str) -> Written:
+    """A mark above: of a transpose, a conjugate."""
+    own = bracket(base, ATOM)
+    latex = r"\top" if text == "T" else text
+    return Written(
+        f"{own.text}^{text}",
+        f"{own.latex}^{{{latex}}}",
+        f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
+        f"{own.typst}^({'top' if text == 'T' else 'ast'})",
+    )
+
+
+def _exponential(exponent: Written) -> Written:
+    base = literal("e", "e", "<mi>e</mi>", "e")
+    inner = add([exponent]) if exponent.sign < 0 else exponent
+    return replace(power(base, inner), text=f"exp({inner.text})", level=ATOM)
+
+
+def _hat(vector: Written) -> Written:
+    return Written(
+        f"hat({vector.text})",
+        rf"\widehat{{{vector.latex}}}",
+        f'<mover accent="true">{vector.mathml}{operator("^")}</mover>',
+        f"hat({vector.typst})",
+    )
+
+
+def _rate(of: Written) -> Written:
+    """The rate of what has no dot of its own."""
+    return Written(
+        f"d({of.text})/dt" if of.level < ATOM else f"d{of.text}/dt",
+        rf"\frac{{d}}{{dt}} {bracket(of, ATOM).latex}",
+        row("<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>", bracket(of, ATOM).mathml),
+        f"frac(dif, dif t) {bracket(of, ATOM).typst}",
+    )
+
+
+def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Written:
+    """A sum over members, with the two sides of its condition before its term."""
+    *sides, term = below
+    listed = ", ".join(indices)
+    text, latex, typst = listed, listed, listed
+    mathml = operator(",").join(f"<mi>{i}</mi>" for i in indices)
+    if sides:
+        marks = {"!=": ("≠", r"\ne", "eq.not"), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
+        marks |= {"<=": ("≤", r"\le", "<="), ">=": ("≥", r"\ge", ">="), "==": ("=", "=", "=")}
+        shown, in_latex, in_typst = marks[sign]
+        a, b = sides
+        text = f"{listed}, {a.text} {sign} {b.text}"
+        latex, typst = f"{a.latex} {in_latex} {b.latex}", f"{a.typst} {in_typst} {b.typst}"
+        mathml = row(a.mathml, operator(shown), b.mathml)
+    outer, term = term.sign, replace(term, sign=1)
+    own = bracket(term, SUM + 1)
+    return Written(
+        f"sum({text}, {term.text})",
+        rf"\sum_{{{latex}}} {own.latex}",
+        row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
+        f"sum_({typst}) {own.typst}",
+        SUM + 1,
+        outer,
+    )

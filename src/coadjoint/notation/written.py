@@ -1,0 +1,324 @@
+r"""Pieces of formulas, each written as text, LaTeX, MathML and Typst, and how they are joined.
+
+Comes in: pieces. Goes out: the piece that they make. A piece knows how tightly it binds, so that
+brackets stand only where they are needed. Read next: `coadjoint.notation.names`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+from markupsafe import escape
+
+#: The dot of a rate; the accent of fonts is too small to be seen on a bold letter.
+DOT_ABOVE: Final = '<mo style="font-size: 1.3em">.</mo>'
+#: How tightly a piece binds: a sum, a product, a power, a single symbol.
+SUM: Final = 1
+PRODUCT: Final = 2
+POWER: Final = 3
+ATOM: Final = 4
+#: Addends on one line of LaTeX.
+ADDENDS: Final = 7
+#: Characters of text that a line of a page may be long, about.
+WIDTH: Final = 80
+
+
+@dataclass(frozen=True)
+class Written:
+    """A piece of a formula in every format.
+
+    Attributes:
+        text: Plain ASCII text.
+        latex: LaTeX in math mode.
+        mathml: Presentation MathML, a single element.
+        typst: Typst in math mode.
+        level: How tightly it binds: `SUM`, `PRODUCT`, `POWER` or `ATOM`.
+        sign: -1 where the piece is minus what is written, for a sum to write between addends.
+        between: Whether it is a product with a sign between its factors.
+        factors: Of a product, its factors; empty for all else.
+        rows: Of a sum, the pieces of MathML that fit on each line of a page.
+        lines: Of a sum, the LaTeX of what fits on each line.
+    """
+
+    text: str
+    latex: str
+    mathml: str
+    typst: str
+    level: int = ATOM
+    sign: int = 1
+    between: bool = False
+    factors: tuple[Written, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    lines: tuple[str, ...] = ()
+
+
+def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
+    """A symbol as it is."""
+    return Written(text, latex or text, mathml or f"<mi>{escape(text)}</mi>", typst or text)
+
+
+def row(*elements: str) -> str:
+    """Elements of MathML as one."""
+    return elements[0] if len(elements) == 1 else f"<mrow>{''.join(elements)}</mrow>"
+
+
+def operator(text: str, space: str = "") -> str:
+    """An operator of MathML."""
+    spaced = f' lspace="{space}" rspace="{space}"' if space else ""
+    return f"<mo{spaced}>{text}</mo>"
+
+
+def number(value: Fraction | int) -> Written:
+    """A number; a negative one carries its sign."""
+    value = Fraction(value)
+    size, sign = abs(value), -1 if value < 0 else 1
+    top, bottom = (
+        Written(str(n), str(n), f"<mn>{n}</mn>", str(n)) for n in (size.numerator, size.denominator)
+    )
+    if size.denominator == 1:
+        return replace(top, sign=sign)
+    return replace(divide(top, bottom), sign=sign)
+
+
+def bracket(part: Written, level: int) -> Written:
+    """A piece that binds at least so tightly, in brackets where it does not."""
+    if part.sign < 0:
+        part = add([part])
+    if part.level >= level:
+        return part
+    return Written(
+        f"({part.text})",
+        rf"\left({part.latex}\right)",
+        row(operator("("), part.mathml, operator(")")),
+        f"({part.typst})",
+    )
+
+
+def add(parts: Sequence[Written]) -> Written:
+    """A sum, each addend with its sign."""
+    if not parts:
+        return number(0)
+    if len(parts) == 1 and parts[0].sign > 0:
+        return parts[0]
+    texts, rows, width, lines = ["", "", ""], [list[str]()], 0, list[str]()
+    for n, part in enumerate(parts):
+        plain = bracket(replace(part, sign=1), PRODUCT if part.sign < 0 else SUM)
+        sign = "-" if part.sign < 0 else "+"
+        first = sign if sign == "-" else ""
+        if n % ADDENDS == 0:
+            lines.append("")
+        for k, text in enumerate((plain.text, plain.latex, plain.typst)):
+            texts[k] += (f" {sign} " if n else first) + text
+        lines[-1] += (f"{' ' * bool(lines[-1])}{sign} " if n else first) + plain.latex
+        width += len(plain.text)
+        if width > WIDTH and n:
+            rows.append([])
+            width = len(plain.text)
+        if n or first:
+            rows[-1].append(operator("&#x2212;" if sign == "-" else "+"))
+        rows[-1].append(plain.mathml)
+    whole = row(*(piece for each in rows for piece in each))
+    return Written(
+        texts[0], texts[1], whole, texts[2], SUM, rows=tuple(map(tuple, rows)), lines=tuple(lines)
+    )
+
+
+def stack_latex(part: Written) -> str:
+    """The LaTeX of a right side, a long sum on further lines of an ``align``."""
+    return " \\\\\n&\\quad ".join(part.lines) if len(part.lines) > 1 else part.latex
+
+
+def stack(part: Written) -> str:
+    """The MathML of a right side, a long sum in rows below each other."""
+    if len(part.rows) < 2:
+        return part.mathml
+    left = 'style="text-align: left; padding: 0.25em 0"'
+    cells = (f"<mtr><mtd {left}>{row(*each)}</mtd></mtr>" for each in part.rows)
+    return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
+
+
+def negate(part: Written) -> Written:
+    """Minus a piece; in a sum it takes the sign between addends."""
+    return replace(part, sign=-part.sign)
+
+
+def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
+    """A product without a sign between factors; numbers before it are left out if they are 1."""
+    sign = 1
+    for part in parts:
+        sign *= part.sign
+    plain = [each for p in parts for each in (p.factors or (replace(p, sign=1),))]
+    plain = [part for part in plain if part.text != "1"] or [number(1)]
+    if len(plain) == 1:
+        return replace(plain[0], sign=sign)
+    *before, last = plain
+    # a product of vectors before another factor could be taken for a part of it
+    own = [bracket(part, POWER if part.between else PRODUCT) for part in before]
+    own.append(bracket(last, PRODUCT))
+    return Written(
+        joint.join(part.text for part in own),
+        r"\,".join(part.latex for part in own),
+        row(*_spaced([part.mathml for part in own])),
+        " ".join(part.typst for part in own),
+        PRODUCT,
+        sign,
+        between=last.between,
+        factors=tuple(plain),
+    )
+
+
+def _spaced(factors: Sequence[str]) -> list[str]:
+    """Factors with a thin space between them."""
+    thin = '<mspace width="0.17em"/>'
+    spaced = [piece for factor in factors for piece in (thin, factor)]
+    return spaced[1:]
+
+
+def divide(top: Written, bottom: Written) -> Written:
+    """A fraction."""
+    sign, top = top.sign, replace(top, sign=1)
+    upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
+    return Written(
+        f"{upper.text}/{lower.text}",
+        rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
+        f"<mfrac>{top.mathml}{bottom.mathml}</mfrac>",
+        f"frac({top.typst}, {bottom.typst})",
+        PRODUCT,
+        sign,
+    )
+
+
+def power(base: Written, exponent: Written | int) -> Written:
+    """A power; of a number or symbol without brackets."""
+    if exponent == 1:
+        return base
+    raised = number(exponent) if isinstance(exponent, int) else exponent
+    raised = add([raised]) if raised.sign < 0 else raised
+    own = bracket(base, ATOM)
+    shown = raised.text if raised.level == ATOM else f"({raised.text})"
+    return Written(
+        f"{own.text}^{shown}",
+        f"{{{own.latex}}}^{{{raised.latex}}}",
+        f"<msup>{own.mathml}{raised.mathml}</msup>",
+        f"{own.typst}^({raised.typst})",
+        POWER,
+    )
+
+
+def root(part: Written) -> Written:
+    """A square root."""
+    inner = add([part]) if part.sign < 0 else part
+    return Written(
+        f"sqrt({inner.text})",
+        rf"\sqrt{{{inner.latex}}}",
+        f"<msqrt>{inner.mathml}</msqrt>",
+        f"sqrt({inner.typst})",
+    )
+
+
+def call(function: str, arguments: Sequence[Written]) -> Written:
+    """A function of arguments, by its name in upright letters."""
+    inner = [add([part]) if part.sign < 0 else part for part in arguments]
+    known = function in _LATEX_FUNCTIONS
+    comma = "".join(piece for part in inner for piece in (operator(","), part.mathml)).removeprefix(
+        operator(",")
+    )
+    latex_name = rf"\{function}" if known else rf"\operatorname{{{function}}}"
+    return Written(
+        f"{function}({', '.join(part.text for part in inner)})",
+        rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
+        f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
+        f"<mrow>{operator('(')}{comma}{operator(')')}</mrow></mrow>",
+        f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
+        f"({', '.join(part.typst for part in inner)})",
+    )
+
+
+_LATEX_FUNCTIONS: Final = frozenset(
+    [
+        "sin",
+        "cos",
+        "tan",
+        "exp",
+        "log",
+        "arcsin",
+        "arccos",
+        "arctan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "det",
+        "min",
+        "max",
+    ]
+)
+
+
+def between(left: Written, sign: tuple[str, str, str, str], right: Written) -> Written:
+    """A product of vectors, by the sign that stands between its factors."""
+    outer = left.sign * right.sign
+    a, b = (bracket(replace(part, sign=1), POWER) for part in (left, right))
+    text, latex, mathml, typst = sign
+    return Written(
+        f"{a.text} {text} {b.text}",
+        f"{a.latex} {latex} {b.latex}",
+        row(a.mathml, operator(mathml), b.mathml),
+        f"{a.typst} {typst} {b.typst}",
+        PRODUCT,
+        outer,
+        between=True,
+    )
+
+
+#: Signs between vectors: text, LaTeX, MathML, Typst.
+CROSS: Final = ("x", r"\times", "&#xD7;", "times")
+DOT: Final = (".", r"\cdot", "&#x22C5;", "dot.op")
+OUTER: Final = ("(x)", r"\otimes", "&#x2297;", "times.circle")
+
+
+def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
+    """Pieces with commas between them, in brackets of a kind: ``[]``, ``{}``, ``()`` or ``||``."""
+    inner = [add([part]) if part.sign < 0 else part for part in parts]
+    first, last = marks[0], marks[1]
+    braces = {"{": r"\{", "}": r"\}"}
+    opens, closes = (
+        (r"\lvert ", r"\rvert")
+        if first == "|"
+        else (braces.get(first, first), braces.get(last, last))
+    )
+    typst = ", ".join(part.typst for part in inner)
+    return Written(
+        first + ", ".join(part.text for part in inner) + last,
+        opens + ", ".join(part.latex for part in inner) + closes,
+        row(operator(first), operator(",").join(part.mathml for part in inner), operator(last)),
+        f"abs({typst})" if first == "|" else f"{first}{typst}{last}",
+    )
+
+
+def attach(
+    base: Written, *, below: Sequence[Written] = (), above: Written | None = None, dot: bool = False
+) -> Written:
+    r"""A symbol with subscripts, a superscript or a dot, the dot over the symbol alone.
+
+    >>> attach(literal("Pi", r"\Pi"), below=[number(1)], dot=True).latex
+    '\\dot{\\Pi}_1'
+    """
+    latex, mathml, typst = base.latex, base.mathml, base.typst
+    if dot:
+        latex = rf"\dot{{{latex}}}"
+        mathml = f"<mover>{mathml}{DOT_ABOVE}</mover>"
+        typst = f"dot({typst})"
+    if below:
+        comma = ",".join(each.latex for each in below)
+        latex = f"{latex}_{{{comma}}}" if len(comma) > 1 else f"{latex}_{comma}"
+        lower = operator(",").join(each.mathml for each in below)
+        mathml = f"<msub>{mathml}{row(lower) if len(below) == 1 else row(lower, '')}</msub>"
+        typst = f"{typst}_({', '.join(each.typst for each in below)})"
+    if above is not None:
+        latex = f"{latex}^{{{above.latex}}}"
+        mathml = f"<msup>{mathml}{above.mathml}</msup>"
+        typst = f"{typst}^({above.typst})"
+    return replace(base, latex=latex, mathml=mathml, typst=typst)

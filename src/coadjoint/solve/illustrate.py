@@ -1,0 +1,46 @@
+"""Pictures of motions for documents: drawn from the generated code, as an address of data.
+
+Comes in: a System. Goes out: the picture and its caption. Read next: `coadjoint.solve.plot`.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
+
+#: Units of time that a picture covers, and samples along it.
+SPAN, SAMPLES = 20.0, 1500
+#: Dots for an inch of it: two for each point of a page.
+RESOLUTION = 100
+
+
+def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
+    """A motion from a state, with the default parameters.
+
+    Raises:
+        CoadjointError: matplotlib is not installed, or the motion cannot begin there.
+    """
+    from coadjoint.solve.plot import draw
+
+    with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
+        warnings.simplefilter("ignore")
+        solution = system.simulate(state, (0.0, SPAN), samples=SAMPLES, progress=False)
+    place = io.BytesIO()
+    draw(solution).savefig(place, format="png", dpi=RESOLUTION)
+    data = base64.b64encode(place.getvalue()).decode("ascii")
+    return {"picture": f"data:image/png;base64,{data}", "caption": describe(solution)}
+
+
+def describe(solution: Solution) -> str:
+    """What the picture shows."""
+    return (
+        f"A motion with the default parameters over {SPAN:g} {solution.unit('time')}, by the "
+        "generated code. Colour is time, dark at the start."
+    )

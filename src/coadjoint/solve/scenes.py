@@ -1,0 +1,191 @@
+"""What a picture of a system shows: a path in space, a sphere with level curves, or components.
+
+Particles move in space; a vector of constant length moves on a sphere, where the other levels of
+the energy are its neighbours. Colour is time. Comes in: a `Solution` and axes. Goes out: drawn
+axes. Read next: `coadjoint.solve.plot`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import CoadjointError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.solve.solution import Solution
+
+    Array = NDArray[np.float64]
+
+#: A map of colours that is even in lightness and stays apart for colour-blind readers.
+TIME_MAP: Final = "viridis"
+#: Relative change of |m|^2 below which a three-vector is drawn on its sphere.
+ON_SPHERE: Final = 1e-6
+#: Members whose paths are drawn one by one.
+MOST_PATHS: Final = 12
+#: Levels of the energy on a sphere, and points of it along and across.
+LEVELS, ALONG, ACROSS = 9, 90, 45
+#: Sines of the lowest and the highest elevation of a viewer.
+STEEPEST: Final = (-0.6, 0.72)
+#: Sine of the elevation below which circles are seen from their edge.
+LEAST: Final = 0.3
+#: Extent along an axis, over the largest one, below which a motion is in a plane.
+FLAT: Final = 1e-9
+#: Length of a coordinate in units of the spec.
+_LENGTH: Final = "m"
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Positions in the plane or in space over time.
+
+    Attributes:
+        names: Names of the axes.
+        unit: Their unit.
+        members: ``(members, dimensions, T)``.
+    """
+
+    names: tuple[str, ...]
+    unit: str
+    members: Array
+
+
+def find_paths(solution: Solution) -> Paths | None:
+    """What moves in the plane or in space; None where nothing of the state is a position."""
+    state = solution.system.STATE
+    for name, quantity in state.items():
+        dimensions = quantity.shape[0] if quantity.shape else 0
+        if quantity.unit == _LENGTH and dimensions in (2, 3) and len(quantity.shape) <= 2:
+            values = np.asarray(solution[name]).reshape(dimensions, -1, len(solution))
+            names = tuple(f"{name}{n + 1}" for n in range(dimensions))
+            return _paths(names, quantity.unit, values.swapaxes(0, 1))
+    x, y = state.get("x"), state.get("y")
+    if x and y and (x.unit, x.shape) == (y.unit, y.shape) and len(x.shape) <= 1:
+        values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
+        return _paths(("x", "y"), x.unit, values.swapaxes(0, 1))
+    return None
+
+
+def _paths(names: tuple[str, ...], unit: str, members: Array) -> Paths | None:
+    """Paths that can be told apart, without an axis along which nothing moves."""
+    if len(members) > MOST_PATHS or not np.isfinite(members).all():
+        return None
+    extents = np.ptp(members, axis=(0, 2))
+    moving = [n for n, extent in enumerate(extents) if extent > FLAT * extents.max()]
+    if len(names) == 3 and len(moving) == 2:
+        return Paths(tuple(names[n] for n in moving), unit, members[:, moving])
+    return Paths(names, unit, members)
+
+
+def find_sphere(solution: Solution) -> str:
+    """The first three-vector of the state whose length is conserved, or ""."""
+    for name, quantity in solution.system.STATE.items():
+        if quantity.shape == (3,):
+            with np.errstate(over="ignore", invalid="ignore"):  # what is infinite has no sphere
+                square = (solution[name] ** 2).sum(axis=0)
+                if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
+                    return name
+    return ""
+
+
+def choose_view(vector: Array) -> Array:
+    """The direction from which a curve around the origin is on the near side.
+
+    Args:
+        vector: ``(3, T)``.
+
+    >>> choose_view(np.array([[1.0, 1.0], [0.1, -0.1], [0.0, 0.0]])).round(6).tolist()
+    [0.953939, 0.0, 0.3]
+    """
+    mean = vector.mean(axis=1)
+    size = float(np.linalg.norm(vector, axis=0).max()) or 1.0
+    toward = mean / size
+    if np.linalg.norm(toward) < 0.2:  # it goes around: seen along the axis that it goes around
+        _, _, axes = np.linalg.svd((vector - mean[:, None]).T, full_matrices=False)
+        toward = axes[-1] * (1 if axes[-1][2] >= 0 else -1)
+    toward = toward / np.linalg.norm(toward)
+    # never along an axis, whose ticks would lie on each other
+    across = np.hypot(toward[0], toward[1])
+    sideways = toward[:2] / across if across > 0.2 else np.array([0.8, -0.6])
+    height = float(np.clip(toward[2] + 0.3, *STEEPEST))
+    if abs(height) < LEAST:
+        height = LEAST
+    return np.array([*(np.sqrt(1 - height**2) * sideways), height])
+
+
+def angles(toward: Array) -> tuple[float, float]:
+    """Elevation and azimuth of a direction, degrees."""
+    x, y, z = toward
+    return float(np.degrees(np.arctan2(z, np.hypot(x, y)))), float(np.degrees(np.arctan2(y, x)))
+
+
+def faces_viewer(vector: Array, toward: Array) -> NDArray[np.bool_]:
+    """Which points lie on the near side of the sphere, ``(T,)``."""
+    side: NDArray[np.bool_] = toward @ vector >= 0  # (T,)
+    # A sample beyond the edge joins the parts; they would be drawn with a gap between them.
+    near = side.copy()
+    near[:-1] |= side[1:]
+    near[1:] |= side[:-1]
+    return near
+
+
+def draw_coloured(axes: Any, path: Array, time: Array, **options: Any) -> Any:
+    """A path in the plane or in space, coloured by time; marks at its start and its end."""
+    from matplotlib.collections import LineCollection
+
+    points = path.T  # (T, d)
+    pieces: Any = np.stack([points[:-1], points[1:]], axis=1)
+    shown = {"cmap": TIME_MAP, "linewidth": 1.3, "capstyle": "round", **options}
+    if path.shape[0] == 3:
+        from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
+            Line3DCollection,
+        )
+
+        lines: Any = Line3DCollection(pieces, **shown)
+        lines.set_array(time[:-1])
+        axes.add_collection3d(lines)
+    else:
+        lines = LineCollection(pieces, **shown)
+        lines.set_array(time[:-1])
+        axes.add_collection(lines)
+    return lines
+
+
+def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
+    """Level curves of the energy on the sphere of a system whose state is that vector alone.
+
+    Each is ``(3, T)``; none where the energy is not a function of the vector.
+    """
+    system = solution.system
+    if set(system.STATE) != {name} or "energy" not in solution.conserved:
+        return []
+    longitude = np.linspace(-np.pi, np.pi, ALONG)
+    latitude = np.linspace(-np.pi / 2, np.pi / 2, ACROSS)
+    grid = _on_sphere(*np.meshgrid(longitude, latitude), radius)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            values = system.observables(grid.reshape(3, -1), solution.parameters, target="numpy")
+        row = list(system.OBSERVABLES).index("energy")
+        energy = np.asarray(values)[row].reshape(ACROSS, ALONG)
+    except (CoadjointError, TypeError, ValueError, IndexError):
+        return []  # time, inputs or a domain that the whole sphere is not in
+    if not np.isfinite(energy).all() or np.ptp(energy) == 0:
+        return []
+    from contourpy import contour_generator
+
+    maker = contour_generator(longitude, latitude, energy)
+    heights = np.linspace(energy.min(), energy.max(), LEVELS + 2)[1:-1]
+    lines: list[Any] = [line for height in heights for line in maker.lines(height)]
+    return [_on_sphere(line[:, 0], line[:, 1], 1.002 * radius) for line in lines]
+
+
+def _on_sphere(longitude: Array, latitude: Array, radius: float) -> Array:
+    """Points of a sphere, ``(3, ...)``."""
+    flat = np.cos(latitude)
+    return radius * np.stack([flat * np.cos(longitude), flat * np.sin(longitude), np.sin(latitude)])

@@ -1,0 +1,135 @@
+"""Equations by vectors are those of the books, and are not found where a component is spoiled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.derive import derive
+from coadjoint.derive.vectors import vector_form
+from coadjoint.derive.vectors.balance import is_derived, momentum_balance
+from coadjoint.derive.vectors.gradients import gradient, total_of
+from coadjoint.derive.vectors.recognise import recognise
+from coadjoint.derive.vectors.vocabulary import make_vocabulary
+from coadjoint.notation.trees import write_tree
+from coadjoint.notation.written import add
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.core.tree import Name
+from tests.specs import shipped
+
+#: As the sources of the systems print them.
+BOOKS = {
+    "rigid_body": ["dPi/dt = Pi x Omega"],
+    "heavy_top": ["dPi/dt = Pi x Omega + m g Gamma x chi", "dGamma/dt = Gamma x Omega"],
+    "kirchhoff": ["dPi/dt = Pi x Omega + P x v", "dP/dt = P x Omega"],
+    "kirchhoff_clebsch": ["dPi/dt = Pi x Omega + P x v", "dP/dt = P x Omega"],
+    "so4_body": ["dM/dt = M x Omega + N x Lambda", "dN/dt = N x Omega + M x Lambda"],
+    "so5_body": ["dM/dt = [M, Omega]", "Omega = dh/dM"],
+    "kepler": ["dr/dt = v", "dv/dt = -mu r/|r|^3"],
+    "spin_chain": ["dXi/dt = Omega_s + Xi x Omega"],
+    "heisenberg_lattice": ["dS[i]/dt = J S[i] x S[i+1] + J S[i] x S[i-1]"],
+    "n_body": ["dp[i]/dt = -sum(j, j != i, G m[i] m[j] (r[i] - r[j])/|r[i] - r[j]|^3)"],
+    "chaplygin_ball": [
+        "d(diag(I) Omega)/dt = lambda x s + (diag(I) Omega) x Omega + m g Gamma x chi",
+        "d(m Y)/dt = lambda + m Y x Omega",
+        "Y = Omega x (r Gamma + chi)",
+    ],
+    "veselova": ["d(diag(I) Omega)/dt = twistless_reaction Gamma + (diag(I) Omega) x Omega"],
+}
+
+
+def lines(form):
+    """The lines of a form as text."""
+    shown = ((form.shapes, form.written),) * len(form.lines)
+    return [
+        f"{write_tree(line.left, *names).text} = {add([write_tree(line.right, *names)]).text}"
+        for line, names in zip(form.lines, shown, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("system", BOOKS)
+def test_vector_equations_are_those_of_the_books(system):
+    """Each line that its source prints is found."""
+    found = lines(vector_form(derive(shipped(system))))
+    assert [line for line in BOOKS[system] if line not in found] == []
+
+
+def test_the_latex_of_the_heavy_top_is_the_books():
+    """Bold letters, a dot over the letter alone, and no braces too many."""
+    form = vector_form(derive(shipped("heavy_top")))
+    first = form.lines[0]
+    left, right = (write_tree(node, form.shapes).latex for node in (first.left, first.right))
+    assert left == r"\dot{\boldsymbol{\Pi}}"
+    assert right == (
+        r"\boldsymbol{\Pi} \times \boldsymbol{\Omega} + "
+        r"m\,g\,\boldsymbol{\Gamma} \times \boldsymbol{\chi}"
+    )
+
+
+def spoil(equations, place):
+    """Equations with the sign of one rate turned."""
+    rates = list(equations.exact.rates)
+    rates[place] = -rates[place]
+    return replace(equations, exact=replace(equations.exact, rates=tuple(rates)))
+
+
+@pytest.mark.parametrize("system", ["rigid_body", "so4_body", "kepler", "so5_body"])
+@pytest.mark.parametrize("place", [0, -1])
+def test_no_line_is_printed_for_a_spoiled_component(system, place):
+    """One wrong sign, and the equation of its vector is not there."""
+    equations = derive(shipped(system))
+    spoiled = vector_form(spoil(equations, place))
+    name = vector_form(equations).lines[0 if place == 0 else len(spoiled.missing) - 1].left
+    assert len(spoiled.missing) == 1
+    assert not any(line.left == name for line in spoiled.lines) or place == -1
+    whole = {line.left for line in vector_form(equations).lines}
+    assert len([line for line in spoiled.lines if line.left in whole]) < len(whole)
+
+
+def test_what_is_printed_is_evaluated_once_more():
+    """A vocabulary whose words have wrong values prints nothing, though a search succeeds."""
+    vocabulary = make_vocabulary(derive(shipped("rigid_body")))
+    (target,) = vocabulary.targets
+    assert recognise(vocabulary, target.value)
+    vocabulary.values = {**vocabulary.values, "Omega": vocabulary.values["Pi"]}
+    assert recognise(vocabulary, target.value) is None
+
+
+def test_a_balance_is_shown_only_if_it_is_what_the_kernel_solves():
+    """Lagrange and d'Alembert's law passes; with one component's sign turned it does not."""
+    equations = derive(shipped("chaplygin_ball"))
+    left, right = momentum_balance(equations)
+    assert is_derived(equations, left, right)
+    for place in range(len(right)):
+        wrong = [-side if n == place else side for n, side in enumerate(right)]
+        assert not is_derived(equations, left, wrong), place
+
+
+@pytest.mark.parametrize(
+    ("formula", "by", "expected"),
+    [
+        ("m*g*dot(Gamma, chi)", "Gamma", "m g chi"),
+        ("dot(Omega, diag(I)*Omega)/2", "Omega", "diag(I) Omega"),
+        ("-mu/norm(Gamma)", "Gamma", "mu Gamma/|Gamma|^3"),
+        ("dot(Gamma, cross(chi, Omega))", "Omega", "Gamma x chi"),
+        ("I1*Omega1^2/2", "Omega", "(I1 Omega1, 0, 0)"),
+        ("exp(dot(Gamma, chi))", "Gamma", "exp(Gamma . chi) chi"),
+        ("dot(Gamma, Gamma)^2", "Gamma", "4 (Gamma . Gamma) Gamma"),
+    ],
+)
+def test_gradients_are_those_done_by_hand(formula, by, expected):
+    """The adjoint of each operation."""
+    names = ("Gamma", "chi", "Omega", "I")
+    scope = dict.fromkeys(names, (3,)) | dict.fromkeys(("m", "g", "mu"), ())
+    parts = [f"{by}{n}" for n in (1, 2, 3)]
+    scope |= dict.fromkeys([*parts, "I1"], ())
+    found = gradient(read_expression(formula), Name(by), parts, scope)
+    assert add([write_tree(total_of(found), scope)]).text == expected
+
+
+def test_a_gradient_that_is_not_known_is_none():
+    """An inverse of what the variable is in."""
+    scope = {"A": (3,), "b": (3,)}
+    formula = read_expression("dot(b, inverse(diag(A))*b)")
+    assert gradient(formula, Name("A"), (), scope) is None

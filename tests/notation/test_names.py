@@ -1,0 +1,86 @@
+"""Names, units and laws are written as books write them, in four formats."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from coadjoint.notation.names import member, name, unit
+from coadjoint.notation.tex import is_formula, to_mathml
+from coadjoint.notation.trees import write_tree
+from coadjoint.notation.written import add, divide, literal, multiply, negate, number, power
+from coadjoint.spec.core.expressions import read_expression
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("Pi1", r"\Pi_1"),
+        ("dPi1_dt", r"\dot{\Pi}_1"),
+        ("M12", "M_{12}"),
+        ("M_1_10", "M_{1,10}"),
+        ("r_0_1", "r_{0,1}"),
+        ("u_ss", r"\partial_s^2 u"),
+        ("Xi1_s", r"\partial_s \Xi_1"),
+        ("p_phi", r"p_{\phi}"),
+        ("Omega_momentum2", r"\Omega_{\mathrm{momentum},2}"),
+        ("eps1", r"\epsilon_1"),
+        ("energy", r"\mathrm{energy}"),
+    ],
+)
+def test_names_in_latex(text, latex):
+    """Numbers below, dots over the letter alone, Greek by its names."""
+    assert name(text).latex == latex
+    assert name(text).text in (text, "dPi1/dt")
+    ET.fromstring(f"<math>{name(text).mathml}</math>")
+
+
+def test_members_have_their_place_below():
+    """The place comes first, then the component; the text is that of formulas."""
+    assert member("r2", "i+1", dot=True).latex == r"\dot{r}_{i + 1,2}"
+    assert member("r2", "i+1").text == "r2[i+1]"
+
+
+def test_units_are_upright_with_raised_exponents():
+    """In text they stay as they were typed."""
+    assert unit("kg m^2/s").latex == r"\mathrm{kg\,m^{2}/s}"
+    assert unit("m^-1").mathml.count("<mo>−</mo>") == 1
+    assert unit("kg m^2/s").text == "kg m^2/s"
+
+
+def test_signs_and_brackets_stand_where_they_are_needed():
+    """A sum in a product is in brackets, a negative addend takes the sign of the sum."""
+    a, b, c = map(literal, "abc")
+    assert add([a, negate(b)]).text == "a - b"
+    assert multiply([add([a, b]), c]).text == "(a + b) c"
+    assert add([a, negate(add([b, negate(c)]))]).text == "a - (b - c)"
+    assert divide(add([a, b]), multiply([b, c])).text == "(a + b)/(b c)"
+    assert power(negate(a), 2).text == "(-a)^2"
+    assert add([number(-1), a]).text == "-1 + a"
+
+
+@pytest.mark.parametrize(
+    ("formula", "typst"),
+    [
+        ("cross(a, b)", "bold(a) times bold(b)"),
+        ("norm(a)", "abs(bold(a))"),
+        ("sqrt(m)", "sqrt(m)"),
+        ("m/2", "frac(m, 2)"),
+    ],
+)
+def test_trees_in_typst(formula, typst):
+    """Vectors bold, products by their signs."""
+    shapes = {"a": (3,), "b": (3,), "m": ()}
+    assert write_tree(read_expression(formula), shapes).typst == typst
+
+
+def test_laws_become_mathml():
+    """What laws use is read; a command that is not known gives None, and words stay words."""
+    maths = to_mathml(r"\dot\mu = \mathrm{ad}^*_\xi \mu + \frac{\partial l}{\partial a} \diamond a")
+    ET.fromstring(maths)
+    assert "<msubsup>" in maths
+    assert "⋄" in maths
+    assert to_mathml(r"\write18{rm}") is None
+    assert is_formula(r"\mu = p", "mu = p")
+    assert not is_formula("imposed after the variation", "imposed after the variation")

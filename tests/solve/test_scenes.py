@@ -1,0 +1,69 @@
+"""A picture shows what the system is: orbits in space, or a sphere seen from the near side."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coadjoint.solve.illustrate import illustrate
+from coadjoint.solve.plot import draw
+from coadjoint.solve.scenes import choose_view, energy_levels, faces_viewer, find_paths, find_sphere
+from coadjoint.systems import kepler, n_body, rigid_body
+
+pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+
+
+def test_orbits_are_found_by_their_unit():
+    """Kepler's in space; three bodies in a plane, without the axis along which none moves."""
+    orbit = kepler.simulate({"r": [1, 0, 0.2], "v": [0, 1, 0.1]}, (0, 3), samples=50)
+    assert find_paths(orbit).members.shape == (1, 3, 50)
+    bodies = n_body.simulate(None, (0, 3), samples=20)
+    paths = find_paths(bodies)
+    assert (paths.names, paths.members.shape) == (("r1", "r2"), (3, 2, 20))
+    assert find_paths(rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)) is None
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_curve_around_an_axis_is_on_the_near_side(axis, sign):
+    """A small circle about each axis is seen, from no axis itself; from behind it is not."""
+    angle = np.linspace(0, 2 * np.pi, 60)
+    curve = np.roll([np.full(60, 0.9 * sign), 0.4 * np.cos(angle), 0.4 * np.sin(angle)], axis, 0)
+    toward = choose_view(curve)
+    if (axis, sign) != (2, -1):  # from below nobody looks; the view is from as far down as it goes
+        assert faces_viewer(curve, toward).all()
+        assert not faces_viewer(curve, -toward).all()
+    assert abs(toward).max() < 0.97
+    assert np.linalg.norm(toward) == pytest.approx(1)
+
+
+def test_level_curves_have_one_energy_each():
+    """Evaluated by hand at their points, which lie on the sphere."""
+    motion = rigid_body.simulate([1.0, 0.3, -0.8], (0, 2), samples=20)
+    name = find_sphere(motion)
+    radius = float(np.linalg.norm(motion[name][:, 0]))
+    levels = energy_levels(motion, name, radius)
+    inertia = np.array([1.0, 2.0, 3.0])[:, None]
+    assert len(levels) >= 8
+    for level in levels:
+        assert np.linalg.norm(level, axis=0) == pytest.approx(1.002 * radius)
+        energy = (level**2 / inertia).sum(axis=0) / 2
+        assert np.ptp(energy) < 0.02 * energy.max()  # the grid is 4 degrees wide
+
+
+def test_drift_is_a_small_strip():
+    """Less than a quarter of the height of the motion."""
+    figure = draw(rigid_body.simulate([1.0, 0.3, -0.8], (0, 2), samples=20))
+    figure.draw_without_rendering()
+    motion, drift = figure.axes[0].get_position(), figure.axes[-1].get_position()
+    strips = [axes for axes in figure.axes if axes.get_yscale() == "log"]
+    assert len(strips) == 1
+    assert strips[0].get_position().height < 0.25 * motion.height
+    assert drift.width > 0
+
+
+def test_a_picture_for_a_page_is_data():
+    """No address, and the caption says what it is."""
+    shown = illustrate(rigid_body.system, [1.0, 0.3, -0.8])
+    assert shown["picture"].startswith("data:image/png;base64,")
+    assert "20 s" in shown["caption"]

@@ -1,0 +1,106 @@
+"""What notebooks show is HTML without a script, and text representations fit a screen."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from coadjoint.algebra import algebra_by_name
+from coadjoint.derive import derive
+from coadjoint.loading import load
+from coadjoint.prove import prove
+from coadjoint.prove.examination import examine
+from coadjoint.spec import read_spec
+from coadjoint.systems import rigid_body
+from tests.specs import shipped
+
+
+@pytest.fixture(scope="module")
+def shown():
+    """One object of each kind."""
+    spec = shipped("rigid_body")
+    equations = derive(spec)
+    algebra = algebra_by_name("so(3)")
+    motion = rigid_body.simulate([1.0, 0.3, -0.8], (0, 2), samples=20, progress=False)
+    return {
+        "spec": spec,
+        "equations": equations,
+        "certificate": prove(spec),
+        "algebra": algebra,
+        "examination": examine(algebra, 2),
+        "system": rigid_body.system,
+        "solution": motion,
+    }
+
+
+class Tags(HTMLParser):
+    """The elements of some HTML, and those that are not closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.names = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        """Note it."""
+        self.names.append(tag)
+        if tag not in ("br", "img"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        """It is closed at once."""
+        self.names.append(tag)
+
+    def handle_endtag(self, tag):
+        """It closes the last one."""
+        assert self.open.pop() == tag
+
+
+def test_each_has_html_that_is_whole(shown):
+    """Elements nest, there is no script, and something of the object is in it."""
+    marks = {
+        "spec": "<math>",
+        "equations": "𝜫",
+        "certificate": "proved",
+        "algebra": "<td>J3</td>",
+        "examination": "Killing",
+        "system": "kg m^2/s",
+        "solution": "<pre>",
+    }
+    for name, value in shown.items():
+        page = value._repr_html_()
+        tags = Tags(page)
+        assert (tags.open, "script" in tags.names) == ([], False), name
+        assert marks[name] in page, name
+
+
+def test_text_representations_fit_a_screen(shown):
+    """A few lines each, none of a record of all that is inside."""
+    for name, value in shown.items():
+        lines = repr(value).splitlines()
+        assert len(lines) < 24, name
+        assert all(len(line) < 200 for line in lines), name
+
+
+def test_equations_have_latex_with_dots_over_letters(shown):
+    """A dot over the letter alone."""
+    assert r"\dot{\Pi}_1 &=" in shown["equations"].latex()
+    assert r"\dot{\Pi_" not in shown["equations"].latex()
+
+
+@pytest.mark.parametrize(
+    ("function", "value", "advice"),
+    [
+        (derive, "heavy_top", "what coadjoint.read_spec returns"),
+        (prove, "heavy_top", "what coadjoint.read_spec returns"),
+        (examine, "so(3)", r'coadjoint.algebra_by_name\("so\(3\)"\)'),
+        (read_spec, 3, "the path of a spec"),
+        (load, None, "the path of a spec"),
+    ],
+)
+def test_an_argument_of_another_type_is_told_what_to_pass(function, value, advice):
+    """The function, what was found, and what makes one."""
+    with pytest.raises(TypeError, match=f"was given {re.escape(repr(value))}, a .*{advice}"):
+        function(value)
