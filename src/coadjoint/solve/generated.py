@@ -59,8 +59,8 @@ _VARYING = Previous | Linear | Function
 
 #: Why methods are refused that have no rates to follow.
 ALONE: Final = (
-    "it moves the state alone, and what is reconstructed is asked for. An attitude that is declared "
-    "in [variables] is a part of the state, which a step moves as a whole"
+    "it moves the state alone, and what is reconstructed is asked for. An attitude that is "
+    "declared in [variables] is a part of the state, which a step moves as a whole"
 )
 
 
