@@ -121,8 +121,7 @@ class Runs:
     def __init__(self, system: System) -> None:
         self.system = system = _compile_sooner(system)
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
-        default = [v for each in system.STATE.values() for v in _fill(each)]
-        states = self._draw(np.array(default))
+        states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
         self.target = "c" if len(states) > LARGE else "numpy"
         if not states.size:
             raise self._fail()
@@ -144,10 +143,15 @@ class Runs:
             found=name,
         )
 
-    def _draw(self, default: Array) -> Array:
-        """States near the default, in the domain and on the constraints that are kept."""
-        source = np.random.default_rng(1)
-        size = float(np.abs(default).max()) or 1.0
+    def _draw(self, parts: list[Array]) -> Array:
+        """States near the default, in the domain and on the constraints that are kept.
+
+        Each quantity is moved by parts of its own size: a place far off moves no attitude.
+        """
+        source, default = np.random.default_rng(1), np.concatenate(parts)
+        most = float(np.abs(default).max()) or 1.0
+        sizes = [np.full(each.size, np.abs(each).max() or most) for each in parts]
+        size = np.concatenate(sizes)[:, np.newaxis]
         moved = [s * size * source.uniform(-1, 1, (default.size, DRAWN)) for s in SPREADS]
         states = default[:, np.newaxis] + np.concatenate(moved, axis=1)
         states = self.project(states)
