@@ -4,11 +4,20 @@ import subprocess
 import sys
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from coadjoint.cli.self_check import main
+from coadjoint.solve import self_check
 from coadjoint.solve.self_check import check_methods
-from coadjoint.systems import euler_disk, rigid_body, stochastic_rigid_body, suslov
+from coadjoint.systems import (
+    elastic_chain,
+    euler_disk,
+    rigid_body,
+    stochastic_rigid_body,
+    suslov,
+    two_field_top,
+)
 
 PACKAGE = "coadjoint.systems.rigid_body"
 
@@ -40,6 +49,24 @@ def test_a_method_that_does_not_apply_is_refused(capsys):
     said = capsys.readouterr().err
     assert "python -m here: method 'splitting4' does not apply to suslov; expected some" in said
     assert "gauss4" in said
+
+
+def test_attitudes_are_rotations_where_runs_begin():
+    """Of poses too, whose places are far from 0."""
+    states = self_check.Runs(elastic_chain.system).states
+    assert states.shape[1] == self_check.MEMBERS
+    assert np.abs(elastic_chain.system.constraint_residual(states)).max() < 1e-12
+
+
+def test_differences_along_the_leaf_find_the_defect():
+    """Of the coadjoint mean none, of the midpoint what its order leaves."""
+    mean, midpoint = (
+        self_check._find_defect(runs, name)
+        for runs in (self_check.Runs(two_field_top.system),)
+        for name in ("coadjoint_mean", "midpoint")
+    )
+    assert mean < 1e-9
+    assert midpoint > 1e-6
 
 
 def test_noise_leaves_nothing_to_check(capsys):

@@ -72,8 +72,19 @@ NAMED = replace(
 )
 
 
+#: A motion with the derivatives of its rates.
+SLOPED = replace(
+    PENDULUM,
+    name="sloped",
+    programs=(
+        program("rhs", "q p", "k", "", "p*q; -k*q*q", (2,)),
+        program("jacobian", "q p", "k", "_t1 = -2*k*q", "p; q; _t1; 0", (2, 2)),
+        *PENDULUM.programs[2:],
+    ),
+)
+
 #: Those that few tests look at, by name.
-OTHERS = {"named": NAMED}
+OTHERS = {"named": NAMED, "sloped": SLOPED}
 
 
 @cache
@@ -552,6 +563,32 @@ def test_wrong_c_is_caught_by_bits(method, good, bad, tmp_path, monkeypatch):
     monkeypatch.setattr(solver_steps, "_runs", own)
     with pytest.raises(CrossCheckError, match="rung 5"):
         check_bits(made, points(made), 0.125)
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("STATE", "STATE"),
+        ("(i == k ? 1.0 : 0.0) - matrix[i][k]", "(i == k ? 1.0 : 0.0) - 0.5 * matrix[i][k]"),
+        ("half * rows[i * SLOPES + k]", "half * rows[k * SLOPES + i]"),
+    ],
+)
+def test_newtons_method_is_compared(good, bad, tmp_path, monkeypatch):
+    """Its steps are exact within the bound in NumPy, and have the same bits in C."""
+    made = solvers(SLOPED, ("midpoint_newton",), tmp_path, replaced("solver.c", good, bad))
+    runs = solver_steps._runs
+    own = lambda batch, size: (  # noqa: E731
+        each for each in runs(batch, size) if each[0] == "midpoint_newton"
+    )
+    monkeypatch.setattr(solver_steps, "_runs", own)
+    batch = points(made)
+    if good == bad:
+        assert check_steps(made, batch, 0.125)["midpoint_newton"]["c"].k < 1
+        assert min(check_bits(made, batch, 0.125).values()) > 400
+    else:
+        with pytest.raises(CrossCheckError, match="rung 5"):
+            check_bits(made, batch, 0.125)
 
 
 @needs_compiler

@@ -1,14 +1,20 @@
 """Methods judged by facts: what each keeps of a system, by its theorem, and on runs."""
 
+from functools import partial
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.exact.linear import PRIME
+from coadjoint.exact.residues import draw, residue
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.mapped import lower_maps
 from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.prove import Certificate
 from coadjoint.prove.methods import judge_methods
+from coadjoint.prove.turned import are_linear_symmetries, with_rotations
 from coadjoint.systems import galilei, heavy_top, kepler, nambu_body, rigid_body, suslov
 from tests.specs import RIGID_BODY, emitted, lowered, spec
 
@@ -317,3 +323,62 @@ def test_vectors_that_the_energy_names_are_no_element_of_the_group():
     assert facts.is_kept_by_action(spatial.values)
     assert not facts.is_kept_by_tensor(spatial.values)
     assert not facts.is_kept_by_action([facts.energy])
+
+
+IN_A_FIELD = (
+    RIGID_BODY.replace('routes = ["euler-poincare", "lie-poisson"]', 'routes = ["lie-poisson"]')
+    .replace('Omega = { role = "velocity" }\n', 'R = { role = "attitude" }\n')
+    .replace(
+        '[lagrangian]\nl = "dot(Omega, diag(I)*Omega)/2"',
+        '[hamiltonian]\nh = "Pi[1]^2/(2*I[1]) + Pi[2]^2/(2*I[2]) + Pi[3]^2/(2*I[3])'
+        ' + R[3, 1] - R[3, 3]"',
+    )
+)
+
+
+def with_momentum(text):
+    """The spec with the momentum along the third axis of space, which the field leaves."""
+    along = 'J = "R[3, 1]*Pi[1] + R[3, 2]*Pi[2] + R[3, 3]*Pi[3]"'
+    return text[: text.index("[claims]")] + (
+        f'[observables]\n{along}\n\n[claims]\nconserved = ["energy", "J"]\n'
+    )
+
+
+def test_symmetries_of_a_field_keep_the_momentum_along_it():
+    """A heavy body with its attitude: the momentum in space along the field, and no other one."""
+    facts, methods = judge(spec(with_momentum(IN_A_FIELD)))
+    assert "J" in methods["coadjoint_mean"].exactly
+    assert "J" in methods["coadjoint_mean4"].exactly
+    assert "J" in methods["splitting"].exactly
+    assert "J" in methods["discrete_gradient"].nearly
+    along, across = (
+        sum((facts.field[f"R{n}{k}"] * facts.field[f"Pi{k}"] for k in (1, 2, 3)), facts.field.zero)
+        for n in (3, 1)
+    )
+    assert are_linear_symmetries(facts, [along])
+    assert not are_linear_symmetries(facts, [across])
+    assert not are_linear_symmetries(facts, [along * along])  # kept as well, and not linear
+
+
+def test_symmetries_on_rotations_alone_are_none():
+    """A mean of rotations is no rotation: the energy has to have the symmetry there, too."""
+    more = IN_A_FIELD.replace("- R[3, 3]", "- R[3, 3] + R[1, 1]^2 + R[1, 2]^2 + R[1, 3]^2")
+    _, methods = judge(spec(with_momentum(more)))
+    assert "J" in methods["coadjoint_mean"].nearly
+
+
+def test_points_have_rotations():
+    """Of matrices and quaternions."""
+    q = SimpleNamespace(turning="quaternion", components=("q0", "q1", "q2", "q3"))
+    variables = [*emitted("orbiting_body").spec.turning, q]
+    number = partial(residue, prime=PRIME)
+    names = [name for each in variables for name in each.components]
+    at = with_rotations(variables, {name: draw(name) for name in names}, number)
+    pose = variables[0]
+    R = [[at[pose.components[4 * i + j]] for j in range(3)] for i in range(3)]
+    for i in range(3):
+        for j in range(3):
+            product = sum((a * b for a, b in zip(R[i], R[j], strict=True)), number(0))
+            assert product == number(int(i == j))
+    assert sum((at[x] * at[x] for x in q.components), number(0)) == number(1)
+    assert at[pose.components[3]] == draw(pose.components[3])  # where the body is stays

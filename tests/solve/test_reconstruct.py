@@ -11,7 +11,7 @@ from coadjoint.solve.events import Event
 from coadjoint.solve.folders import load_folder
 from coadjoint.solve.reconstruct import turn_upright
 from coadjoint.solver_kinds import RECONSTRUCTION
-from coadjoint.systems import rigid_body
+from coadjoint.systems import chaplygin_sleigh, rigid_body
 from tests.kernels import COMPILER
 from tests.rolling import BALL, DISK, FOLLOWED_SLEIGH, built
 
@@ -277,6 +277,15 @@ def test_methods_with_a_jacobian_work_too(method):
     )
     assert found.status == "OK"
     assert abs(found["theta"][-1]) > 0.1
+
+
+@pytest.mark.parametrize("method", ["discrete_gradient", "splitting"])
+def test_methods_that_follow_no_rates_say_so(method):
+    """They move states as a whole; the sleigh has the first one without what is reconstructed."""
+    with pytest.raises(KernelArgumentError, match="it moves the state alone, and what is recon"):
+        chaplygin_sleigh.simulate([1, 1], (0, 1), method=method, step=0.1, reconstruct=True)
+    run = chaplygin_sleigh.simulate([1, 1], (0, 1), method="midpoint", step=0.1, reconstruct=True)
+    assert run.drift["energy"] < 1e-15
 
 
 def test_numpy_and_c_agree_in_every_bit():

@@ -13,6 +13,7 @@ from coadjoint.systems import (
     heavy_top,
     kapitza_top,
     kepler,
+    orbiting_body,
     rigid_body,
     rigid_body_attitude,
     stochastic_rigid_body,
@@ -230,3 +231,18 @@ def test_attitudes_are_turned_by_the_element_that_moves_the_momentum():
     for momentum in run["Pi"].T[1:]:
         turned *= Rotation.from_rotvec(h * momentum / inertia)
     assert abs(turned.apply(run["Pi"][:, -1]) - TURNING).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("method", "least", "most"),
+    [("coadjoint_mean", 0, 2e-14), ("splitting", 0, 5e-14), ("midpoint", 1e-4, 1)],
+)
+def test_momenta_in_space_stay_where_forces_depend_on_the_attitude(method, least, most):
+    """By the symmetry of the energy under rotations of space, which the midpoint does not see."""
+    start = [0.4, -0.3, 1.2, 0.1, 1.0, -0.2, *np.eye(3, 4).ravel()]
+    start[9] = 8.0  # so far that it stays off the centre
+    run = orbiting_body.simulate(
+        start, (0, 10), method=method, step=0.25, samples=11, target="numpy"
+    )
+    assert least <= run.drift["J"] < most
+    assert run.drift["energy"] > 1e-6

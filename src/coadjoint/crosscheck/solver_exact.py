@@ -34,7 +34,7 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import MAPS, NOISY, ORDER, STRUCTURED, Advance
+from coadjoint.crosscheck.solver_objects import MAPS, MIDPOINTS, NOISY, ORDER, STRUCTURED, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.compositions import list_schedules
@@ -149,7 +149,7 @@ def find_steps(
 
     The step is made shorter where none has one: its stages are outside of where rates have values.
     """
-    size = size * IMPLICIT_PART if method in (*NOISY, *STRUCTURED) else size
+    size = size * IMPLICIT_PART if method in (*NOISY, *MIDPOINTS) else size
     samples = np.array([START + PART * size, START + size])
     known = dict(list_exact_steps(solvers, method, batch, samples))
     if not known and size > SHORTEST:
@@ -205,11 +205,11 @@ def _exact_step(
         return _exact_taylor(solvers, point, after, length)
     program, h, part = solvers.subject.programs["rhs"], exact(length), exact(after)
     reference, programs = solvers.subject.reference.evaluate, solvers.subject.programs
-    step: Any = methods.composed if method in MAPS else getattr(methods, method)
+    step: Any = methods.composed if method in MAPS else getattr(methods, method, None)
     bounding = step
-    if method == "midpoint" and not solvers.is_noisy:
+    if method in MIDPOINTS and not solvers.is_noisy:
         step = bounding = methods.structured_midpoint
-    if method == "midpoint":
+    if method in MIDPOINTS:
         step, bounding = (partial(step, sweeps=n) for n in (SWEEPS, BOUNDING_SWEEPS))
 
     def by_printed(function: str, known: Any, number: Any, apply: Any) -> Any:

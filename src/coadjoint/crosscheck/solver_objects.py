@@ -9,6 +9,7 @@ Read next: `coadjoint.crosscheck.solver_steps`.
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -25,7 +26,7 @@ from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.mapped import list_maps
-from coadjoint.methods import MAPPED, list_structured
+from coadjoint.methods import JACOBIAN, MAPPED, list_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Record
@@ -50,6 +51,10 @@ NOISY: Final = {name: Choice(name=name, order=2, is_noisy=True) for name in ("he
 #: Those that keep structure and are compared for every system that has them; compositions of them
 #: take the same steps, of other lengths.
 STRUCTURED: Final = {"midpoint": Choice(name="midpoint", order=2)}
+#: The same solved by Newton's method, where the text has the Jacobian.
+NEWTON: Final = {"midpoint_newton": Choice(name="midpoint", order=2, newton=True)}
+#: The midpoint in both ways.
+MIDPOINTS: Final = STRUCTURED | NEWTON
 #: Those that are a sequence of maps. Compilers make those that have all the maps.
 MAPS: Final = {name: Choice(name=name, order=each.order) for name, each in MAPPED.items()}
 COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")
@@ -62,7 +67,8 @@ def list_choices(functions: Collection[str]) -> dict[str, Choice]:
     own = {each.name for each in list_structured(functions)}
     own |= list_schedules(list_maps(functions)).keys()
     others = STRUCTURED | MAPS
-    return CHOICES | {name: each for name, each in others.items() if name in own}
+    newton = NEWTON if JACOBIAN in functions and own & STRUCTURED.keys() else {}
+    return CHOICES | {name: each for name, each in others.items() if name in own} | newton
 
 
 class Advance(Protocol):
@@ -91,7 +97,7 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 1  # sums and products are fused from there on
-    every = CHOICES | NOISY | STRUCTURED | MAPS
+    every = CHOICES | NOISY | MIDPOINTS | MAPS
     compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
@@ -168,8 +174,10 @@ class NumpySolver:
             maps = [(self.module[f"find_{each}"], part, moved[each]) for each, part in parts]
             compensated = MAPPED[name].parts > 0
             return Maps(maps, rates, size, is_compensated=compensated, branches=self.branches)
-        if name in self.module.get("STRUCTURED", ()):
-            return Structured(name, size, {"rates": rates}, branches=self.branches)
+        if name in MIDPOINTS and not self.is_noisy:
+            functions = {"rates": rates, JACOBIAN: self._find_slopes}
+            own = MIDPOINTS[name]
+            return Structured(own.name, size, functions, branches=self.branches, newton=own.newton)
         return METHODS[name](
             rates=rates,
             fields=self._fields,
@@ -209,6 +217,16 @@ class NumpySolver:
         driving = lanes.driving + after * lanes.slopes
         rows: Array = self.module["find_kinks"](state, lanes.parameters, driving)
         return rows
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether Wiener processes move the state."""
+        return "noise" in self.functions
+
+    def _find_slopes(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        rows = self._evaluate(JACOBIAN, lanes, after, state)
+        size = math.isqrt(len(rows))
+        return rows.reshape(size, size, -1)
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise", lanes, after, state)

@@ -309,6 +309,7 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
         yield "midpoint", given, size * 0.15, True
+        yield "midpoint_newton", given, size * 0.3125, True
         for method in COMPILED_MAPS:
             yield method, given, size * 0.3125, True
     for method in COMPILED_MAPS:
@@ -317,6 +318,7 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
     yield "midpoint", batch, size * 0.03, False
+    yield "midpoint_newton", batch, size * 0.15, False
     yield "dop853", batch, size * 0.15, False
 
 

@@ -53,6 +53,7 @@ from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import Program
+from coadjoint.methods import JACOBIAN
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -194,7 +195,7 @@ def _load(
 
 def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
     """The functions of the NumPy kernel by their names in the texts of solvers."""
-    others = ("domain", "projection", "noise")
+    others = ("domain", "projection", "noise", JACOBIAN)
     bounds = [name for name in others if name in subject.programs]
     found = {name: _numpy_function(subject, (name,)) for name in bounds}
     found["rates"] = _numpy_function(subject, kind.rates)

@@ -28,6 +28,7 @@ from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.prove.measures import volume_statement
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.turned import are_linear_symmetries
 
 #: The degrees that are told apart: of polynomials in the state, at most 2.
 DEGREES = ("constant", "linear", "quadratic")
@@ -331,15 +332,16 @@ class Facts:
         return quadratic and self.is_kept_by_tensor(self._turning)
 
     def is_kept_by_action(self, values: Sequence[Element]) -> bool:
-        """Whether functions stay along the tensor times any vector that gradients of energies are.
+        """Whether functions stay in a step by ``exp(h A(xi))``, xi the gradient at its mean.
 
-        Components are zero there by which the energy does not change, as those of attitudes.
+        They stay along the tensor times any xi that is zero where the energy does not change, as by
+        attitudes that no force asks for; or they are momenta of linear symmetries of the energy.
         """
         if self.energy is None or not values:
             return False
         slopes = self.field.gradient(self.energy, self.state)
         still = [row for row, slope in enumerate(slopes) if self.field.is_zero(slope)]
-        return self.is_kept_by_tensor(values, still)
+        return self.is_kept_by_tensor(values, still) or are_linear_symmetries(self, values)
 
     def is_kept_by_tensor(self, values: Sequence[Element], still: Sequence[int] = ()) -> bool:
         """Whether the gradients of functions are orthogonal to the tensor times any vector.

@@ -31,6 +31,7 @@ from coadjoint.methods import (
 )
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
+from coadjoint.prove.turned import with_rotations
 from coadjoint.render.solvers import describe_structured, select_programs
 
 #: Evaluations of the rates that an implicit equation takes for each stage, about.
@@ -245,7 +246,8 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
     exactly = tuple(
         each
         for each in facts.integrals
-        if (is_flow and each.is_casimir) or all(_keeps(facts, each, program) for program in used)
+        if (is_flow and each.is_casimir)
+        or all(_keeps(facts, each, program, is_flow=is_flow) for program in used)
     )
     if not is_flow:
         return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
@@ -321,14 +323,18 @@ _RULES: Final[Mapping[str, Rule]] = {
 }
 
 
-def _keeps(facts: Facts, each: Kept, program: Program) -> bool:
-    """Whether a map leaves a function as it is, at points modulo primes."""
+def _keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
+    """Whether a map leaves a function as it is, at points modulo primes.
+
+    Flows turn attitudes, so that these are rotations there.
+    """
     field = facts.field
     reached = frozenset[str]().union(*map(field.reach, each.values))
     if reached - {*facts.state, *facts.equations.setting.parameters}:
         return False
 
     def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        at = with_rotations(facts.spec.turning, at, number) if is_flow else at
         rises = zip(facts.state, run(program, at, number, call_modulo), strict=True)
         there = at | {name: at[name] + rise for name, rise in rises}
         for value in each.values:

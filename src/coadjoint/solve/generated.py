@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -58,6 +58,13 @@ if TYPE_CHECKING:
 _VARYING = Previous | Linear | Function
 
 
+#: Why methods are refused that have no rates to follow.
+ALONE: Final = (
+    "it moves the state alone, and what is reconstructed is asked for. An attitude that is "
+    "declared in [variables] is a part of the state, which a step moves as a whole"
+)
+
+
 def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     """Why generated methods do not apply to a run, as a clause; "" where they do.
 
@@ -85,8 +92,7 @@ def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
         reconstruct: As `System.simulate` takes it.
     """
     if is_asked(reconstruct):
-        reason = "it moves the state alone, and what is reconstructed is asked for"
-        return dict.fromkeys(MAPPED, reason)
+        return dict.fromkeys(MAPPED, ALONE)
     if isinstance(system, FamilySystem):
         return _list_missing(system, MAPPED)
     return system._solvers.refusals
@@ -129,8 +135,13 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         return dict.fromkeys(STRUCTURED, "its folder was generated without it")
     judged = {each.name for each in system.METHODS}
     backward = list_backward() - judged if judged else set()
+    alone = {each.name for each in system.METHODS if each.applies} if kind != SOLVER else set()
     return {
-        name: f"it expects {each.expects}" if name not in known else BACKWARD
+        name: BACKWARD
+        if name in known
+        else ALONE
+        if name in alone
+        else f"it expects {each.expects}"
         for name, each in STRUCTURED.items()
         if name not in known or name in backward
     }

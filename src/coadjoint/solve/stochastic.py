@@ -154,7 +154,7 @@ class Midpoint(_Noisy):
             following = lanes.state + half * found
             rows = np.where(done, rows, found)
             for each in kept:
-                each.apply(following)
+                each.apply(lanes.state, half * found, following)
             change, size = np.zeros(h.shape), np.zeros(h.shape)
             for one, other in zip(following, middle, strict=True):
                 change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)

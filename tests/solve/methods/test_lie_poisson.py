@@ -289,7 +289,7 @@ def test_false_roots_of_a_quotient_are_refused() -> None:
     for scale, good in ((1.0, True), (0.0, False), (-1.0, False)):
         quotient = Scale(start, 0.0 * start, sphere)
         quotient.scale = np.array([scale])
-        quotient.apply(start.copy())
+        quotient.apply(start, 0.0 * start, start.copy())
         assert quotient.is_root().tolist() == [good], scale
     assert Scale(0 * start, start, sphere).is_root().tolist() == [True]
 

@@ -83,10 +83,10 @@ class SphericalMidpoint(LiePoisson):
     def sweep(self, arc: Arc, middle: Array, kept: list[Scale]) -> Sweep:
         """As `LiePoisson.sweep`."""
         rates = self.field(arc.lanes, arc.middle, middle)
-        following = arc.state + (arc.low + 0.5 * arc.length * rates)
-        moves = np.zeros(arc.length.shape, bool)
+        chord = arc.low + 0.5 * arc.length * rates
+        following, moves = arc.state + chord, np.zeros(arc.length.shape, bool)
         for each in kept:
-            moves = moves | each.apply(following)
+            moves = moves | each.apply(arc.state, chord, following)
         return Sweep(following, arc.length * rates, moves)
 
     def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Scale]) -> Array:
@@ -136,8 +136,11 @@ class Scale:
         """Where the quotient is solved: 0 and negative numbers are roots too."""
         return np.asarray(self.empty | ((np.abs(self.rest - 1.0) < NEAR) & (self.scale > 0.0)))
 
-    def apply(self, state: Array) -> Mask:
-        """Improve the quotient and multiply rows of a state by it.
+    def apply(self, start: Array, rise: Array, state: Array) -> Mask:
+        """Improve the quotient and multiply rows of a state, a start with a rise, by it.
+
+        What this adds is added to the rise, so that a middle is rounded once. Where it was
+        rounded twice, a free body lost 5e-22 of its energy and of its Casimir in each step.
 
         Returns:
             Where the quotient changed; nowhere of dual numbers, whose slopes roundings go on to
@@ -156,10 +159,12 @@ class Scale:
             still = stays & (np.abs(lean) <= ROUNDINGS * np.abs(tilt))
             self.slope = np.where(still, self.slope, slope)
         self.scale = np.where(stays, self.scale, self.scale * rest)
+        beyond = self.scale - 1.0
         for row, tangent in self.sphere.pairs:
-            state[tangent] = self.scale * state[tangent] + self.slope * state[row]
+            more = beyond * state[tangent] + self.slope * state[row]
+            state[tangent] = start[tangent] + (rise[tangent] + more)
         for row in self.sphere.rows:
-            state[row] = self.scale * state[row]
+            state[row] = start[row] + (rise[row] + beyond * state[row])
         moves = ~np.atleast_2d(stays | (rest == 1.5)).all(axis=0)  # which it is of the vector 0
         return np.asarray(moves & np.array(not self.sphere.tangent))
 
