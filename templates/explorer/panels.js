@@ -215,7 +215,7 @@ class DriftStrip {
     this.rows = this.model.integrals.map((each) => {
       const row = document.createElement("div"), name = document.createElement("span"), value = document.createElement("span"), error = document.createElement("span"), canvas = document.createElement("canvas");
       row.className = "drift";
-      name.textContent = each.name;
+      name.textContent = each.rows.length === 1 ? each.name : `|${each.name}|`;
       name.className = "name";
       value.className = error.className = "value";
       canvas.setAttribute("aria-hidden", "true");
@@ -231,8 +231,9 @@ class DriftStrip {
       row.past.push(drift);
       if (row.past.length > 240) row.past.shift();
       if (!telling) return;
-      const now = this.model.y[each.rows[0]];
-      row.value.textContent = each.rows.length === 1 ? `${shorten(now)}${unitText(each.unit)}` : unitText(each.unit);
+      const values = each.rows.map((r) => this.model.y[r]);
+      const now = values.length === 1 ? values[0] : Math.hypot(...values);
+      row.value.textContent = `${shorten(now)}${unitText(each.unit)}`;
       row.error.textContent = tellDrift(drift);
       const [pen, wide, high] = fitCanvas(row.canvas);
       pen.strokeStyle = INK[k % INK.length];

@@ -206,7 +206,9 @@ def _list_symbols(
             if base in seen:
                 continue
             seen.add(base)
-            shown = names.write(tree.Member(base, family.index.name, 0, ()))
+            shown = names.write(
+                tree.Member(name=base, index=family.index.name, shift=0, indices=())
+            )
             label = f"{base}[{family.index.name}]"
         rows.append(
             (

@@ -130,11 +130,11 @@ def differentiate_along(of: Written, times: int = 1, by: str = "s") -> Written:
     raised = f"<msup>{operator('&#x2202;')}<mn>{times}</mn></msup>" if times > 1 else ""
     sign = raised or operator("&#x2202;")
     return Written(
-        f"d{again}_{by} {of.text}" if not times > 1 else f"d_{by}^{times} {of.text}",
-        rf"\partial_{by}{again} {of.latex}",
-        row(f"<msub>{sign}<mi>{by}</mi></msub>", of.mathml),
-        f"diff_{by}{again} {of.typst}",
-        max(of.level - 1, SUM + 1),
+        text=f"d{again}_{by} {of.text}" if not times > 1 else f"d_{by}^{times} {of.text}",
+        latex=rf"\partial_{by}{again} {of.latex}",
+        mathml=row(f"<msub>{sign}<mi>{by}</mi></msub>", of.mathml),
+        typst=f"diff_{by}{again} {of.typst}",
+        level=max(of.level - 1, SUM + 1),
     )
 
 
@@ -200,9 +200,17 @@ def partial(function: Written, by: Written) -> Written:
     d = operator("&#x2202;")
     made = divide(
         Written(
-            "", rf"\partial {function.latex}", row(d, function.mathml), f"diff {function.typst}"
+            text="",
+            latex=rf"\partial {function.latex}",
+            mathml=row(d, function.mathml),
+            typst=f"diff {function.typst}",
         ),
-        Written("", rf"\partial {by.latex}", row(d, by.mathml), f"diff {by.typst}"),
+        Written(
+            text="",
+            latex=rf"\partial {by.latex}",
+            mathml=row(d, by.mathml),
+            typst=f"diff {by.typst}",
+        ),
     )
     return replace(made, text=f"d{function.text}/d{by.text}")
 

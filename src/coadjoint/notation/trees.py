@@ -163,10 +163,10 @@ def _raise(base: Written, text: str, mark: str) -> Written:
     own = bracket(base, ATOM)
     latex = r"\top" if text == "T" else text
     return Written(
-        f"{own.text}^{text}",
-        f"{own.latex}^{{{latex}}}",
-        f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
-        f"{own.typst}^({'top' if text == 'T' else 'ast'})",
+        text=f"{own.text}^{text}",
+        latex=f"{own.latex}^{{{latex}}}",
+        mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
+        typst=f"{own.typst}^({'top' if text == 'T' else 'ast'})",
     )
 
 
@@ -178,20 +178,22 @@ def _exponential(exponent: Written) -> Written:
 
 def _hat(vector: Written) -> Written:
     return Written(
-        f"hat({vector.text})",
-        rf"\widehat{{{vector.latex}}}",
-        f'<mover accent="true">{vector.mathml}{operator("^")}</mover>',
-        f"hat({vector.typst})",
+        text=f"hat({vector.text})",
+        latex=rf"\widehat{{{vector.latex}}}",
+        mathml=f'<mover accent="true">{vector.mathml}{operator("^")}</mover>',
+        typst=f"hat({vector.typst})",
     )
 
 
 def _rate(of: Written) -> Written:
     """The rate of what has no dot of its own."""
     return Written(
-        f"d({of.text})/dt" if of.level < ATOM else f"d{of.text}/dt",
-        rf"\frac{{d}}{{dt}} {bracket(of, ATOM).latex}",
-        row("<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>", bracket(of, ATOM).mathml),
-        f"frac(dif, dif t) {bracket(of, ATOM).typst}",
+        text=f"d({of.text})/dt" if of.level < ATOM else f"d{of.text}/dt",
+        latex=rf"\frac{{d}}{{dt}} {bracket(of, ATOM).latex}",
+        mathml=row(
+            "<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>", bracket(of, ATOM).mathml
+        ),
+        typst=f"frac(dif, dif t) {bracket(of, ATOM).typst}",
     )
 
 
@@ -212,10 +214,10 @@ def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Writ
     outer, term = term.sign, replace(term, sign=1)
     own = bracket(term, SUM + 1)
     return Written(
-        f"sum({text}, {term.text})",
-        rf"\sum_{{{latex}}} {own.latex}",
-        row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
-        f"sum_({typst}) {own.typst}",
-        SUM + 1,
-        outer,
+        text=f"sum({text}, {term.text})",
+        latex=rf"\sum_{{{latex}}} {own.latex}",
+        mathml=row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
+        typst=f"sum_({typst}) {own.typst}",
+        level=SUM + 1,
+        sign=outer,
     )

@@ -57,7 +57,12 @@ class Written:
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
     """A symbol as it is."""
-    return Written(text, latex or text, mathml or f"<mi>{escape(text)}</mi>", typst or text)
+    return Written(
+        text=text,
+        latex=latex or text,
+        mathml=mathml or f"<mi>{escape(text)}</mi>",
+        typst=typst or text,
+    )
 
 
 def row(*elements: str) -> str:
@@ -76,7 +81,8 @@ def number(value: Fraction | int) -> Written:
     value = Fraction(value)
     size, sign = abs(value), -1 if value < 0 else 1
     top, bottom = (
-        Written(str(n), str(n), f"<mn>{n}</mn>", str(n)) for n in (size.numerator, size.denominator)
+        Written(text=str(n), latex=str(n), mathml=f"<mn>{n}</mn>", typst=str(n))
+        for n in (size.numerator, size.denominator)
     )
     if size.denominator == 1:
         return replace(top, sign=sign)
@@ -90,10 +96,10 @@ def bracket(part: Written, level: int) -> Written:
     if part.level >= level:
         return part
     return Written(
-        f"({part.text})",
-        rf"\left({part.latex}\right)",
-        row(operator("("), part.mathml, operator(")")),
-        f"({part.typst})",
+        text=f"({part.text})",
+        latex=rf"\left({part.latex}\right)",
+        mathml=row(operator("("), part.mathml, operator(")")),
+        typst=f"({part.typst})",
     )
 
 
@@ -122,7 +128,13 @@ def add(parts: Sequence[Written]) -> Written:
         rows[-1].append(plain.mathml)
     whole = row(*(piece for each in rows for piece in each))
     return Written(
-        texts[0], texts[1], whole, texts[2], SUM, rows=tuple(map(tuple, rows)), lines=tuple(lines)
+        text=texts[0],
+        latex=texts[1],
+        mathml=whole,
+        typst=texts[2],
+        level=SUM,
+        rows=tuple(map(tuple, rows)),
+        lines=tuple(lines),
     )
 
 
@@ -159,12 +171,12 @@ def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
     own = [bracket(part, POWER if part.between else PRODUCT) for part in before]
     own.append(bracket(last, PRODUCT))
     return Written(
-        joint.join(part.text for part in own),
-        r"\,".join(part.latex for part in own),
-        row(*_spaced([part.mathml for part in own])),
-        " ".join(part.typst for part in own),
-        PRODUCT,
-        sign,
+        text=joint.join(part.text for part in own),
+        latex=r"\,".join(part.latex for part in own),
+        mathml=row(*_spaced([part.mathml for part in own])),
+        typst=" ".join(part.typst for part in own),
+        level=PRODUCT,
+        sign=sign,
         between=last.between,
         factors=tuple(plain),
     )
@@ -182,12 +194,12 @@ def divide(top: Written, bottom: Written) -> Written:
     sign, top = top.sign, replace(top, sign=1)
     upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
     return Written(
-        f"{upper.text}/{lower.text}",
-        rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
-        f"<mfrac>{top.mathml}{bottom.mathml}</mfrac>",
-        f"frac({top.typst}, {bottom.typst})",
-        PRODUCT,
-        sign,
+        text=f"{upper.text}/{lower.text}",
+        latex=rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
+        mathml=f"<mfrac>{top.mathml}{bottom.mathml}</mfrac>",
+        typst=f"frac({top.typst}, {bottom.typst})",
+        level=PRODUCT,
+        sign=sign,
     )
 
 
@@ -200,11 +212,11 @@ def power(base: Written, exponent: Written | int) -> Written:
     own = bracket(base, ATOM)
     shown = raised.text if raised.level == ATOM else f"({raised.text})"
     return Written(
-        f"{own.text}^{shown}",
-        f"{{{own.latex}}}^{{{raised.latex}}}",
-        f"<msup>{own.mathml}{raised.mathml}</msup>",
-        f"{own.typst}^({raised.typst})",
-        POWER,
+        text=f"{own.text}^{shown}",
+        latex=f"{{{own.latex}}}^{{{raised.latex}}}",
+        mathml=f"<msup>{own.mathml}{raised.mathml}</msup>",
+        typst=f"{own.typst}^({raised.typst})",
+        level=POWER,
     )
 
 
@@ -212,10 +224,10 @@ def root(part: Written) -> Written:
     """A square root."""
     inner = add([part]) if part.sign < 0 else part
     return Written(
-        f"sqrt({inner.text})",
-        rf"\sqrt{{{inner.latex}}}",
-        f"<msqrt>{inner.mathml}</msqrt>",
-        f"sqrt({inner.typst})",
+        text=f"sqrt({inner.text})",
+        latex=rf"\sqrt{{{inner.latex}}}",
+        mathml=f"<msqrt>{inner.mathml}</msqrt>",
+        typst=f"sqrt({inner.typst})",
     )
 
 
@@ -228,11 +240,11 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
     )
     latex_name = rf"\{function}" if known else rf"\operatorname{{{function}}}"
     return Written(
-        f"{function}({', '.join(part.text for part in inner)})",
-        rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
-        f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
+        text=f"{function}({', '.join(part.text for part in inner)})",
+        latex=rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
+        mathml=f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
         f"<mrow>{operator('(')}{comma}{operator(')')}</mrow></mrow>",
-        f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
+        typst=f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
         f"({', '.join(part.typst for part in inner)})",
     )
 
@@ -263,12 +275,12 @@ def between(left: Written, sign: tuple[str, str, str, str], right: Written) -> W
     a, b = (bracket(replace(part, sign=1), POWER) for part in (left, right))
     text, latex, mathml, typst = sign
     return Written(
-        f"{a.text} {text} {b.text}",
-        f"{a.latex} {latex} {b.latex}",
-        row(a.mathml, operator(mathml), b.mathml),
-        f"{a.typst} {typst} {b.typst}",
-        PRODUCT,
-        outer,
+        text=f"{a.text} {text} {b.text}",
+        latex=f"{a.latex} {latex} {b.latex}",
+        mathml=row(a.mathml, operator(mathml), b.mathml),
+        typst=f"{a.typst} {typst} {b.typst}",
+        level=PRODUCT,
+        sign=outer,
         between=True,
     )
 
@@ -291,10 +303,12 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
     )
     typst = ", ".join(part.typst for part in inner)
     return Written(
-        first + ", ".join(part.text for part in inner) + last,
-        opens + ", ".join(part.latex for part in inner) + closes,
-        row(operator(first), operator(",").join(part.mathml for part in inner), operator(last)),
-        f"abs({typst})" if first == "|" else f"{first}{typst}{last}",
+        text=first + ", ".join(part.text for part in inner) + last,
+        latex=opens + ", ".join(part.latex for part in inner) + closes,
+        mathml=row(
+            operator(first), operator(",").join(part.mathml for part in inner), operator(last)
+        ),
+        typst=f"abs({typst})" if first == "|" else f"{first}{typst}{last}",
     )
 
 

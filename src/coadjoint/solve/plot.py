@@ -245,7 +245,9 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
     axes.view_init(*angles(toward))
     axes.legend(loc="upper left", fontsize=8, frameon=False)
     curves = ", with levels of the energy" if levels else ""
-    axes.set_title(f"{symbol} on the sphere |{symbol}| = {radius:.4g}{curves}", fontsize=10)
+    above = 6.0 if toward[2] > 0 else 24.0  # seen from below, ticks stand at the top
+    title = f"{symbol} on the sphere |{symbol}| = {radius:.4g}{curves}"
+    axes.set_title(title, fontsize=10, pad=above)
 
 
 def _style_space(axes: Any, labels: Sequence[str]) -> None:

@@ -53,7 +53,7 @@ class Addend:
             parts.insert(0, tree.Number(Fraction(size.numerator)))
         whole = parts[0]
         for part in parts[1:]:
-            whole = tree.Binary("*", whole, part)
+            whole = tree.Binary(operator="*", left=whole, right=part)
         lower = list[tree.Node]()
         if size.denominator != 1:
             lower.append(tree.Number(Fraction(size.denominator)))
@@ -61,8 +61,8 @@ class Addend:
         if lower:
             bottom = lower[0]
             for part in lower[1:]:
-                bottom = tree.Binary("*", bottom, part)
-            whole = tree.Binary("/", whole, bottom)
+                bottom = tree.Binary(operator="*", left=bottom, right=part)
+            whole = tree.Binary(operator="/", left=whole, right=bottom)
         return whole
 
 
@@ -76,7 +76,7 @@ def _write_turns(
     return size, written
 
 
-_EIGHTH = tree.Call("atan", (tree.Number(Fraction(1)),))
+_EIGHTH = tree.Call(function="atan", arguments=(tree.Number(Fraction(1)),))
 
 
 def total_of(addends: list[Addend]) -> tree.Node:
@@ -85,7 +85,7 @@ def total_of(addends: list[Addend]) -> tree.Node:
     (minus, whole), *others = signed or [(False, tree.Number(Fraction(0)))]
     whole = tree.Negate(whole) if minus else whole
     for minus, part in others:
-        whole = tree.Binary("-" if minus else "+", whole, part)
+        whole = tree.Binary(operator="-" if minus else "+", left=whole, right=part)
     return whole
 
 
@@ -107,7 +107,9 @@ def gradient(
     except (_GivesUpError, AssertionError, ExpressionError):
         return None
     if any(slopes):
-        found.append(Addend(vector=tree.Call("vector", tuple(map(total_of, slopes)))))
+        found.append(
+            Addend(vector=tree.Call(function="vector", arguments=tuple(map(total_of, slopes))))
+        )
     return found
 
 
@@ -160,7 +162,7 @@ def _pull(
         case tree.Power(base=base, exponent=n) if not known[id(base)]:
             slope = replace(adjoint, number=adjoint.number * n)
             if n != 1:
-                raised = base if n == 2 else tree.Power(base, abs(n - 1))
+                raised = base if n == 2 else tree.Power(base=base, exponent=abs(n - 1))
                 slope = _over(slope, raised) if n < 1 else _by_scalar(slope, raised)
             yield from down(base, slope)
         case tree.Call(function="dot", arguments=(a, b)):
@@ -168,8 +170,12 @@ def _pull(
             yield from down(b, _with(adjoint, a))
         case tree.Call(function="cross", arguments=(a, b)):
             g = _vector_of(adjoint)
-            yield from down(a, replace(adjoint, vector=tree.Call("cross", (b, g))))
-            yield from down(b, replace(adjoint, vector=tree.Call("cross", (g, a))))
+            yield from down(
+                a, replace(adjoint, vector=tree.Call(function="cross", arguments=(b, g)))
+            )
+            yield from down(
+                b, replace(adjoint, vector=tree.Call(function="cross", arguments=(g, a)))
+            )
         case tree.Call(function="norm", arguments=(a,)):
             yield from down(a, _over(_with(adjoint, a), node))
         case tree.Call(function=function, arguments=(a,)) if function in _SLOPES:
@@ -199,9 +205,11 @@ def _pull_product(
         if _names(right, by):
             yield from down(right, _times(adjoint, left, first))
     elif len(first) == 2 and len(second) == 1 and not _names(left, by):
-        turned = left if _is_symmetric(left) else tree.Call("transpose", (left,))
+        turned = left if _is_symmetric(left) else tree.Call(function="transpose", arguments=(left,))
         g = _vector_of(adjoint)
-        yield from down(right, replace(adjoint, vector=tree.Binary("*", turned, g)))
+        yield from down(
+            right, replace(adjoint, vector=tree.Binary(operator="*", left=turned, right=g))
+        )
     else:
         raise _GivesUpError
 
@@ -238,7 +246,7 @@ def _times(adjoint: Addend, value: tree.Node, shape: Shape) -> Addend:
     """The adjoint of a scalar factor: the product of the adjoint with what it multiplies."""
     if not shape:
         return _by_scalar(adjoint, value)
-    product = tree.Call("dot", (_vector_of(adjoint), value))
+    product = tree.Call(function="dot", arguments=(_vector_of(adjoint), value))
     return _by_scalar(replace(adjoint, vector=None), product)
 
 
@@ -254,7 +262,7 @@ def _by_scalar(adjoint: Addend, factor: tree.Node) -> Addend:
         case tree.Binary(operator="/", left=left, right=right):
             return _over(_by_scalar(adjoint, left), right)
         case tree.Power(base=base, exponent=n) if n < 0:
-            return _over(adjoint, base if n == -1 else tree.Power(base, -n))
+            return _over(adjoint, base if n == -1 else tree.Power(base=base, exponent=-n))
     if factor in adjoint.below:
         rest = list(adjoint.below)
         rest.remove(factor)
@@ -284,5 +292,5 @@ def _over(adjoint: Addend, divisor: tree.Node) -> Addend:
         if own == base:
             power += each.exponent if isinstance(each, tree.Power) else 1
             lower.remove(each)
-    lower.append(base if power == 1 else tree.Power(base, power))
+    lower.append(base if power == 1 else tree.Power(base=base, exponent=power))
     return replace(adjoint, below=tuple(lower))

@@ -71,11 +71,11 @@ class _Rename:
                 return node
             base, number = found
             if number == partner:
-                return tree.Member(base, self.other, 0, ())
+                return tree.Member(name=base, index=self.other, shift=0, indices=())
             shift = number - self.own
             if self.ring and shift > self.count // 2:
                 shift -= self.count
-            return tree.Member(base, self.index, shift, ())
+            return tree.Member(name=base, index=self.index, shift=shift, indices=())
         below = [self.node(each, partner) for each in tree.children(node)]
         return tree.rebuild(node, below)
 
@@ -97,11 +97,11 @@ class _Rename:
         whole, minus = sums[0], isinstance(sums[0], tree.Negate)
         sides = (tree.Name(self.other), tree.Name(self.index))
         operand = whole.operand if isinstance(whole, tree.Negate) else whole
-        total: tree.Node = tree.Sum((self.other,), operand, sides, "!=")
+        total: tree.Node = tree.Sum(indices=(self.other,), term=operand, sides=sides, sign="!=")
         total = tree.Negate(total) if minus else total
         if not alone:
             return total
-        return tree.Binary("+", self.node(total_of(alone)), total)
+        return tree.Binary(operator="+", left=self.node(total_of(alone)), right=total)
 
     def _partners(self, addend: Addend) -> set[int]:
         """The members other than the own one that an addend names."""

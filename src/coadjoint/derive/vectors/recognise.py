@@ -67,7 +67,7 @@ class VectorForm:
 
 def rate_of(node: tree.Node) -> tree.Node:
     """The rate of a quantity."""
-    return tree.Call("rate_of", (node,))
+    return tree.Call(function="rate_of", arguments=(node,))
 
 
 def tree_name(node: tree.Node) -> str:
@@ -141,7 +141,11 @@ def _put(scalar: Addend, vector: tree.Node) -> Addend:
     match vector:
         case tree.Call(function="cross" | "commutator" as function, arguments=(a, b)):
             if scalar.number < 0:
-                return replace(scalar, number=-scalar.number, vector=tree.Call(function, (b, a)))
+                return replace(
+                    scalar,
+                    number=-scalar.number,
+                    vector=tree.Call(function=function, arguments=(b, a)),
+                )
     return Addend(scalar.number, scalar.above, scalar.below, vector)
 
 

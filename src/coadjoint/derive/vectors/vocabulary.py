@@ -112,21 +112,28 @@ class Vocabulary:
             for b in right[n + 1 :] if right is left else right:
                 value = dense.cross(a.value, b.value)
                 if any(map(bool, value)):
-                    yield Candidate(tree.Call("cross", (a.node, b.node)), value)
+                    yield Candidate(tree.Call(function="cross", arguments=(a.node, b.node)), value)
 
     def _turns(self, own: list[Candidate]) -> Iterator[Candidate]:
         """Quaternions times vectors, from either side."""
         for q, w in pairs(own, self.words):
             if _size(w.value) == (3,):
                 a, b = Quaternion(*q.value), Quaternion.pure(w.value)
-                yield Candidate(tree.Call("qmul", (q.node, w.node)), (a * b).components)
-                yield Candidate(tree.Call("qmul", (w.node, q.node)), (b * a).components)
+                yield Candidate(
+                    tree.Call(function="qmul", arguments=(q.node, w.node)), (a * b).components
+                )
+                yield Candidate(
+                    tree.Call(function="qmul", arguments=(w.node, q.node)), (b * a).components
+                )
 
     def _matrices(self, like: Value, level: int) -> Iterator[Candidate]:
         own = [w for w in self.words if _size(w.value) == _size(like)]
         if len(like) == 3:
             vectors = [w for w in self.words if _size(w.value) == (3,)]
-            own += [Candidate(tree.Call("hat", (w.node,)), dense.hat(w.value)) for w in vectors]
+            own += [
+                Candidate(tree.Call(function="hat", arguments=(w.node,)), dense.hat(w.value))
+                for w in vectors
+            ]
         yield from own
         if not level or not len(like[0]) == len(like) <= MOST_ROWS:
             return
@@ -134,15 +141,19 @@ class Vocabulary:
             return
         if level > 1:
             squares = [
-                Candidate(tree.Power(w.node, 2), dense.product(w.value, w.value)) for w in own
+                Candidate(tree.Power(base=w.node, exponent=2), dense.product(w.value, w.value))
+                for w in own
             ]
             own += squares
         for n, a in enumerate(own):
             for b in own[n + 1 :]:
                 value = dense.commutator(a.value, b.value)
-                yield Candidate(tree.Call("commutator", (a.node, b.node)), value)
+                yield Candidate(tree.Call(function="commutator", arguments=(a.node, b.node)), value)
         for a, b in pairs(own, own):
-            yield Candidate(tree.Binary("*", a.node, b.node), dense.product(a.value, b.value))
+            yield Candidate(
+                tree.Binary(operator="*", left=a.node, right=b.node),
+                dense.product(a.value, b.value),
+            )
 
     def is_scalar(self, factor: Element) -> bool:
         """Whether a factor is made of scalars of the spec alone, one term over others."""
@@ -173,7 +184,7 @@ def _is_sum(node: tree.Node) -> bool:
 
 
 def _power(base: tree.Node, exponent: int) -> tree.Node:
-    return base if exponent == 1 else tree.Power(base, exponent)
+    return base if exponent == 1 else tree.Power(base=base, exponent=exponent)
 
 
 def _is_power_of(node: tree.Node, names: Collection[str]) -> bool:
@@ -329,7 +340,7 @@ class _Maker:
         match node:
             case tree.Binary(operator="*", left=left, right=tree.Name(name=name)):
                 if f"{name}_s" in jets:
-                    return tree.Binary("*", left, tree.Name(f"{name}_s"))
+                    return tree.Binary(operator="*", left=left, right=tree.Name(f"{name}_s"))
         return None
 
     def _slopes_along_space(self) -> Iterator[Candidate]:
@@ -405,7 +416,7 @@ class _Maker:
             else weigh(slopes, momentum.elements)
         )
         self.shapes[name] = momentum.value_shape
-        slope = tree.Call("slope_of", (tree.Name("h"), tree.Name(momentum.name)))
+        slope = tree.Call(function="slope_of", arguments=(tree.Name("h"), tree.Name(momentum.name)))
         self.named.append((tree.Name(name), slope))
         yield Candidate(tree.Name(name), value)
 
