@@ -97,6 +97,20 @@ def make_all(names: Sequence[str]) -> Iterator[Made]:
             yield from shown
 
 
+def make_book(names: Sequence[str]) -> Path:
+    """All systems in one document, where the site has all of them."""
+    key = digest({"engine": engine_fingerprint(), "systems": list(names)})
+    book = MADE / f"book-{key[:16]}.html"
+    if not book.is_file():
+        for old in MADE.glob("book-*.html"):
+            old.unlink()
+        MADE.mkdir(parents=True, exist_ok=True)
+        click.echo("book", err=True)
+        words = [sys.executable, "-P", "-m", "coadjoint.cli", "book", "--output", str(book)]
+        subprocess.run(words, check=True)
+    return book
+
+
 # -- pages ----------------------------------------------------------------------------------
 
 
@@ -143,10 +157,12 @@ def list_groups(names: Iterable[str]) -> list[tuple[str, list[str]]]:
     return groups
 
 
-def write_index(systems: Sequence[Made]) -> str:
+def write_index(systems: Sequence[Made], *, has_book: bool = False) -> str:
     """The gallery: a picture of each system that leads to its page."""
     known = {made.name: made for made in systems}
     lines = ["# Systems", "", "Each picture leads to its declaration, derivation and explorer.", ""]
+    if has_book:
+        lines += ['<p><a href="../book.html">All of them in one document</a></p>', ""]
     for title, names in list_groups(known):
         lines += [f"## {title[0].upper()}{title[1:]}", "", '<div class="systems">']
         for name in names:
@@ -173,7 +189,7 @@ def write_reference() -> str:
     return "\n".join(lines)
 
 
-def lay_out(systems: Sequence[Made]) -> None:
+def lay_out(systems: Sequence[Made], book: Path | None = None) -> None:
     """The sources of Sphinx: the repository's own pages where they are, and those made here."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     leave_out = shutil.ignore_patterns("*.in.md", "make.py", "__pycache__")
@@ -204,7 +220,9 @@ def lay_out(systems: Sequence[Made]) -> None:
             if part in made.parts:
                 shutil.copy(made.folder / part, SOURCE / place)
         _write(f"systems/{made.name}.md", write_system(made))
-    _write("systems/index.md", write_index(systems))
+    if book is not None:
+        shutil.copy(book, SOURCE / "_made" / "book.html")
+    _write("systems/index.md", write_index(systems, has_book=book is not None))
     _write("reference/api.md", write_reference())
 
 
@@ -233,7 +251,7 @@ def _write(name: str, text: str) -> None:
 def main(systems: str, output: Path) -> None:
     """Build the site."""
     names = systems.split(",") if systems else list(shipped_names())
-    lay_out(list(make_all(names)))
+    lay_out(list(make_all(names)), None if systems else make_book(names))
     words = ["-m", "sphinx", "--fail-on-warning", "--keep-going", "-q", "-j", "auto"]
     run = subprocess.run([sys.executable, *words, str(SOURCE), str(output)], check=False)
     if run.returncode:

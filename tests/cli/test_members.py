@@ -145,7 +145,14 @@ def test_a_wrong_file_is_named(run, folder, monkeypatch, text, message):
         (["--members", "0"], f"0 members; expected 1 to {MOST}"),
         (["--members", "9" * 30], "expected 1 to"),
         (["--members", "-3"], "-3 cannot be read"),
-        (["--members", "3", "--plot", "a.png"], "--plot and --trace are of one trajectory"),
+        (
+            ["--members", "3", "--plot", "a.png"],
+            "--plot, --animate and --trace are of one trajectory",
+        ),
+        (
+            ["--members", "3", "--animate", "a.gif"],
+            "--plot, --animate and --trace are of one trajectory",
+        ),
         (["--members", "3", "--method", "scipy:Radau"], "follows one trajectory"),
         (["--threads", "0"], "'--threads': 0 is not in the range"),
         (["--step", "-1"], "step is -1.0; expected a positive number"),

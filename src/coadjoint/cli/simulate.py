@@ -31,7 +31,7 @@ from coadjoint.cli.members import (
     print_members,
     seed_option,
 )
-from coadjoint.cli.output import json_option, print_json, print_table, say
+from coadjoint.cli.output import json_option, print_json, print_table, progress_bars, say
 from coadjoint.files import check_writable
 
 if TYPE_CHECKING:
@@ -142,6 +142,11 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
+    "--animate",
+    type=click.Path(path_type=Path),
+    help="Film to write, e.g. top.gif, top.mp4 or top.html.",
+)
+@click.option(
     "--trace",
     type=click.Path(path_type=Path),
     help="Picture of the path of (x, y) on the plane to write, e.g. trace.png.",
@@ -164,6 +169,7 @@ def command(
     members: str | None,
     seed: int,
     plot: Path | None,
+    animate: Path | None,
     trace: Path | None,
     table: Path | None,
     sizes: dict[str, int],
@@ -175,10 +181,16 @@ def command(
 ) -> int:
     """Integrate a trajectory, or many; show the drift of invariants."""
     _check_outputs(table, *filter(None, (plot, trace)))
+    if animate is not None:
+        from coadjoint.solve.animation import check_film  # which needs NumPy
+
+        check_film(animate)
     asked = take_events(options)
     asked.check()
-    if members is not None and (plot or trace):
-        raise click.UsageError("--plot and --trace are of one trajectory; expected no --members.")
+    if members is not None and (plot or animate or trace):
+        raise click.UsageError(
+            "--plot, --animate and --trace are of one trajectory; expected no --members."
+        )
     loaded = load_system(system, seconds, sizes).with_derivatives(derivatives)
     asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
@@ -206,6 +218,11 @@ def command(
         solution.to_csv(table)
     if plot is not None:
         solution.plot(plot)
+    if animate is not None:
+        with progress_bars() as show:
+            solution.animate(
+                animate, progress=lambda n, count: show(loaded.name, "film", n + 1, count)
+            )
     if trace is not None:
         solution.trace(trace)
     asked.write(solution)

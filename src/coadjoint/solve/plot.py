@@ -169,6 +169,7 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
         own = {"color": colour} if several else {"color": "#000000"}
         axes.plot(*path[:, -1:], marker="o", markersize=5, linestyle="", **own)
         axes.plot(*path[:, :1], marker="o", markersize=5, fillstyle="none", linestyle="", **own)
+    axes.coadjoint_path = paths.members
     _limit_space(axes, paths)
     if several:
         beside = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5)}
@@ -237,6 +238,7 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
         shown = np.where(near, vector, np.nan)
         lines = draw_coloured(axes, shown, solution.time, zorder=3, linewidth=1.6)
         _time_bar(axes.figure, axes, lines, solution)
+    axes.coadjoint_path = vector[np.newaxis]
     axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
     axes.scatter(*vector[:, -1:], color="#000000", s=36, marker="s", zorder=4, label="end")
     symbol, unit = _symbol(name), unit_label(solution.system.STATE[name].unit)
@@ -335,6 +337,7 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
 
 def _limit_time(axes: Any, solution: Solution) -> None:
     """The time axis from the first sample to the last."""
+    axes.coadjoint_time = True
     if len(solution) > 1:
         axes.set_xlim(solution.time[0], solution.time_reached)
 

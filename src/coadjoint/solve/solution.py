@@ -19,6 +19,8 @@ from coadjoint.solve.ensemble import Status
 from coadjoint.solve.occurrences import Events
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from coadjoint.solve.dense_output import Dense
@@ -446,6 +448,25 @@ class Solution:
 
         self._check_alone("a picture")
         return plot(self, path)
+
+    def animate(
+        self,
+        path: str | PathLike[str],
+        *,
+        seconds: float = 8.0,
+        progress: Callable[[int, int], object] = lambda done, total: None,
+    ) -> None:
+        """Draw the trajectory as a film, evenly in time; see `coadjoint.solve.animation`.
+
+        Args:
+            path: File to write; its ending is .gif, .mp4 or .html.
+            seconds: How long the film is.
+            progress: Told of every picture: pictures done, pictures in all.
+        """
+        from coadjoint.solve.animation import animate
+
+        self._check_alone("a film")
+        animate(self, path, seconds=seconds, progress=progress)
 
     def trace(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw the path of (x, y) on the plane; see `coadjoint.solve.trace`.

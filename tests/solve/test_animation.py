@@ -1,0 +1,90 @@
+"""Films: whole files, a mark that is where the motion is, and clear refusals."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from matplotlib import animation as films
+from PIL import Image
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve import animation
+from coadjoint.solve.plot import draw
+from coadjoint.systems import heavy_top, kepler
+
+TOP = ({"Pi": [0, 0, 3], "Gamma": [0.6, 0, 0.8]}, (0, 2), {"I": [1, 1, 0.6], "m": 0.3})
+
+
+def test_a_gif_has_a_picture_for_each_part_of_its_time(tmp_path):
+    """Of one second, and progress is told of each; pictures differ."""
+    told = []
+    top = heavy_top.simulate(*TOP, samples=201)
+    path = tmp_path / "top.gif"
+    top.animate(path, seconds=0.2, progress=lambda done, total: told.append((done, total)))
+    with Image.open(path) as film:
+        assert film.n_frames == 5
+        frames = []
+        for n in range(5):
+            film.seek(n)
+            frames.append(np.asarray(film.convert("RGB")))
+    assert all((a != b).any() for a, b in pairwise(frames))
+    assert [done for done, _ in told] == list(range(5))
+    assert {total for _, total in told} == {5}
+
+
+def test_marks_are_where_the_motion_is():
+    """A point of the path at its time, and a line at the time; a point of another time differs."""
+    orbit = kepler.simulate({"r": [1, 0.5, 0.8], "v": [0.5, 0.8, 0.2]}, (0, 4), samples=401)
+    figure = draw(orbit)
+    moves = list(animation._list_moves(figure, orbit))
+    assert len(moves) == 2  # the orbit, and the drift below it
+    for move in moves:
+        move(1.0)
+    space = next(axes for axes in figure.axes if hasattr(axes, "coadjoint_path"))
+    place = np.array([float(each[0]) for each in space.lines[-1].get_data_3d()])
+    assert np.abs(place - orbit["r"][:, 100]).max() < 1e-12
+    assert np.abs(place - orbit["r"][:, 200]).max() > 0.1
+    drift = next(axes for axes in figure.axes if hasattr(axes, "coadjoint_time"))
+    assert list(drift.lines[-1].get_xdata()) == [1.0, 1.0]
+
+
+def test_a_page_plays_without_a_network(tmp_path):
+    """Its pictures stand in it."""
+    path = tmp_path / "top.html"
+    heavy_top.simulate(*TOP, samples=21).animate(path, seconds=0.1)
+    text = path.read_text()
+    assert text.count("data:image/png;base64") == 2
+    assert not re.findall("https?:", text)
+    assert "fa-play" not in text
+    assert "&#9654;" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("top.avi", r"ending is '.avi'. Expected one of .gif, .mp4, .html"), ("top", "ending is ''")],
+)
+def test_another_ending_is_refused(name, message, tmp_path):
+    """Before anything is drawn."""
+    with pytest.raises(KernelArgumentError, match=message):
+        heavy_top.simulate(*TOP, samples=3).animate(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_mp4_without_ffmpeg_says_what_to_do(tmp_path, monkeypatch):
+    """Install it, or take what needs none."""
+    monkeypatch.setattr(films.writers, "is_available", lambda name: name != "ffmpeg")
+    top = heavy_top.simulate(*TOP, samples=3)
+    with pytest.raises(KernelArgumentError, match=r"apt install ffmpeg`, or take .gif or .html"):
+        top.animate(tmp_path / "top.mp4")
+    top.animate(tmp_path / "top.gif", seconds=0.1)
+    assert (tmp_path / "top.gif").is_file()
+
+
+def test_one_sample_does_not_move(tmp_path):
+    """And nothing is written."""
+    with pytest.raises(KernelArgumentError, match="Ask for more, samples=200"):
+        heavy_top.simulate(*TOP, samples=1).animate(tmp_path / "top.gif")
+    assert not list(tmp_path.iterdir())
