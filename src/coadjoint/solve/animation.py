@@ -133,7 +133,7 @@ def _make_writer(path: Path) -> Any:
 
 
 def _without_network(page: str) -> str:
-    """The page of matplotlib with characters in the place of a font of symbols that it would fetch."""
+    """The page of matplotlib with characters for a font of symbols that it would fetch."""
     page = re.sub(r"<link[^>]*font-awesome[^>]*>", "", page).replace("play fa-flip", "back fa-flip")
     return re.sub(r'<i class="fa fa-([a-z-]+)[^"]*"></i>', lambda icon: ICONS[icon[1]], page)
 
