@@ -74,8 +74,8 @@ def test_a_solution_gives_the_block_of_an_observable(rendered, tmp_path):
 
 def test_definitions_are_told_in_documents(rendered):
     """The derivation begins with them, and the certificate keeps them beside the claims."""
-    section = document(rendered.equations).sections[0]
-    assert (section.title, section.words) == ("Definitions", (("square(a)", "= dot(a, a)"),))
+    sections = {each.title: each for each in document(rendered.equations).sections}
+    assert sections["Definitions"].words == (("square(a)", "= dot(a, a)"),)
     assert document(derive(spec())).sections[0].title != "Definitions"
     assert '"square(a)": "dot(a, a)"' in rendered.texts["certificate.json"]
     plain = render(spec())

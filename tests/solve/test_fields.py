@@ -75,7 +75,7 @@ def test_waves_travel_as_they_should(name):
         (spin_chain_chiral.system, {"energy", "P", "M"}, None),
         (kdv.system, {"energy", "M"}, None),
         (camassa_holm.system, {"energy", "M"}, {"L": 1, "alpha": 0.02}),
-        (hunter_saxton.system, {"energy", "M"}, {"L": 60}),
+        (hunter_saxton.system, {"energy"}, {"L": 60}),  # its M is 0
     ],
     ids=lambda each: getattr(each, "name", ""),
 )
