@@ -15,7 +15,7 @@ from coadjoint.render.targets import BUILDS
 from coadjoint.solve.folders import load_folder
 from tests.sources import textbook
 from tests.specs import render_claims, shipped
-from tests.trees_of_files import ROOT
+from tests.trees_of_files import ROOT, folder_until_exit
 
 #: Inputs lie in [1/8, 8], so that sums stay below 2^13 and their rounding errors below 2^-37.
 TOLERANCE = 2.0**-37
@@ -28,14 +28,20 @@ MEMBERS = 7
 BUILT = tuple(name for name in SYSTEMS if name.startswith(("heavy_top", "bargmann")))
 
 
-@pytest.fixture(scope="module")
-def built(request, tmp_path_factory):
+@pytest.fixture
+def built(request):
     """A system that is named; with few points of cross-check, the book is the judge here."""
-    if request.param not in BUILT:
-        return load_folder(ROOT / "generated" / request.param)
-    folder = tmp_path_factory.mktemp("built") / request.param
+    return build(request.param)
+
+
+@cache  # tests of a system do not follow one another
+def build(system):
+    """The same, once in a process."""
+    if system not in BUILT:
+        return load_folder(ROOT / "generated" / system)
+    folder = folder_until_exit() / system
     folder.mkdir()
-    for name, text in render_claims(shipped(request.param)).texts.items():
+    for name, text in render_claims(shipped(system)).texts.items():
         (folder / name).write_text(text)
     return load_folder(folder)
 
