@@ -67,3 +67,13 @@ def test_a_picture_for_a_page_is_data():
     shown = illustrate(rigid_body.system, [1.0, 0.3, -0.8])
     assert shown["picture"].startswith("data:image/png;base64,")
     assert "20 s" in shown["caption"]
+
+
+@pytest.mark.parametrize("turn", np.linspace(-3.1, 3.1, 13))
+def test_nobody_looks_along_an_axis(turn):
+    """Ticks of two axes would lie on each other; the curve is on the near side all the same."""
+    curve = np.array([[np.cos(turn)] * 2, [np.sin(turn)] * 2, [0.1, -0.1]])
+    toward = choose_view(curve)
+    azimuth = np.degrees(np.arctan2(toward[1], toward[0])) % 90
+    assert 22.4 < azimuth < 67.6
+    assert (toward @ curve > 0).all()

@@ -34,6 +34,8 @@ LEVELS, ALONG, ACROSS = 9, 90, 45
 STEEPEST: Final = (-0.6, 0.72)
 #: Sine of the elevation below which circles are seen from their edge.
 LEAST: Final = 0.3
+#: Least angle between a horizontal axis and where a viewer stands, radians.
+ASIDE: Final = np.pi / 8
 #: Extent along an axis, over the largest one, below which a motion is in a plane.
 FLAT: Final = 1e-9
 #: Length of a coordinate in units of the spec.
@@ -100,7 +102,7 @@ def choose_view(vector: Array) -> Array:
         vector: ``(3, T)``.
 
     >>> choose_view(np.array([[1.0, 1.0], [0.1, -0.1], [0.0, 0.0]])).round(6).tolist()
-    [0.953939, 0.0, 0.3]
+    [0.881325, 0.365057, 0.3]
     """
     mean = vector.mean(axis=1)
     size = float(np.linalg.norm(vector, axis=0).max()) or 1.0
@@ -109,13 +111,22 @@ def choose_view(vector: Array) -> Array:
         _, _, axes = np.linalg.svd((vector - mean[:, None]).T, full_matrices=False)
         toward = axes[-1] * (1 if axes[-1][2] >= 0 else -1)
     toward = toward / np.linalg.norm(toward)
-    # never along an axis, whose ticks would lie on each other
     across = np.hypot(toward[0], toward[1])
-    sideways = toward[:2] / across if across > 0.2 else np.array([0.8, -0.6])
+    sideways = _aside(toward[:2] if across > 0.2 else np.array([0.8, -0.6]))
     height = float(np.clip(toward[2] + 0.3, *STEEPEST))
     if abs(height) < LEAST:
         height = LEAST
     return np.array([*(np.sqrt(1 - height**2) * sideways), height])
+
+
+def _aside(direction: Array) -> Array:
+    """The nearest horizontal direction that is not along an axis: ticks would lie on each other."""
+    azimuth = float(np.arctan2(direction[1], direction[0]))
+    axis = np.round(azimuth / (np.pi / 2)) * (np.pi / 2)
+    off = azimuth - axis
+    if abs(off) < ASIDE:
+        azimuth = axis + np.copysign(ASIDE, off)
+    return np.array([np.cos(azimuth), np.sin(azimuth)])
 
 
 def angles(toward: Array) -> tuple[float, float]:
