@@ -9,7 +9,7 @@ from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.plot import plot
 from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
-from coadjoint.systems import heavy_top, heisenberg_lattice, rigid_body, so8_body
+from coadjoint.systems import heavy_top, heisenberg_lattice, kdv, n_body, rigid_body, so8_body
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -82,6 +82,21 @@ def test_many_members_are_colours_over_time():
     drawn = [axes.collections[0].get_array() for axes in figure.axes[:6:2]]
     assert np.array_equal(drawn, motion["S"])
     assert [axes.get_ylabel() for axes in figure.axes[:6:2]] == ["member"] * 3
+
+
+def test_points_of_a_field_are_no_members():
+    """Rows of a field are points along its coordinate."""
+    wave = kdv.system.resize({"s": 64}).simulate(None, (0, 0.1), samples=11)
+    assert plot(wave).axes[0].get_ylabel() == "point s"
+
+
+def test_the_drift_of_what_begins_at_zero_is_drawn_as_it_is():
+    """Momenta of the figure eight are 0: their roundings are small, and no ratio of themselves."""
+    eight = n_body.simulate(None, (0, 1), samples=21)
+    strip = plot(eight).axes[-1]
+    labels = [line.get_label() for line in strip.lines]
+    assert [label.endswith("absolute)") for label in labels] == [False, True, True]
+    assert max(np.nanmax(line.get_ydata()) for line in strip.lines) < 1e-9
 
 
 def test_only_the_near_side_is_drawn_strong(body):

@@ -40,7 +40,11 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
 
 def describe(solution: Solution) -> str:
     """What the picture shows."""
+    from coadjoint.solve.scenes import find_paths, find_sphere
+
+    paths = find_paths(solution)
+    coloured = len(paths.members) == 1 if paths else bool(find_sphere(solution))
     return (
         f"A motion with the default parameters over {SPAN:g} {solution.unit('time')}, by the "
-        "generated code. Colour is time, dark at the start."
+        f"generated code.{' Colour is time, dark at the start.' * coloured}"
     )

@@ -16,6 +16,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
+from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.scenes import (
     Paths,
@@ -304,20 +305,34 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit_label(quantity.unit)}", fontsize=9)
         bar.ax.tick_params(labelsize=8)
         if columns == 1:
-            axes.set_ylabel("member" if of_members else "component", fontsize=9)
+            axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
 
 
+def _tell_rows(solution: Solution) -> str:
+    """What the rows of a quantity are numbers of."""
+    if not isinstance(solution.system, FamilySystem):
+        return "component"
+    is_field = solution.system.symbol is not None or solution.system.strand is not None
+    return f"point {solution.system.index.name}" if is_field else "member"
+
+
 def _draw_drift(axes: Any, solution: Solution) -> None:
-    """Change of each conserved observable relative to its largest size, on a logarithmic axis."""
+    """Change of each conserved observable relative to its largest size, on a logarithmic axis.
+
+    That of what begins at 0 is drawn as it is: its ratio to its own roundings would be 1.
+    """
     for n, (stroke, name) in enumerate(zip(_strokes(), solution.conserved, strict=False)):
+        told = tell_drift(solution, name)
         size = float(np.abs(solution[name]).max()) or 1.0
+        if told.endswith("absolute"):
+            size = 1.0
         with np.errstate(invalid="ignore"):  # of what is infinite
             # of a vector or matrix, the largest of the components
             moved = np.abs(solution.change(name)).reshape(-1, len(solution.time))
             change = moved.max(axis=0) / size
         change[change == 0] = np.nan  # no place on a logarithmic axis
-        largest = f"{solution.drift[name]:.0e}" if solution.drift[name] else "none"
+        largest = told if solution.drift[name] else "none"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
         label = f"{name} ({largest})"
         axes.plot(solution.time, change, linewidth=width, label=label, **stroke)
