@@ -9,7 +9,15 @@ from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.plot import plot
 from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
-from coadjoint.systems import heavy_top, heisenberg_lattice, kdv, n_body, rigid_body, so8_body
+from coadjoint.systems import (
+    elastic_chain,
+    heavy_top,
+    heisenberg_lattice,
+    kdv,
+    n_body,
+    rigid_body,
+    so8_body,
+)
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -82,6 +90,14 @@ def test_many_members_are_colours_over_time():
     drawn = [axes.collections[0].get_array() for axes in figure.axes[:6:2]]
     assert np.array_equal(drawn, motion["S"])
     assert [axes.get_ylabel() for axes in figure.axes[:6:2]] == ["member"] * 3
+
+
+def test_each_component_has_its_own_unit():
+    """Of attitudes and places of rods: directions have none, and places are in metres."""
+    chain = elastic_chain.simulate(None, (0, 0.1), samples=5)
+    labels = [axes.get_ylabel() for axes in plot(chain).axes if axes.get_ylabel().startswith("g$")]
+    assert len(labels) == 12
+    assert [label.endswith("[m]") for label in labels] == [False, False, False, True] * 3
 
 
 def test_points_of_a_field_are_no_members():

@@ -302,11 +302,18 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         colours.set_rasterized(True)
         lower = str(n + 1) * (len(parts) > 1)
         bar = figure.colorbar(colours, ax=axes, pad=0.01)
-        bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit_label(quantity.unit)}", fontsize=9)
+        unit = unit_label(_unit_of(quantity.unit, n, len(parts)))
+        bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit}", fontsize=9)
         bar.ax.tick_params(labelsize=8)
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
+
+
+def _unit_of(unit: str, place: int, count: int) -> str:
+    """The unit of a component, where a quantity has one for each; else that of all."""
+    units = unit.split(", ")
+    return units[place] if len(units) == count else unit
 
 
 def _tell_rows(solution: Solution) -> str:
