@@ -8,11 +8,12 @@ generated folder. Read next: `coadjoint.render.document`.
 from __future__ import annotations
 
 import ast
-import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
+
+from coadjoint.elementary import ELEMENTARY
 
 #: What the kinds of claims are about, as headings of sentences.
 _ABOUT: Final = {
@@ -44,36 +45,27 @@ _ON_ROUTE: Final = " on the route "
 
 
 def complete(
-    record: Mapping[str, Any], certificate: Mapping[str, Any] | None, folder: Path | None
+    record: Mapping[str, Any], certificate: Mapping[str, Any], folder: Path | None
 ) -> dict[str, Any]:
     """The record of a derivation with its proofs, its cost and its references.
 
     Args:
         record: The fields of a `coadjoint.derive.document.Document`.
-        certificate: ``claims`` and ``findings``; None where they are not known.
+        certificate: ``claims`` and ``findings``; empty where they are not known.
         folder: Where the generated system stands, if it does.
     """
     sections = [*record["sections"]]
-    if certificate is not None:
+    if "claims" in certificate:
         sections += _proofs(certificate)
     if folder is not None and (folder / "kernel_python.py").is_file():
-        sections += _cost(folder, certificate or {})
-    sections += _references(record, certificate or {})
+        sections += _cost(folder, certificate)
+    sections += _references(record)
     return {**record, "sections": sections}
 
 
 def section(title: str, kind: str, **parts: Any) -> dict[str, Any]:
     """A section of words."""
     return {"title": title, "law": "", "law_latex": "", "kind": kind, **parts}
-
-
-def read_certificate(folder: Path) -> dict[str, Any] | None:
-    """The certificate of a generated system; None where there is none."""
-    path = folder / "certificate.json"
-    if not path.is_file():
-        return None
-    record: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return record
 
 
 def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -100,7 +92,7 @@ def _sentences(claims: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, list[
     subjects: dict[str, dict[tuple[str, str, str], list[str]]] = {}
     for claim in claims:
         statement, _, route = claim["statement"].partition(_ON_ROUTE)
-        about = _ABOUT.get(claim["kind"], claim["kind"].capitalize())
+        about = _ABOUT.get(claim.get("kind", ""), claim.get("kind", "claims").capitalize())
         key = (statement, claim["verdict"], claim["method"])
         subjects.setdefault(about, {}).setdefault(key, []).extend([route] if route else [])
     for about, entries in subjects.items():
@@ -155,21 +147,14 @@ def count_operations(path: Path) -> dict[str, dict[str, int]]:
                 signs[_SIGNS[type(node.op)]] += 1
             elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name | ast.Attribute):
                 label = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
-                if label in _CALLS:
+                if label in ELEMENTARY:
                     signs[label] += 1
         if signs:
             counts[function.name] = dict(sorted(signs.items()))
     return counts
 
 
-_CALLS: Final = frozenset(
-    ["sqrt", "sin", "cos", "tan", "exp", "log", "atan", "atan2", "sinh", "cosh", "tanh"]
-)
-
-
-def _references(
-    record: Mapping[str, Any], certificate: Mapping[str, Any]
-) -> Iterator[dict[str, Any]]:
+def _references(record: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """The sources of the system and the theorems of its routes."""
     words = [("system", each.strip()) for each in str(record["source"]).split(";") if each.strip()]
     for part in record["sections"]:
