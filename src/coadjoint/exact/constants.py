@@ -29,17 +29,17 @@ LARGEST_DEGREE = 12
 
 def algebraic_functions(field: Field, called: Iterable[Adjoined]) -> list[Adjoined]:
     """The functions that are roots and powers of algebraic numbers, in their order."""
-    known = {each.generator: each for each in called}
     chosen: dict[str, Adjoined] = {}
-    for generator, each in known.items():
+    cosines = _cosines(field)
+    for each in called:
         if each.function == "sqrt":
             inner: Iterable[Element] = [each.argument]
         elif each.function == "exp" and (bases := _logarithms(field, each.argument)):
             inner = bases
         else:
             continue
-        if all(field.names_in(part) <= chosen.keys() | _cosines(field) for part in inner):
-            chosen[generator] = each
+        if all(field.names_in(part) <= chosen.keys() | cosines for part in inner):
+            chosen[each.generator] = each
     return list(chosen.values())
 
 

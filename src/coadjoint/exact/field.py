@@ -272,7 +272,7 @@ class Field(Rationals):
         """Whether the normal form is 0: exact for rational functions, and a proof of zero always.
 
         With adjoined functions a nonzero normal form may still be a hidden zero, such as
-        ``sqrt(3 + 2*sqrt(2)) - 1 - sqrt(2)``; `coadjoint.exact.witness` says what is not zero.
+        ``sqrt(q + 1 + 2*sqrt(q)) - 1 - sqrt(q)``; `coadjoint.exact.witness` says what is not zero.
         """
         return bool(self.normal(element) == 0)
 
