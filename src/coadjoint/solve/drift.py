@@ -61,14 +61,24 @@ def tell_drift(solution: Solution, name: str, component: str = "") -> str:
         component: Of it; by default all of them, of which the largest drift is told.
     """
     axes, start = len(solution.batch), solution.first(name)
-    moved, first = (_find_size(x, axes) for x in (solution.change(component or name), start))
-    if np.any(moved > first):
+    moved = _find_size(solution.change(component or name), axes)
+    if begins_small(solution, name, component):
         return f"{np.max(moved):.1e} absolute"
     if component in ("", name):
         return f"{float(np.max(solution.drift[name])):.1e}"
     size = _find_size(np.concatenate([start, solution[name]], axis=-1), axes)
     parts = np.divide(moved, size, out=np.zeros(np.shape(moved)), where=size > 0)
     return f"{float(np.max(parts)):.1e}"
+
+
+def begins_small(solution: Solution, name: str, component: str = "") -> bool:
+    """Whether an observable, or a component, changes by more than the observable is at the start.
+
+    Of a batch, in one trajectory at least.
+    """
+    axes = len(solution.batch)
+    moved = _find_size(solution.change(component or name), axes)
+    return bool(np.any(moved > _find_size(solution.first(name), axes)))
 
 
 def list_owners(solution: Solution) -> dict[str, str]:

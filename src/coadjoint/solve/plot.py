@@ -7,16 +7,17 @@ is imported here alone.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
-from coadjoint.solve.drift import tell_drift
+from coadjoint.notation.names import GREEK
+from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.scenes import (
     Paths,
@@ -42,6 +43,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 STYLES = ("solid", "dashed", "dotted", "dashdot")
 #: Names in one column of a legend, and lines of one panel.
 LEGEND_ROWS, LINES = 14, 28
+#: Where a legend stands: its left edge at the right end of the axes, in the middle of their height.
+AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 #: Pictures of members, one above the other.
 STACKED = 3
 
@@ -173,8 +176,7 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     axes.coadjoint_path = paths.members
     _limit_space(axes, paths)
     if several:
-        beside = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5)}
-        axes.legend(fontsize=8, frameon=False, **beside)
+        axes.legend(fontsize=8, frameon=False, **AT_RIGHT)
     axes.set_title("open circle: start, filled: end", fontsize=9, color="#5b6570")
 
 
@@ -281,8 +283,8 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         axes.set_ylabel(f"{_symbol(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
-        right = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
-        axes.legend(fontsize=8 if columns == 1 else 6.5, frameon=False, **right)
+        size = 8 if columns == 1 else 6.5
+        axes.legend(fontsize=size, ncols=columns, frameon=False, **AT_RIGHT)
         _limit_time(axes, solution)
         axes.grid(alpha=0.3)
 
@@ -330,16 +332,15 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
     That of what begins at 0 is drawn as it is: its ratio to its own roundings would be 1.
     """
     for n, (stroke, name) in enumerate(zip(_strokes(), solution.conserved, strict=False)):
-        told = tell_drift(solution, name)
-        size = float(np.abs(solution[name]).max()) or 1.0
-        if told.endswith("absolute"):
+        size = float(np.abs(solution[name]).max())
+        if not size or begins_small(solution, name):
             size = 1.0
         with np.errstate(invalid="ignore"):  # of what is infinite
             # of a vector or matrix, the largest of the components
             moved = np.abs(solution.change(name)).reshape(-1, len(solution.time))
             change = moved.max(axis=0) / size
         change[change == 0] = np.nan  # no place on a logarithmic axis
-        largest = told if solution.drift[name] else "none"
+        largest = tell_drift(solution, name) if solution.drift[name] else "none"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
         label = f"{name} ({largest})"
         axes.plot(solution.time, change, linewidth=width, label=label, **stroke)
@@ -352,9 +353,9 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
     if solution.conserved:
-        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
         columns = -(-len(solution.conserved) // 4)
-        axes.legend(fontsize=7 if columns == 1 else 6, ncols=columns, frameon=False, **beside)
+        size = 7 if columns == 1 else 6
+        axes.legend(fontsize=size, ncols=columns, frameon=False, **AT_RIGHT)
 
 
 def _limit_time(axes: Any, solution: Solution) -> None:
@@ -379,8 +380,4 @@ def unit_label(unit: str) -> str:
 
 def _symbol(name: str) -> str:
     """A Greek name as its letter, in matplotlib's own TeX; other names as they are."""
-    greek = {
-        "Pi", "Gamma", "Omega", "Xi", "Lambda", "Sigma", "Phi", "Psi", "Theta", "Delta",
-        "alpha", "beta", "gamma", "delta", "mu", "nu", "xi", "eta", "chi", "phi", "psi", "theta",
-    }  # fmt: skip
-    return rf"$\{name}$" if name in greek else name
+    return rf"$\{name}$" if name in GREEK else name
