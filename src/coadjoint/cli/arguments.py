@@ -137,9 +137,9 @@ def complete_algebra(
     _context: click.Context, _parameter: click.Parameter, incomplete: str
 ) -> list[str]:
     """Named algebras, then what `system_argument` completes."""
-    named = [f"{kind}({n})" for kind in ("so", "se", "su", "h") for n in (2, 3, 4)]
-    named += ["sl(2,R)", "gl(2,R)", "sp(2,R)", "so(3,1)", "g(3)", "bargmann", "aff(1)"]
-    return [word for word in named if word.startswith(incomplete)] + _complete(
+    from coadjoint.algebra.catalogue import CATALOGUE
+
+    return [word for word in CATALOGUE if word.startswith(incomplete)] + _complete(
         _context, _parameter, incomplete
     )
 
