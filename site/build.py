@@ -31,11 +31,12 @@ ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "build" / "site-made"
 SOURCE = ROOT / "build" / "site-source"
 
-#: What is made of each system: the file, and the command that writes it.
+#: What is made of each system: the file, the command that writes it, and how else it may end: 1,
+#: where a motion stops early and is drawn as far as it goes; 2, where there is no such page of it.
 PARTS = {
-    "picture.png": ["simulate", "{name}", "--plot", "{path}"],
-    "document.html": ["show", "{name}", "--format", "html", "--output", "{path}"],
-    "explorer.html": ["explore", "{name}", "--output", "{path}"],
+    "picture.png": (["simulate", "{name}", "--plot", "{path}"], 1),
+    "document.html": (["show", "{name}", "--format", "html", "--output", "{path}"], 0),
+    "explorer.html": (["explore", "{name}", "--output", "{path}"], 2),
 }
 
 
@@ -71,7 +72,7 @@ def make_parts(name: str) -> Made:
     if not (folder / "done").is_file():
         shutil.rmtree(MADE / name, ignore_errors=True)
         folder.mkdir(parents=True)
-        for part, words in PARTS.items():
+        for part, (words, other) in PARTS.items():
             given = [word.format(name=name, path=folder / part) for word in words]
             run = subprocess.run(
                 [sys.executable, "-P", "-m", "coadjoint.cli", *given],
@@ -79,7 +80,7 @@ def make_parts(name: str) -> Made:
                 text=True,
                 check=False,
             )
-            if run.returncode not in (0, 1, 2):  # 1: a run that ended early; 2: it does not apply
+            if run.returncode not in (0, other):
                 raise click.ClickException(f"{' '.join(given)}: {run.stderr}")
             if run.returncode:
                 (folder / f"{part}.txt").write_text(run.stderr, encoding="utf-8")
