@@ -255,7 +255,7 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     if order is not None and not order > method.order - SHY:
         ends = [*ends[1:], runs.run(method.name, first / 8, HALVED * 8, runs.states)]
         again, _ = _compare(ends)
-        order = order if again is None else max(order, again)
+        order = order if again is None else again
     return order, reached
 
 
