@@ -17,6 +17,13 @@ from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.grid import Grid, make_grid
 from coadjoint.families import Family
 from coadjoint.spec import read_spec_text
+from coadjoint.systems import (
+    camassa_holm,
+    hunter_saxton,
+    kdv,
+    landau_lifshitz,
+    spin_chain_chiral,
+)
 from tests.specs import emitted, shipped
 
 
@@ -190,3 +197,23 @@ def breaking_wave(s, t, length=7.0):
     m = -second / J**2
     rate = (-third / J**2 + 2 * second * J_x / J**3) * moved + 2 * second * mixed / J**3
     return m[None], rate[None]
+
+
+#: Systems with their exact waves, lengths and parameters.
+WAVES = {
+    "chiral": (spin_chain_chiral.system, precessing_wave, 10.0, {"L": 10.0}),
+    "magnet": (
+        landau_lifshitz.system,
+        helix,
+        20.0,
+        {"L": 20.0, "a": [0, 0, 0.6], "B": [0, 0, 0.3]},
+    ),
+    "kdv": (kdv.system, cnoidal_wave, 12.0, {"L": 12.0, "c": 1.3}),
+    "camassa_holm": (
+        camassa_holm.system,
+        smooth_wave,
+        smooth_length(),
+        {"L": smooth_length(), "alpha": 0.9},
+    ),
+    "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}),
+}

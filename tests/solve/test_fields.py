@@ -18,32 +18,8 @@ from coadjoint.systems import (
     spin_chain_chiral,
 )
 from tests.fields import (
-    breaking_wave,
-    cnoidal_wave,
-    helix,
-    precessing_wave,
-    smooth_length,
-    smooth_wave,
+    WAVES,
 )
-
-#: Systems with their exact waves, lengths and parameters.
-WAVES = {
-    "chiral": (spin_chain_chiral.system, precessing_wave, 10.0, {"L": 10.0}),
-    "magnet": (
-        landau_lifshitz.system,
-        helix,
-        20.0,
-        {"L": 20.0, "a": [0, 0, 0.6], "B": [0, 0, 0.3]},
-    ),
-    "kdv": (kdv.system, cnoidal_wave, 12.0, {"L": 12.0, "c": 1.3}),
-    "camassa_holm": (
-        camassa_holm.system,
-        smooth_wave,
-        smooth_length(),
-        {"L": smooth_length(), "alpha": 0.9},
-    ),
-    "hunter_saxton": (hunter_saxton.system, breaking_wave, 7.0, {"L": 7.0}),
-}
 
 
 @pytest.mark.parametrize("name", WAVES)
