@@ -52,7 +52,7 @@ _STEP, _LAST = 1e-2, 50.0
 
 def is_of_waves(system: System) -> bool:
     """Whether a system has fields with a principal symbol."""
-    return getattr(system, "symbol", None) is not None
+    return system.symbol is not None
 
 
 def watch_waves(system: System, request: Request) -> Callable[[Solution], None]:

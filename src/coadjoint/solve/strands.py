@@ -27,7 +27,6 @@ from coadjoint.errors import KernelArgumentError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.families import Strand
     from coadjoint.solve.solution import Solution
 
     Array = NDArray[np.float64]
@@ -46,7 +45,7 @@ def find_frames(solution: Solution) -> Array:
         KernelArgumentError: The system is no strand, or has no matrices.
     """
     system = solution.system
-    strand: Strand | None = getattr(system, "strand", None)
+    strand = system.strand
     if strand is None:
         raise KernelArgumentError(
             f"{system.name} has no strain along an algebra of matrices of numbers; expected a "

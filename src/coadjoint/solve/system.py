@@ -28,6 +28,7 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.families import PrincipalSymbol, Strand
     from coadjoint.solve.events import Event
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
@@ -67,8 +68,12 @@ class System(Functions):
             see `coadjoint.build.source.Source`.
         wave: Of a field whose waves break, their speed and the name of the length; see
             `coadjoint.solve.shocks`.
+        strand: The strain of a strand and its matrices; None of other systems.
+        symbol: The principal symbol of fields; None of other systems.
     """
 
+    strand: Strand | None = None
+    symbol: PrincipalSymbol | None = None
     levels: Mapping[tuple[str, str], int] = MappingProxyType({})
     wave: tuple[str, ...] = ()
 
