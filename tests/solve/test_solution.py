@@ -19,7 +19,18 @@ def made(state=STATE, status="OK", message=""):
 
 def test_drift_is_the_largest_change_over_the_largest_size():
     """Drift is max |q(t) - q(0)| / max |q(t)|: here (4 - 1)/4 for both invariants."""
-    assert made().drift == {"energy": 0.75, "casimir1": 0.75}
+    shrinking = made(STATE[:, [1, 0, 2]])
+    assert shrinking.drift == {"energy": 0.75, "casimir1": 0.75}
+    assert shrinking.absolute_drift == ()
+
+
+def test_what_begins_at_zero_drifts_by_its_change():
+    """Its ratio to its own values would be 1, of roundings as of a wrong motion: 1e-16 is told."""
+    small = made(STATE * np.array([0.0, 1e-8, 0.5e-8]))
+    assert small.drift["energy"] == pytest.approx(2e-16, rel=1e-12)
+    assert small.absolute_drift == ("energy", "casimir1")
+    assert made().drift["energy"] == 1.5  # from 0.5 to 2: more than it was
+    assert tell_drift(small, "energy") == f"{small.drift['energy']:.1e} absolute"
 
 
 def test_a_component_drifts_relative_to_the_whole():

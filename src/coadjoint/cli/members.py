@@ -208,6 +208,7 @@ def print_members(solution: Solution, origin: str) -> None:
     order = short + [n for n in range(count) if solution.status[n] == "OK"]
     shown = sorted(order[:SHOWN])
     drifts = solution.drift
+    absolute = solution.absolute_drift
     rows = [
         [
             str(n),
@@ -220,11 +221,14 @@ def print_members(solution: Solution, origin: str) -> None:
         for n in shown
     ]
     columns = ["member", "status", ">t", ">steps", ">rejected"]
-    columns += [f">drift of {name}" for name in drifts]
+    columns += [f">{'absolute ' * (name in absolute)}drift of {name}" for name in drifts]
     print_table(columns, rows, title=f"{system.title} ({system.name}), {origin}")
     if len(shown) < count:
         say(f"and {count - len(shown)} more; --json has them all")
-    rows = [[name, f"{drift.max():.1e}"] for name, drift in drifts.items()]
+    rows = [
+        [name, f"{drift.max():.1e}{' absolute' * (name in absolute)}"]
+        for name, drift in drifts.items()
+    ]
     if rows:
         print_table(["conserved", ">largest drift"], rows)
     for name, drift in solution.attitude_drift.items():
@@ -259,5 +263,6 @@ def describe_members(solution: Solution, origin: str) -> dict[str, Any]:
         "initial": {name: solution.first(name)[:, 0].tolist() for name in components},
         "final": {name: values.tolist() for name, values in (solution.final | followed).items()},
         "drift": {name: values.tolist() for name, values in solution.drift.items()},
+        "absolute_drift": [*solution.absolute_drift],
         "units": {name: solution.unit(name) for name in components},
     }

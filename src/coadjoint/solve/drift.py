@@ -19,10 +19,17 @@ if TYPE_CHECKING:
 
 
 def find_drift(solution: Solution) -> dict[str, Any]:
-    """Largest change of each conserved observable, relative to its largest size."""
+    """Largest change of each conserved observable, relative to its largest size.
+
+    That of what `begins_small` is the change itself: its ratio to its own roundings would be 1.
+    """
     axes, drifts = len(solution.batch), dict[str, Any]()
     for name in solution.conserved:
         change, values = solution.change(name), solution[name]
+        if begins_small(solution, name):
+            moved = _find_size(change, axes)
+            drifts[name] = moved if axes else float(moved)
+            continue
         sizes = np.concatenate([solution.first(name), values], axis=-1)
         drifts[name] = _compare_each(change, sizes, axes) if axes else _compare(change, sizes)
     return drifts

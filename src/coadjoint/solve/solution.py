@@ -305,12 +305,24 @@ class Solution:
     def drift(self) -> dict[str, Any]:
         """Largest change of each conserved observable, relative to its largest size.
 
-        ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout. Of a batch it is an
-        array; what a trajectory did not reach is left out.
+        ``max |q(t) - q(0)| / max |q(t)|``, and 0 for what is zero throughout. Of what is named in
+        `absolute_drift` it is ``max |q(t) - q(0)|``, in the unit of q. Of a batch it is an array;
+        what a trajectory did not reach is left out.
         """
         from coadjoint.solve.drift import find_drift
 
         return find_drift(self)
+
+    @property
+    def absolute_drift(self) -> tuple[str, ...]:
+        """Names of what changes by more than its size at the start, as what begins at 0.
+
+        Its `drift` is the change itself, since the ratio of that to its values says nothing. Of a
+        batch it is what does so in one trajectory at least.
+        """
+        from coadjoint.solve.drift import begins_small
+
+        return tuple(name for name in self.conserved if begins_small(self, name))
 
     @property
     def conserved(self) -> tuple[str, ...]:

@@ -24,6 +24,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "parameters": dict(parameters),
         "final": solution.final,
         "drift": solution.drift,
+        "absolute_drift": [*solution.absolute_drift],
     }
     if solution.inputs is not None:
         record["inputs"] = {name: float(solution[name][-1]) for name in inputs}
