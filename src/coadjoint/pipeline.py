@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from coadjoint.crosscheck.families import crosscheck_family
-from coadjoint.crosscheck.ladder import LEVELS, Report, crosscheck
+from coadjoint.crosscheck.ladder import LEVELS, WRITTEN_LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.fields.grid import make_grid
@@ -168,10 +168,18 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     )
 
 
-def verify(rendered: Rendered, progress: Progress = lambda stage: None) -> Report:
-    """Compile, load and cross-check: the numeric rungs, each of which raises what it refuses."""
+def verify(
+    rendered: Rendered, progress: Progress = lambda stage: None, *, loads: bool = True
+) -> Report:
+    """Compile, load and cross-check: the numeric rungs, each of which raises what it refuses.
+
+    Args:
+        rendered: What `render` made.
+        progress: Called with the name of the stage.
+        loads: Whether the system is loaded next: its kernels are compiled as users run them.
+    """
     progress("compile and cross-check")
-    with load_texts(rendered.texts, LEVELS) as system:
+    with load_texts(rendered.texts, LEVELS if loads else WRITTEN_LEVELS) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
             return crosscheck_family(*given, rendered.texts, own.printed, system)

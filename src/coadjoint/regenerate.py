@@ -244,7 +244,7 @@ def is_written_out(path: Path, sizes: Mapping[str, int], seconds: float | None =
     if not isinstance(written, bool):
         record = run_bounded(
             "coadjoint.regenerate:tell_written",
-            {"path": str(path), "sizes": dict(sizes)},
+            {"path": str(path), "sizes": dict(sizes), "loads": True},
             seconds=allowed_seconds(seconds),
             memory=limits.WORKER_BYTES,
             subject=str(path),
@@ -418,7 +418,7 @@ def build_record(argument: Mapping[str, Any]) -> dict[str, Any]:
         report_progress(stage, pipeline.STAGES.index(stage), total)
 
     rendered = pipeline.render(spec, progress)
-    report = pipeline.verify(rendered, progress)
+    report = pipeline.verify(rendered, progress, loads=argument.get("loads", False))
     report_progress("done", total, total)
     row = Row(
         system=spec.name,

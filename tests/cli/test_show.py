@@ -45,6 +45,7 @@ def test_title_of_a_spec_is_escaped(run, rigid_body):
     page = run("show", rigid_body, "--format", "html").stdout
     assert "&lt;script&gt;" in page
     assert "<script" not in page
+    assert page.count("data:image/png;base64,") == 1  # a motion of a spec of one's own
 
 
 def test_nambu_bracket_is_shown(run):

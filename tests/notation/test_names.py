@@ -9,7 +9,16 @@ import pytest
 from coadjoint.notation.names import member, name, unit
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.trees import write_tree
-from coadjoint.notation.written import add, divide, literal, multiply, negate, number, power
+from coadjoint.notation.written import (
+    add,
+    divide,
+    literal,
+    multiply,
+    negate,
+    number,
+    power,
+    stack_latex,
+)
 from coadjoint.spec.core.expressions import read_expression
 
 
@@ -42,6 +51,51 @@ def test_members_have_their_place_below():
     assert member("r2", "i+1").text == "r2[i+1]"
 
 
+@pytest.mark.parametrize(
+    ("of", "latex"),
+    [
+        ("q_pairs", r"q_{i,\mathrm{pairs}}"),  # two subscripts of one letter do not compile
+        ("p2_pairs", r"p_{i,\mathrm{pairs},2}"),
+        ("rolling_reaction2", r"\mathrm{rolling\ reaction}_{i,2}"),
+        ("u_ss", r"\partial_s^2 u_i"),
+    ],
+)
+def test_members_with_words_have_one_list_below(of, latex):
+    """In no format does a symbol that has a subscript get another one."""
+    written = member(of, "i")
+    assert written.latex == latex
+    assert written.typst.count("_(") <= 1
+    assert written.mathml.count("<msub>") == 1 + latex.count("partial")
+
+
+def test_fractions_with_long_numerators_are_sums_of_fractions():
+    """Each of them fits on a line of a page, nothing is lost, and minus reaches all of them."""
+    parts = [literal(f"x{n}") for n in range(60)]
+    whole = negate(divide(add(parts), literal("d")))
+    lines = stack_latex(add([whole])).split("\\\\\n")
+    assert len(lines) > 2
+    assert all(line.count(r"\frac") == 1 for line in lines)
+    assert all(line.removeprefix(r"&\quad ").startswith("-") for line in lines)
+    assert sum(line.count("x") for line in lines) == len(parts)
+
+
+def test_sums_within_sums_are_broken_as_one():
+    """A sum that needs no brackets is no unbreakable addend."""
+    parts = [literal(f"long_name_{n}") for n in range(20)]
+    nested = stack_latex(add([add(parts[:-1]), parts[-1]]))
+    assert nested == stack_latex(add(parts))
+    assert nested.count("\n") >= 2
+
+
+def test_matrices_are_written_as_matrices():
+    """Rows of numbers are no function of vectors."""
+    written = write_tree(read_expression("rows(vector(a, -b), vector(0, 1))"), {})
+    assert written.latex == r"\begin{pmatrix}a & -b \\ 0 & 1\end{pmatrix}"
+    assert written.typst == "mat(a, -b; 0, 1)"
+    assert ET.fromstring(f"<math>{written.mathml}</math>").findall(".//mtr")
+    assert written.text == "rows((a, -b), (0, 1))"
+
+
 def test_units_are_upright_with_raised_exponents():
     """In text they stay as they were typed."""
     assert unit("kg m^2/s").latex == r"\mathrm{kg\,m^{2}/s}"
@@ -67,6 +121,7 @@ def test_signs_and_brackets_stand_where_they_are_needed():
         ("norm(a)", "abs(bold(a))"),
         ("sqrt(m)", "sqrt(m)"),
         ("m/2", "frac(m, 2)"),
+        ("outer(a, b)", "bold(a) ⊗ bold(b)"),
     ],
 )
 def test_trees_in_typst(formula, typst):

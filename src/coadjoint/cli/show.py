@@ -94,19 +94,24 @@ def make_chapter(
     if "claims" not in certificate and form != "text":
         certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
     record = complete(record, certificate, folder)
-    if form == "html" and folder is not None:
-        record |= draw_motion(system)
+    if form == "html":
+        record |= draw_motion(system, sizes=sizes, seconds=seconds)
     return record
 
 
-def draw_motion(system: str) -> dict[str, Any]:
-    """A picture of a motion as an address of data, with its caption; empty without matplotlib."""
+def draw_motion(
+    system: str, *, sizes: Mapping[str, int] = MappingProxyType({}), seconds: int | None = None
+) -> dict[str, Any]:
+    """A picture of a motion as an address of data, with its caption.
+
+    Empty without matplotlib, and where a spec can be derived and not be run.
+    """
     from coadjoint.cli.simulate import find_start
     from coadjoint.errors import CoadjointError
     from coadjoint.solve.illustrate import illustrate
 
     try:
-        loaded = load_system(system)
+        loaded = load_system(system, seconds, sizes)
         return illustrate(loaded, find_start(loaded, ()))
     except CoadjointError:
         return {}

@@ -38,9 +38,12 @@ from coadjoint.render.solvers import select_programs
 from coadjoint.render.targets import BUILDS, TARGETS
 from coadjoint.solver_kinds import SOLVER, list_kinds
 
-#: How much is optimised what the ladder runs for some points or steps alone, by stem and build: the
-#: kernels of the exact build are those that users load.
+#: How much is optimised what the ladder runs for some points or steps alone, by stem and build.
+#: Where the system is loaded next, kernels of the exact build are those that it loads, as they are.
 LEVELS: Final = {("kernel", "fast"): 1, (SOLVER.stem, "exact"): 0, (SOLVER.stem, "fast"): 1}
+#: The same where texts are written and nothing is loaded: optimisation changes no bit, and every
+#: object that users load is compared with its twin when it is compiled.
+WRITTEN_LEVELS: Final = {**LEVELS, ("kernel", "exact"): 0}
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
 ORACLE_POINTS: Final = 2000

@@ -87,41 +87,45 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     rate = _RATE.fullmatch(plain)
     if rate:
         return replace(name(rate["of"], bold=bold, dot=True), text=shown)
-    along = _ALONG.fullmatch(plain)
-    if along and (along["of"][-1].isdigit() or _is_symbol(along["of"])):
+    along = _find_along(plain)
+    if along:
         of = name(along["of"], bold=bold)
         return replace(differentiate_along(of, len(along["s"])), text=shown)
-    parts = _PARTS.fullmatch(plain)
-    if parts is None:
-        return replace(attach(_word(plain, bold=bold), dot=dot), text=shown)
-    numbers = parts["numbers"] or ""
-    below = [number(int(each)) for each in numbers.split("_") if each]
-    base, words = _split_word(parts["base"])
-    inner = _PARTS.fullmatch(base)
-    if words and inner is not None and inner["numbers"]:  # p1_pairs
-        base = inner["base"]
-        below = [*(number(int(each)) for each in inner["numbers"].split("_") if each), *below]
-    symbol = _letter(base, bold=bold) or _word(parts["base"], bold=bold)
-    if _letter(base, bold=bold) is not None and words:
-        below = [_letter(words, bold=False) or _word(words, bold=False), *below]
+    symbol, below = _split_name(plain, bold=bold)
     return replace(attach(symbol, below=below, dot=dot), text=shown)
 
 
 def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Written:
     """What a member has: ``r2`` of the member ``i+1`` is a letter with the subscripts i+1 and 2."""
-    parts = _PARTS.fullmatch(of)
     index, shift = re.fullmatch(r"(\w*?)([+-]\d+)?", place).groups()  # type: ignore[union-attr]
     own = literal(index, mathml=f"<mn>{index}</mn>") if index.isdigit() else literal(index)
     if shift:
         own = add([own, number(int(shift))])
-    word = parts["base"] if parts else of
-    if _split_word(word)[1]:
-        return replace(attach(name(of, bold=bold), below=[own]), text=f"{of}[{place}]")
-    base = name(word, bold=bold)
-    numbers = [number(int(n)) for n in ((parts and parts["numbers"]) or "").split("_") if n]
     shown = f"{of}[{place}]"
-    made = attach(base, below=[own, *numbers], dot=dot)
+    along = _find_along(of)
+    symbol, below = _split_name(along["of"] if along else of, bold=bold)
+    made = attach(symbol, below=[own, *below], dot=dot)
+    made = differentiate_along(made, len(along["s"])) if along else made
     return replace(made, text=f"d{shown}/dt" if dot else shown)
+
+
+def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:
+    """The letter or word of a name, and what stands below it."""
+    parts = _PARTS.fullmatch(text)
+    if parts is None:
+        return _word(text, bold=bold), []
+    below = [number(int(each)) for each in (parts["numbers"] or "").split("_") if each]
+    base, words = _split_word(parts["base"])
+    inner = _PARTS.fullmatch(base)
+    if words and inner is not None and inner["numbers"]:  # p1_pairs
+        base = inner["base"]
+        below = [*(number(int(each)) for each in inner["numbers"].split("_") if each), *below]
+    symbol = _letter(base, bold=bold)
+    if symbol is None:
+        return _word(parts["base"], bold=bold), below
+    if words:
+        below = [_letter(words, bold=False) or _word(words, bold=False), *below]
+    return symbol, below
 
 
 def differentiate_along(of: Written, times: int = 1, by: str = "s") -> Written:
@@ -133,9 +137,15 @@ def differentiate_along(of: Written, times: int = 1, by: str = "s") -> Written:
         text=f"d{again}_{by} {of.text}" if not times > 1 else f"d_{by}^{times} {of.text}",
         latex=rf"\partial_{by}{again} {of.latex}",
         mathml=row(f"<msub>{sign}<mi>{by}</mi></msub>", of.mathml),
-        typst=f"diff_{by}{again} {of.typst}",
+        typst=f"partial_{by}{again} {of.typst}",
         level=max(of.level - 1, SUM + 1),
     )
+
+
+def _find_along(text: str) -> re.Match[str] | None:
+    """The parts of a name that is a derivative along space: ``u_ss``, ``Xi1_s``."""
+    found = _ALONG.fullmatch(text)
+    return found if found and (found["of"][-1].isdigit() or _is_symbol(found["of"])) else None
 
 
 def _is_symbol(text: str) -> bool:
@@ -203,13 +213,13 @@ def partial(function: Written, by: Written) -> Written:
             text="",
             latex=rf"\partial {function.latex}",
             mathml=row(d, function.mathml),
-            typst=f"diff {function.typst}",
+            typst=f"partial {function.typst}",
         ),
         Written(
             text="",
             latex=rf"\partial {by.latex}",
             mathml=row(d, by.mathml),
-            typst=f"diff {by.typst}",
+            typst=f"partial {by.typst}",
         ),
     )
     return replace(made, text=f"d{function.text}/d{by.text}")

@@ -26,6 +26,7 @@ from coadjoint.notation.written import (
     divide,
     enclose,
     literal,
+    matrix,
     multiply,
     negate,
     number,
@@ -133,6 +134,9 @@ def write_tree(
                 return partial(*below)
             case tree.Call(function="along_space"):
                 return differentiate_along(below[0])
+            case tree.Call(function="rows", arguments=rows) if all(map(_is_vector, rows)):
+                own = [row.arguments for row in rows if isinstance(row, tree.Call)]
+                return matrix([[write_tree(one, shapes, names) for one in row] for row in own])
             case tree.Call(function=function) if function in CALLS:
                 return CALLS[function](*below)
             case tree.Call(function=function):
@@ -140,6 +144,11 @@ def write_tree(
         raise AssertionError(part)
 
     return tree.fold(node, value)
+
+
+def _is_vector(node: tree.Node) -> bool:
+    """Whether a vector is written out by its components."""
+    return isinstance(node, tree.Call) and node.function == "vector"
 
 
 def _place(member: tree.Member) -> Written:
@@ -204,7 +213,7 @@ def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Writ
     text, latex, typst = listed, listed, listed
     mathml = operator(",").join(f"<mi>{i}</mi>" for i in indices)
     if sides:
-        marks = {"!=": ("≠", r"\ne", "eq.not"), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
+        marks = {"!=": ("≠", r"\ne", "!="), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
         marks |= {"<=": ("≤", r"\le", "<="), ">=": ("≥", r"\ge", ">="), "==": ("=", "=", "=")}
         shown, in_latex, in_typst = marks[sign]
         a, b = sides

@@ -20,8 +20,6 @@ SUM: Final = 1
 PRODUCT: Final = 2
 POWER: Final = 3
 ATOM: Final = 4
-#: Addends on one line of LaTeX.
-ADDENDS: Final = 7
 #: Characters of text that a line of a page may be long, about.
 WIDTH: Final = 80
 
@@ -39,8 +37,8 @@ class Written:
         sign: -1 where the piece is minus what is written, for a sum to write between addends.
         between: Whether it is a product with a sign between its factors.
         factors: Of a product, its factors; empty for all else.
-        rows: Of a sum, the pieces of MathML that fit on each line of a page.
-        lines: Of a sum, the LaTeX of what fits on each line.
+        groups: Of a sum, the addends that fit on each line of a page.
+        addends: Of a fraction whose numerator fills several lines, a fraction for each of them.
     """
 
     text: str
@@ -51,8 +49,8 @@ class Written:
     sign: int = 1
     between: bool = False
     factors: tuple[Written, ...] = ()
-    rows: tuple[tuple[str, ...], ...] = ()
-    lines: tuple[str, ...] = ()
+    groups: tuple[tuple[Written, ...], ...] = ()
+    addends: tuple[Written, ...] = ()
 
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
@@ -105,50 +103,64 @@ def bracket(part: Written, level: int) -> Written:
 
 def add(parts: Sequence[Written]) -> Written:
     """A sum, each addend with its sign."""
+    parts = [each for part in parts for each in _list_addends(part)]
     if not parts:
         return number(0)
     if len(parts) == 1 and parts[0].sign > 0:
         return parts[0]
-    texts, rows, width, lines = ["", "", ""], [list[str]()], 0, list[str]()
+    texts, pieces, groups, width = ["", "", ""], list[str](), [list[Written]()], 0
     for n, part in enumerate(parts):
         plain = bracket(replace(part, sign=1), PRODUCT if part.sign < 0 else SUM)
         sign = "-" if part.sign < 0 else "+"
         first = sign if sign == "-" else ""
-        if n % ADDENDS == 0:
-            lines.append("")
         for k, text in enumerate((plain.text, plain.latex, plain.typst)):
             texts[k] += (f" {sign} " if n else first) + text
-        lines[-1] += (f"{' ' * bool(lines[-1])}{sign} " if n else first) + plain.latex
-        width += len(plain.text)
+        width += len(f" {sign} {plain.text}")
         if width > WIDTH and n:
-            rows.append([])
-            width = len(plain.text)
+            groups.append([])
+            width = len(f" {sign} {plain.text}")
+        groups[-1].append(part)
         if n or first:
-            rows[-1].append(operator("&#x2212;" if sign == "-" else "+"))
-        rows[-1].append(plain.mathml)
-    whole = row(*(piece for each in rows for piece in each))
+            pieces.append(operator("&#x2212;" if sign == "-" else "+"))
+        pieces.append(plain.mathml)
     return Written(
         text=texts[0],
         latex=texts[1],
-        mathml=whole,
+        mathml=row(*pieces),
         typst=texts[2],
         level=SUM,
-        rows=tuple(map(tuple, rows)),
-        lines=tuple(lines),
+        groups=tuple(map(tuple, groups)),
     )
+
+
+def _list_addends(part: Written) -> list[Written]:
+    """What a sum prints of a part without brackets: addends of its own, each with its sign."""
+    if part.addends:
+        return [replace(each, sign=each.sign * part.sign) for each in part.addends]
+    if part.sign > 0 and part.groups:
+        return [each for group in part.groups for each in group]
+    return [part]
 
 
 def stack_latex(part: Written) -> str:
     """The LaTeX of a right side, a long sum on further lines of an ``align``."""
-    return " \\\\\n&\\quad ".join(part.lines) if len(part.lines) > 1 else part.latex
+    if len(part.groups) < 2:
+        return part.latex
+    first, *others = (add(group).latex for group in part.groups)
+    signed = (each if each.startswith("-") else f"+ {each}" for each in others)
+    return " \\\\\n&\\quad ".join([first, *signed])
 
 
 def stack(part: Written) -> str:
     """The MathML of a right side, a long sum in rows below each other."""
-    if len(part.rows) < 2:
+    if len(part.groups) < 2:
         return part.mathml
     left = 'style="text-align: left; padding: 0.25em 0"'
-    cells = (f"<mtr><mtd {left}>{row(*each)}</mtd></mtr>" for each in part.rows)
+    lines = [
+        row(*([operator("+")] if n and group[0].sign > 0 else []), add(group).mathml)
+        for n, group in enumerate(part.groups)
+    ]
+    cells = (f"<mtr><mtd {left}>{line}</mtd></mtr>" for line in lines)
     return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
 
 
@@ -190,7 +202,11 @@ def _spaced(factors: Sequence[str]) -> list[str]:
 
 
 def divide(top: Written, bottom: Written) -> Written:
-    """A fraction."""
+    """A fraction; one whose numerator fills several lines is a sum of a fraction for each."""
+    if len(top.groups) > 1:
+        each = [divide(add(group), bottom) for group in top.groups]
+        own = tuple(replace(part, sign=part.sign * top.sign) for part in each)
+        return replace(add(own), addends=own)
     sign, top = top.sign, replace(top, sign=1)
     upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
     return Written(
@@ -288,7 +304,7 @@ def between(left: Written, sign: tuple[str, str, str, str], right: Written) -> W
 #: Signs between vectors: text, LaTeX, MathML, Typst.
 CROSS: Final = ("x", r"\times", "&#xD7;", "times")
 DOT: Final = (".", r"\cdot", "&#x22C5;", "dot.op")
-OUTER: Final = ("(x)", r"\otimes", "&#x2297;", "times.circle")
+OUTER: Final = ("(x)", r"\otimes", "&#x2297;", "⊗")
 
 
 def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
@@ -309,6 +325,21 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
             operator(first), operator(",").join(part.mathml for part in inner), operator(last)
         ),
         typst=f"abs({typst})" if first == "|" else f"{first}{typst}{last}",
+    )
+
+
+def matrix(rows: Sequence[Sequence[Written]]) -> Written:
+    """Entries in rows, in round brackets."""
+    shown = [[add([entry]) if entry.sign < 0 else entry for entry in each] for each in rows]
+    cells = ("".join(f"<mtd>{entry.mathml}</mtd>" for entry in each) for each in shown)
+    table = "".join(f"<mtr>{each}</mtr>" for each in cells)
+    return Written(
+        text=f"rows({', '.join(enclose(each, '()').text for each in rows)})",
+        latex=r"\begin{pmatrix}"
+        + r" \\ ".join(" & ".join(entry.latex for entry in each) for each in shown)
+        + r"\end{pmatrix}",
+        mathml=row(operator("("), f"<mtable>{table}</mtable>", operator(")")),
+        typst=f"mat({'; '.join(', '.join(entry.typst for entry in each) for each in shown)})",
     )
 
 

@@ -109,6 +109,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
     )
     made.filters |= {
         "aligned": align,
+        "columns": choose_columns,
         "abreast": count_abreast,
         "described": describe,
         "listed": list_rows,
@@ -205,6 +206,29 @@ def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
             line = "  ".join(part.ljust(w) for part, w in zip(parts, widths, strict=True))
             listed.append(line.rstrip())
     return listed
+
+
+def choose_columns(rows: Sequence[Sequence[Any]]) -> str:
+    r"""The columns of a table in LaTeX, long cells wrapped: each has room by its longest cell.
+
+    >>> choose_columns([["name", "unit"], ["m", "kg"]])
+    'll'
+    >>> choose_columns([["name", "meaning"], ["m", "mass " * 40]]).count("raggedright")
+    2
+    """
+    widths = [
+        max(len(cell["text"] if isinstance(cell, Mapping) else str(cell)) for cell in column)
+        for column in zip(*rows, strict=True)
+    ]
+    room = WIDTH - 2 * len(widths)
+    if sum(widths) <= room:
+        return "l" * len(widths)
+    # a short column keeps its width, and long ones share what is left
+    widths = [max(6, min(width, room // 2)) for width in widths]
+    shares = [0.94 * width / sum(widths) * room / WIDTH for width in widths]
+    return "".join(
+        rf">{{\raggedright\arraybackslash}}p{{{share:.3f}\linewidth}}" for share in shares
+    )
 
 
 def wrap(text: str, indent: int = 0) -> list[str]:
