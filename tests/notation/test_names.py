@@ -79,6 +79,13 @@ def test_fractions_with_long_numerators_are_sums_of_fractions():
     assert sum(line.count("x") for line in lines) == len(parts)
 
 
+def test_a_fraction_of_one_negative_addend_takes_the_sign_before_it():
+    """A numerator that fills its line alone is no ``+ frac(-x, d)``."""
+    long, other = literal("x" * 70), literal("y" * 70)
+    made = divide(add([long, negate(other)]), literal("d"))
+    assert made.latex == rf"\frac{{{long.text}}}{{d}} - \frac{{{other.text}}}{{d}}"
+
+
 def test_sums_within_sums_are_broken_as_one():
     """A sum that needs no brackets is no unbreakable addend."""
     parts = [literal(f"long_name_{n}") for n in range(20)]

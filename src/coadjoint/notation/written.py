@@ -204,7 +204,8 @@ def _spaced(factors: Sequence[str]) -> list[str]:
 def divide(top: Written, bottom: Written) -> Written:
     """A fraction; one whose numerator fills several lines is a sum of a fraction for each."""
     if len(top.groups) > 1:
-        each = [divide(add(group), bottom) for group in top.groups]
+        tops = [group[0] if len(group) == 1 else add(group) for group in top.groups]
+        each = [divide(each, bottom) for each in tops]
         own = tuple(replace(part, sign=part.sign * top.sign) for part in each)
         return replace(add(own), addends=own)
     sign, top = top.sign, replace(top, sign=1)
