@@ -66,7 +66,9 @@ def load(
     else:
         folder, own = cache_folder() / "systems" / digest(place)[:16], MappingProxyType({})
     with _tell(progress) as told:
-        outcome = regenerate([source], folder, seconds=seconds, sizes=own, progress=told)
+        outcome = regenerate(
+            [source], folder, seconds=seconds, sizes=own, loads=True, progress=told
+        )
     for error in outcome.failures.values():
         raise error
     note_use(folder)

@@ -126,6 +126,7 @@ def regenerate(
     complete: bool = False,
     seconds: float | None = None,
     sizes: Mapping[str, int] = MappingProxyType({}),
+    loads: bool = False,
     progress: Progress = lambda *_: None,
     on_wait: Callable[[], None] = lambda: None,
 ) -> Outcome:
@@ -138,6 +139,7 @@ def regenerate(
         complete: Whether these are all the systems of the folder; others are then removed.
         seconds: Processor time for each system; see `coadjoint.budget.allowed_seconds`.
         sizes: How many members an index counts, by its name, where all are written out.
+        loads: Whether the systems are loaded next: kernels are compiled as users run them.
         progress: Told of every stage of every system.
         on_wait: Called if another run holds the lock of the folder.
 
@@ -153,7 +155,7 @@ def regenerate(
     pending = [source for source in sources if source.name not in rows]
     keep = {source.name for source in sources} if complete else None
     _refuse_early(output, pending, keep)
-    records, failures = _build_all(pending, output, jobs, allowed, progress)
+    records, failures = _build_all(pending, output, jobs, allowed, progress, loads=loads)
     if records or not _is_current(output, keep):
         systems = {name: _generated_system(record) for name, record in records.items()}
         write_systems(output, systems, template_hashes(), keep, on_wait)
@@ -244,7 +246,7 @@ def is_written_out(path: Path, sizes: Mapping[str, int], seconds: float | None =
     if not isinstance(written, bool):
         record = run_bounded(
             "coadjoint.regenerate:tell_written",
-            {"path": str(path), "sizes": dict(sizes), "loads": True},
+            {"path": str(path), "sizes": dict(sizes)},
             seconds=allowed_seconds(seconds),
             memory=limits.WORKER_BYTES,
             subject=str(path),
@@ -357,7 +359,13 @@ def _generated_system(record: Mapping[str, Any]) -> GeneratedSystem:
 
 
 def _build_all(
-    sources: Sequence[_Source], output: Path, jobs: int, seconds: int, progress: Progress
+    sources: Sequence[_Source],
+    output: Path,
+    jobs: int,
+    seconds: int,
+    progress: Progress,
+    *,
+    loads: bool = False,
 ) -> tuple[dict[str, dict[str, Any]], dict[str, CoadjointError]]:
     """Records of the systems that passed, and errors of the others in the order of the specs."""
     records: dict[str, dict[str, Any]] = {}
@@ -372,7 +380,7 @@ def _build_all(
         try:
             records[source.name] = run_bounded(
                 "coadjoint.regenerate:build_record",
-                {"path": str(source.path), "sizes": dict(source.sizes)},
+                {"path": str(source.path), "sizes": dict(source.sizes), "loads": loads},
                 seconds=seconds,
                 memory=limits.WORKER_BYTES,
                 on_progress=report,
