@@ -223,7 +223,7 @@ def choose_columns(rows: Sequence[Sequence[Any]]) -> str:
     room = WIDTH - 2 * len(widths)
     if sum(widths) <= room:
         return "l" * len(widths)
-    # a short column keeps its width, and long ones share what is left
+    # no column takes more than half of the line, and 6 % are left for the gaps between them
     widths = [max(6, min(width, room // 2)) for width in widths]
     shares = [0.94 * width / sum(widths) * room / WIDTH for width in widths]
     return "".join(
