@@ -114,6 +114,32 @@ class Spectral:
         self.rates, self.densities, self.solved = rates, densities, solved
 
 
+class Torus:
+    """A field at points of a plane that closes in both directions, between transforms.
+
+    Args:
+        coordinates: Their names.
+        lengths: The parameters that are the lengths of both circles.
+        sizes: How many points there are along both; None if that is chosen when it is loaded.
+        derivatives: Of what is computed at each point by its name: the field that is
+            differentiated, and how often along both coordinates.
+        solved: Of a stream function that follows from w = A psi, its name, w, and the factors of
+            derivatives in A as texts by their orders along both; A takes constants to 0 without
+            that of order (0, 0).
+    """
+
+    def __init__(
+        self,
+        coordinates: tuple[str, ...],
+        lengths: tuple[str, ...],
+        sizes: tuple[int | None, ...],
+        derivatives: Mapping[str, tuple[str, int, int]],
+        solved: Mapping[str, tuple[str, Mapping[tuple[int, int], str]]],
+    ) -> None:
+        self.coordinates, self.lengths, self.sizes = coordinates, lengths, sizes
+        self.derivatives, self.solved = derivatives, solved
+
+
 @dataclass(frozen=True)
 class Sum:
     """A sum over the members, or over the pairs of them.

@@ -21,7 +21,8 @@ from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.ladder import LEVELS, WRITTEN_LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
-from coadjoint.derive.fields.grid import make_grid
+from coadjoint.derive.fields.grid import Grid, make_grid
+from coadjoint.derive.fields.torus import TorusGrid, make_torus
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.reference import Reference
 from coadjoint.families import Family
@@ -33,7 +34,7 @@ from coadjoint.lower.mapped import lower_maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove import Certificate, Verdict, prove
-from coadjoint.prove.declaration import family_context, kernel_context, tell_fields
+from coadjoint.prove.declaration import family_context, kernel_context, tell_fields, tell_torus
 from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
@@ -41,6 +42,7 @@ from coadjoint.render.environment import compile_templates
 from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.folders import load_texts
+from coadjoint.solve.torus import TorusSystem
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Windows
 
@@ -135,9 +137,10 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
 
     So are fields, at the points of a grid.
     """
-    first, grid = routes[0], None
+    first = routes[0]
+    grid: Grid | TorusGrid | None = None
     if spec.space is not None:
-        grid = make_grid(first)
+        grid = make_torus(first) if spec.in_plane else make_grid(first)
         windows, declared, family = grid.windows, grid.declared, grid.family
     else:
         assert spec.family is not None, spec.name
@@ -153,7 +156,9 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     supported = certificate.count(Verdict.SUPPORTED)
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)
-    if grid is not None:
+    if isinstance(grid, TorusGrid):
+        context = tell_torus(context, grid)
+    elif grid is not None:
         context = tell_fields(context, grid)
     record = certificate_json(spec, certificate, facts.as_record(), methods)
     texts = {**render_family(context), "certificate.json": record}
@@ -182,7 +187,8 @@ def verify(
     with load_texts(rendered.texts, LEVELS if loads else WRITTEN_LEVELS) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
-            return crosscheck_family(*given, rendered.texts, own.printed, system)
+            points = system.points if isinstance(system, TorusSystem) else system
+            return crosscheck_family(*given, rendered.texts, own.printed, points)
         reference = Reference(rendered.equations)
         maps = rendered.maps
         return crosscheck(rendered.programs, rendered.texts, reference, system, maps=maps)

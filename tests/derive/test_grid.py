@@ -51,9 +51,9 @@ def test_stencils_are_those_that_books_print():
 
 def test_products_of_derivatives_are_summed_by_parts():
     """u_s v_ss becomes -u v_sss; what has a factor that is a field stays."""
-    towers = {x: (x, *(f"{x}_{'s' * n}" for n in range(1, 5))) for x in "uv"}
-    names = [name for tower in towers.values() for name in tower]
-    jets = Jets(Field([*names, "c", DEGREE]), towers)
+    rows = {x: list_rows(x, ["s"], 4) for x in "uv"}
+    names = [name for (tower,) in rows.values() for name in tower]
+    jets = Jets(Field([*names, "c", DEGREE]), rows)
     u, u_s, v_ss, v_sss, c = (jets.field[x] for x in ("u", "u_s", "v_ss", "v_sss", "c"))
     assert narrow(jets, c * u_s * v_ss) == -c * u * v_sss
     assert narrow(jets, u * u_s**2) == u * u_s**2

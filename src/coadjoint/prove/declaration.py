@@ -24,6 +24,7 @@ from coadjoint.derive.emitted import list_following
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
+from coadjoint.derive.fields.torus import TorusGrid
 from coadjoint.derive.fields.jets import jets_of, solved
 from coadjoint.derive.fields.stencils import find_largest
 from coadjoint.derive.fields.symbol import find_matrix
@@ -188,6 +189,20 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     )
 
 
+def tell_torus(context: FamilyContext, grid: TorusGrid) -> FamilyContext:
+    """The context of a field at the points of a plane, with how it was derived."""
+    first = grid.equations
+    spec, space = first.spec, first.spec.space
+    assert space is not None, spec.name
+    routes = (
+        f"Route {first.route} of a field along {' and '.join(space.coordinates)}, at points of a "
+        "plane that closes in both directions, by truncated Fourier series.",
+        *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
+    )
+    lines = ["fields:", *equation_lines(first), "points:", *family_lines(grid.family)]
+    return replace(context, routes=routes, equations=tuple(lines), torus=grid.torus, methods=())
+
+
 def tell_symbol(first: Equations) -> PrincipalSymbol | None:
     """The principal symbol of fields for differences of the declared order."""
     setting, space = first.setting, first.spec.space
@@ -219,7 +234,7 @@ def tell_wave(first: Equations) -> tuple[str, ...]:
     speed, steepness = -field.derivative(rate, jets.towers[m][1]), field[jets.towers[m][1]]
     for u in solved(first.spec):
         carried = field[u] * steepness + 2 * field[jets.towers[u][1]] * field[m]
-        is_level = {*circle.inertia(setting)} == {2} and field.is_zero(rate + carried)
+        is_level = {*circle.inertia_along(setting)} == {2} and field.is_zero(rate + carried)
         return (u, space.length) if is_level else ()
     others = {*jets.orders} - {m}
     if field.reach(speed) & others or not field.is_zero(rate + speed * steepness):

@@ -24,16 +24,17 @@ from functools import partial
 from coadjoint.derive import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.grid import make_grid
-from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, solved
-from coadjoint.derive.fields.operators import Operator, Term, apply, order_of, skew_defects
+from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, list_rows, solved
+from coadjoint.derive.fields.operators import Operator, apply, order_of, skew_defects
+from coadjoint.derive.fields.torus import make_torus
 from coadjoint.derive.fields.structure import cocycle, field_operator
 from coadjoint.derive.fields.symbol import look_at_symbol
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
+from coadjoint.prove.torus import about_torus
 from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
-from coadjoint.spec.sections.space import jet_name
 
 #: Characters of a flux that a certificate shows.
 SHOWN = 400
@@ -50,7 +51,7 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from _about_densities(first)
     for equations in routes:
         yield from _about_pair(first, routes, equations)
-    yield from about_grid(make_grid(first))
+    yield from about_torus(make_torus(first)) if first.spec.in_plane else about_grid(make_grid(first))
 
 
 # -- the bracket ------------------------------------------------------------------------------
@@ -109,26 +110,21 @@ class _Trivector:
     def __init__(self, operator: Operator, jets: Jets) -> None:
         self.names, size = [*jets.towers], len(operator)
         depth = 3 * order_of(operator) + 1
-        space = [*jets.towers.values()]
-        letter = space[0][1].removeprefix(f"{self.names[0]}_")
-        towers = {name: tower[: depth + 1] for name, tower in jets.towers.items()}
+        coordinates = jets.coordinates
+        rows = {name: list_rows(name, coordinates, depth) for name in self.names}
         self.covectors = [[f"{of}{n}" for n in range(1, size + 1)] for of in _COVECTORS]
-        towers |= {
-            name: tuple(jet_name(name, letter, k) for k in range(2 * depth + 1))
+        rows |= {
+            name: list_rows(name, coordinates, 2 * depth)
             for names in self.covectors
             for name in names
         }
-        symbols = [x for tower in towers.values() for x in tower]
-        moving = {x for tower in space for x in tower}
-        rest = [name for name in jets.field.names if name not in moving and name != DEGREE]
+        symbols = [x for own in rows.values() for row in own for x in row]
+        rest = [name for name in jets.field.names if name not in jets.places and name != DEGREE]
         self.field = Field([*symbols, *rest, DEGREE])
-        self.jets = Jets(self.field, towers)
+        self.jets, adopt = Jets(self.field, rows), self.field.adopt
         self.operator: Operator = tuple(
             tuple(
-                tuple(
-                    Term(self.field.adopt(t.left), t.order, self.field.adopt(t.right))
-                    for t in entry
-                )
+                tuple(replace(t, left=adopt(t.left), right=adopt(t.right)) for t in entry)
                 for entry in row
             )
             for row in operator
@@ -148,8 +144,8 @@ class _Trivector:
                     part
                     for t in entry
                     for part in (
-                        Term(jets.rate(t.left, along), t.order, t.right),
-                        Term(t.left, t.order, jets.rate(t.right, along)),
+                        replace(t, left=jets.rate(t.left, along)),
+                        replace(t, right=jets.rate(t.right, along)),
                     )
                 )
                 for entry in row
@@ -165,9 +161,10 @@ class _Trivector:
 
     def find_pair(self, defect: Element) -> tuple[str, str]:
         """The components of the other covectors in the first term of a defect."""
-        reached, towers = self.field.reach(self.field.terms(defect)[0]), self.jets.towers
+        reached = self.field.reach(self.field.terms(defect)[0])
+        named = {self.jets.places[x][0] for x in reached & self.jets.places.keys()}
         first, second = (
-            next(n for n, one in zip(self.names, own, strict=True) if reached & {*towers[one]})
+            next(n for n, one in zip(self.names, own, strict=True) if one in named)
             for own in self.covectors[:2]
         )
         return first, second
@@ -260,17 +257,17 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
         if decision.verdict is not Verdict.PROVED:
             method = f"{decision.method} of the variational derivative of its rate"
             return replace(decision, method=method)
-        flux = jets.integrate(-rate)
-        if flux is None:
+        fluxes = jets.integrate(-rate)
+        if fluxes is None:
             texts.append("its rate is a total derivative, by the Euler operator")
             continue
-        assert setting.field.is_zero(jets.total(flux) + rate), equations.spec.name
-        text = element_text(setting.field, flux)
-        long = f"a flux of {len(setting.field.terms(flux))} terms"
+        assert setting.field.is_zero(jets.diverge(fluxes) + rate), equations.spec.name
+        text = ", ".join(element_text(setting.field, flux) for flux in fluxes)
+        text = f"({text})" if setting.spec.in_plane else text
+        long = f"a flux of {sum(len(setting.field.terms(flux)) for flux in fluxes)} terms"
         texts.append(f"flux {text if len(text) <= SHOWN else long}")
-    return Decision(
-        verdict=Verdict.PROVED, method=f"d/dt + d/ds flux = 0 with the {'; '.join(texts)}"
-    )
+    law = "d/dt + div flux = 0" if setting.spec.in_plane else "d/dt + d/ds flux = 0"
+    return Decision(verdict=Verdict.PROVED, method=f"{law} with the {'; '.join(texts)}")
 
 
 def _decide_between_ends(equations: Equations) -> Decision:

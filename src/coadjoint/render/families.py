@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand
+from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -345,6 +345,7 @@ class FamilyContext:
         strand: The strain of a strand and its matrices.
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
+        torus: Of a field in a plane, what is computed around its points.
         wave: Of a field that is carried by itself, the speed of its waves and the name of the
             length of its circle; empty for others.
     """
@@ -379,6 +380,7 @@ class FamilyContext:
     wave: tuple[str, ...] = ()
     spectral: Spectral | None = None
     symbol: PrincipalSymbol | None = None
+    torus: Torus | None = None
 
     @property
     def held(self) -> Loops:
@@ -421,6 +423,7 @@ def render_family(context: FamilyContext) -> dict[str, str]:
         return {
             file: render_family_template(context, template, target, identity)
             for file, (template, target) in FAMILY_FILES.items()
+            if context.torus is None or not file.startswith("solver")  # Python leads its steps
         }
 
     return identify(render)
@@ -495,6 +498,7 @@ def render_family_template(
             *(["strand=STRAND"] * bool(context.strand)),
             *(["spectral=SPECTRAL"] * bool(context.spectral)),
             *(["symbol=SYMBOL"] * bool(context.symbol)),
+            *(["torus=TORUS"] * bool(context.torus)),
             *(["defaults=DEFAULTS"] * bool(context.defaults)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
@@ -503,6 +507,7 @@ def render_family_template(
         "strand": _tell_strand(context.strand),
         "spectral": _tell_texts(context.spectral),
         "symbol": _tell_texts(context.symbol),
+        "torus": _tell_texts(context.torus),
         "steps": describe_steps(context),
         "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
@@ -574,7 +579,7 @@ def _tell_strand(strand: Strand | None) -> list[str]:
     return [*names, str(strand.size), *(map(str, strand.matrices))]
 
 
-def _tell_texts(record: Spectral | PrincipalSymbol | None) -> dict[str, Any]:
+def _tell_texts(record: Spectral | PrincipalSymbol | Torus | None) -> dict[str, Any]:
     """A record with texts of fields, as a generated package declares it; empty without."""
 
     def tell(value: Any) -> str:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
-from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand
+from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from coadjoint.methods import JudgedMethod
     from coadjoint.render.targets.modules import KernelModule
+    from coadjoint.render.targets.protocol import Kernel
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.family_steps import FamilyTwin
 
@@ -61,8 +62,10 @@ class FamilySystem(System):
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
         own_state: Components of a member.
+        torus: Of a field in a plane, what is computed around its points.
     """
 
+    torus: Torus | None = None
     stepwise = "steps of many equal members are recorded by their twin"
 
     def __init__(
@@ -188,6 +191,15 @@ class FamilySystem(System):
         from coadjoint.render.targets.modules import KernelModule
 
         return KernelModule(self, "solver.py")
+
+    def find_kernel(self, target: str) -> Kernel:
+        """The kernel of a target itself.
+
+        Raises:
+            CompilerError: It cannot be compiled.
+            CrossCheckError: It differs from the NumPy kernel.
+        """
+        return self._kernels.find_kernel(target)
 
     def count_series(self, order: int, trajectories: int) -> tuple[int, int]:
         """Bytes of the series of members and of those of pairs, as solvers keep them.

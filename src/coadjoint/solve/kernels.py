@@ -125,6 +125,15 @@ class Kernels:
         self._loaded[target].prepare(function)
         return self._loaded[target]
 
+    def find_kernel(self, target: str) -> Kernel:
+        """The kernel of a target itself, with all functions ready to be called.
+
+        Raises:
+            CompilerError: It cannot be compiled.
+            CrossCheckError: It differs from the NumPy kernel.
+        """
+        return self._prepare(target)
+
     def find(self, target: str, function: str) -> int:
         """Where a function of a kernel in C stands, which is compiled if need be.
 

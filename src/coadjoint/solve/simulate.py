@@ -175,7 +175,11 @@ def simulate(
         from coadjoint.solve.spectral import check_means
 
         check_means(system, request.state)
-    if system.obstacle:  # else there is nothing to load
+    if isinstance(system, FamilySystem) and system.torus is not None:
+        from coadjoint.solve.torus import check_plane
+
+        check_plane(system, request.state)
+    elif system.obstacle:  # else there is nothing to load
         from coadjoint.solve.spectral import warn_of_jump
 
         warn_of_jump(system, request)

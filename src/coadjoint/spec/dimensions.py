@@ -113,7 +113,8 @@ class Units:
         for key, each in _list_quantities(spec):
             self.declare(each, self._read_declared(key, each))
         for jet in spec.jets:
-            self.declare(jet, [unit / self.along_space**jet.order for unit in self.of(jet.of)])
+            along = self.along_space[0] ** jet.order * self.along_space[-1] ** jet.across
+            self.declare(jet, [unit / along for unit in self.of(jet.of)])
         for each in spec.constraints:
             reactions = [self.blank(name) for name in each.reactions]
             self.declare(_Reaction(each.reaction, each.shape, each.reactions), reactions)
@@ -155,12 +156,16 @@ class Units:
             raise self.source.fault(key, error.problem, text, expected, error.hint, at=at) from None
 
     @cached_property
-    def along_space(self) -> Unit:
-        """The unit of the coordinate of space."""
+    def along_space(self) -> tuple[Unit, ...]:
+        """The units of the coordinates of space."""
         space = self.spec.space
-        if space is None or not space.unit:
-            return self.blank("space")
-        return self._read(("space", space.name, "unit"), space.unit, 0)
+        return tuple(
+            self._read(("space", each.name, "unit"), each.unit, 0)
+            if each.unit
+            else self.blank("space")
+            for each in ((space, space.across) if space is not None else ())
+            if each is not None
+        )
 
     @property
     def action(self) -> Unit:

@@ -314,6 +314,11 @@ class Spec:
         return () if self.space is None else self.space.jets
 
     @property
+    def in_plane(self) -> bool:
+        """Whether variables are fields along two coordinates."""
+        return self.space is not None and self.space.across is not None
+
+    @property
     def driving(self) -> tuple[Input | Time, ...]:
         """What kernels take after the parameters: the inputs, then the time."""
         return (*self.inputs, *([] if self.time is None else [self.time]))
@@ -367,7 +372,7 @@ class Spec:
 
     @property
     def kind(self) -> str:
-        """What the motion is declared on: an algebra, a bracket, coordinates, or the circle.
+        """What the motion is declared on: an algebra, a bracket, coordinates, or space itself.
 
         ``algebra``, ``poisson``, ``configuration`` or ``diffeomorphisms``.
         """

@@ -1,4 +1,4 @@
-r"""Diffeomorphisms of the circle: their Euler-Poincare equation, from the variation of a velocity.
+r"""Diffeomorphisms: their Euler-Poincare equation, from the variation of a velocity.
 
 The velocity :math:`u = \dot g \circ g^{-1}` of a motion g of the circle varies by
 :math:`\delta u = \eta_t + u \eta_s - u_s \eta`, with :math:`\eta = \delta g \circ g^{-1}`. So the
@@ -15,6 +15,15 @@ both are symbols with their derivatives, and equations hold as polynomials in th
 needs the equation between them, m is replaced by A u. Without the square of u itself, as in Hunter
 and Saxton's equation, A takes constants to 0: m has the mean 0 and says nothing of the mean of u,
 which is 0 here. Another mean is the same motion seen by someone who goes around the circle.
+
+The maps of a plane that keep areas, closed in both directions, have a stream function
+:math:`\psi` with the velocity :math:`(\psi_y, -\psi_x)`. The commutator of two velocities has the
+stream function :math:`-\{\psi, \eta\}`, :math:`\{f, g\} = f_x g_y - f_y g_x`, so that
+:math:`\delta \psi = \eta_t - \{\psi, \eta\}` and, with :math:`w = \delta l/\delta \psi`,
+
+.. math:: w_t = E_\eta (-w \{\psi, \eta\}) = \{\psi, w\} .
+
+For :math:`l = |\nabla \psi|^2/2` that is Euler's equation, w being the vorticity (Arnold 1966).
 Comes in: a Setting with a Lagrangian. Goes out: Equations in jets of m, and of u with such an A.
 Read next: `coadjoint.derive.fields.structure`, where the bracket is.
 """
@@ -26,13 +35,12 @@ from fractions import Fraction
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.emission import emit_fields
-from coadjoint.derive.fields.jets import Jets, depth, jets_of, solved
+from coadjoint.derive.fields.jets import Jets, Rows, jets_of, list_rows, solved
 from coadjoint.derive.fields.structure import central_charge
 from coadjoint.derive.records import write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.exact import Element
 from coadjoint.spec import Spec
-from coadjoint.spec.sections.space import jet_name
 
 #: The variation of the motion, whose derivatives are symbols like those of a field.
 VARIED = "_eta"
@@ -40,25 +48,32 @@ VARIED = "_eta"
 
 def symbols(spec: Spec) -> tuple[str, ...]:
     """Names of the variation and its derivatives."""
+    return tuple(name for row in _rows(spec) for name in row)
+
+
+def _rows(spec: Spec) -> Rows:
+    """The same row by row; of these a variation reads the first derivatives alone."""
     if spec.diffeomorphisms is None or spec.space is None:
         return ()
-    return tuple(jet_name(VARIED, spec.space.name, n) for n in range(depth(spec) + 1))
+    return list_rows(VARIED, spec.space.coordinates, 1)
 
 
 def euler_poincare(setting: Setting, route: str) -> Equations:
-    """The Euler-Poincare equation on the circle.
+    """The Euler-Poincare equation on the circle or the plane.
 
     Raises:
         DerivationError: The velocity is no function of the momentum at each point.
     """
     u, (m,) = velocity(setting), setting.elements(setting.state)
-    jets = jets_of(setting)
-    varied = symbols(setting.spec)
-    eta, eta_s = setting.elements(varied[:2])
-    charge = central_charge(setting)
-    integrand = m * (u * eta_s - jets.total(u) * eta) + charge * eta_s * jets.total(u, 2)
-    both = Jets(setting.field, {**jets.towers, VARIED: varied})
-    rate = both.euler(integrand, VARIED)
+    jets, rows = jets_of(setting), _rows(setting.spec)
+    eta, eta_s = setting.elements(rows[0])
+    if setting.spec.in_plane:
+        (eta_y,) = setting.elements(rows[1])
+        integrand = -m * (jets.total(u) * eta_y - jets.total(u, 0, 1) * eta_s)
+    else:
+        charge = central_charge(setting)
+        integrand = m * (u * eta_s - jets.total(u) * eta) + charge * eta_s * jets.total(u, 2)
+    rate = Jets(setting.field, {**jets.rows, VARIED: rows}).euler(integrand, VARIED)
     steps = (
         write_step("Lagrangian", "l(u)", "l(u)", {"l": setting.lagrangian}),
         write_step(
@@ -67,14 +82,26 @@ def euler_poincare(setting: Setting, route: str) -> Equations:
             r"m = \partial l / \partial u",
             write_slopes("l", [_name(setting)], [_slope(setting)]),
         ),
-        write_step(
-            "Variation: delta u = eta_t + u eta_s - u_s eta, integrated by parts",
-            "dm/dt = E_eta(m (u eta_s - u_s eta) + c eta_s u_ss)",
-            r"\dot m = E_\eta (m (u \eta_s - u_s \eta) + c\, \eta_s u_{ss})",
-            write_rates(setting.state, [rate]),
-        ),
+        write_step(*_tell_variation(setting), write_rates(setting.state, [rate])),
     )
     return emit_fields(setting, route, [rate], steps, energy(setting))
+
+
+def _tell_variation(setting: Setting) -> tuple[str, str, str]:
+    """What the variation is, and what follows from it."""
+    if setting.spec.in_plane:
+        psi, (w,) = _name(setting), setting.state
+        return (
+            f"Variation: delta {psi} = eta_t - {{{psi}, eta}}, {{f, g}} = f_x g_y - f_y g_x, "
+            "integrated by parts",
+            f"d{w}/dt = E_eta(-{w} {{{psi}, eta}}) = {{{psi}, {w}}}",
+            r"\dot w = E_\eta (-w \{\psi, \eta\}) = \{\psi, w\}",
+        )
+    return (
+        "Variation: delta u = eta_t + u eta_s - u_s eta, integrated by parts",
+        "dm/dt = E_eta(m (u eta_s - u_s eta) + c eta_s u_ss)",
+        r"\dot m = E_\eta (m (u \eta_s - u_s \eta) + c\, \eta_s u_{ss})",
+    )
 
 
 def _name(setting: Setting) -> str:
@@ -91,10 +118,10 @@ def _slope(setting: Setting) -> Element:
 
 
 @once
-def inertia(setting: Setting) -> Mapping[int, Element]:
-    """The coefficients of ``d^k/ds^k`` in the operator A with m = A u; empty without derivatives.
+def inertia(setting: Setting) -> Mapping[tuple[int, int], Element]:
+    """The coefficients of ``D_x^i D_y^j`` in the operator A with m = A u; empty without derivatives.
 
-    That of u itself may be missing.
+    On a circle j is 0. That of u itself may be missing.
 
     Raises:
         DerivationError: The Lagrangian is no sum of squares with constant positive factors.
@@ -104,26 +131,41 @@ def inertia(setting: Setting) -> Mapping[int, Element]:
     field, formula, name = setting.field, setting.spec.lagrangian, _name(setting)
     assert formula is not None, "the reader asks for a Lagrangian on this route"
     jets, slope = jets_of(setting), _slope(setting)
-    found = {n: x for n, x in enumerate(jets.slopes(slope, name)) if not field.is_zero(x)}
-    jet_names = {*jets.orders}
-    is_linear = not any(field.reach(x) & jet_names for x in found.values())
-    whole = field.sum(x * field[jets.towers[name][n]] for n, x in found.items())
+    reached = field.reach(slope)
+    found = {
+        (i, j): x
+        for symbol, (of, i, j) in jets.places.items()
+        if of == name and symbol in reached and (x := field.derivative(slope, symbol))
+    }
+    is_linear = not any(field.reach(x) & {*jets.places} for x in found.values())
+    whole = field.sum(x * field[jets.rows[name][j][i]] for (i, j), x in found.items())
     if not is_linear or not field.is_zero(slope - whole):
         message = (
             f"the momentum dl/d{name} is no linear operator of {name} with constant factors; "
             f"expected a sum of squares of {name} and its derivatives."
         )
         raise fault(setting, formula, message, formula.text)
-    for n, x in found.items():
-        at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** (n // 2)
+    for (i, j), x in found.items():
+        if i % 2 or j % 2:
+            message = (
+                f"the momentum dl/d{name} has the derivative {jets.rows[name][j][i]}; expected even "
+                f"ones along each coordinate, those of a sum of squares of derivatives of {name}."
+            )
+            raise fault(setting, formula, message, formula.text)
+        at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** ((i + j) // 2)
         if at <= 0:
-            square = jets.towers[name][n // 2]
+            square = jets.rows[name][j // 2][i // 2]
             message = (
                 f"the factor of {square}^2 is {at / 2} at the defaults of the parameters; expected "
                 f"a positive one, so that the momentum determines {name}."
             )
             raise fault(setting, formula, message, formula.text)
     return found
+
+
+def inertia_along(setting: Setting) -> Mapping[int, Element]:
+    """The coefficients of ``d^k/ds^k`` in A, on a circle."""
+    return {i: x for (i, _), x in inertia(setting).items()}
 
 
 def vary(setting: Setting, density: Element, name: str) -> Element:
@@ -141,7 +183,7 @@ def vary(setting: Setting, density: Element, name: str) -> Element:
         return found
     u, through = _name(setting), jets.euler(density, _name(setting))
     factor = field.derivative(through, name)
-    if field.reach(factor) & {*jets.orders} or not field.is_zero(through - factor * field[name]):
+    if field.reach(factor) & {*jets.places} or not field.is_zero(through - factor * field[name]):
         message = (
             f"a density names {u} such that its derivative by {u} is no multiple of {name}; "
             f"expected one of {name} and its derivatives, or the energy."
@@ -157,11 +199,11 @@ def close(setting: Setting, element: Element) -> Element:
     operator, field, jets = inertia(setting), setting.field, jets_of(setting)
     if not operator:
         return element
-    (m,), tower = setting.state, jets.towers[_name(setting)]
+    (m,), rows, reached = setting.state, jets.rows[_name(setting)], field.reach(element)
     values = {
-        symbol: field.sum(x * field[tower[n + k]] for n, x in operator.items())
-        for k, symbol in enumerate(jets.towers[m])
-        if symbol in field.reach(element)
+        symbol: field.sum(x * field[rows[l + j][k + i]] for (i, j), x in operator.items())
+        for symbol, (of, k, l) in jets.places.items()
+        if of == m and symbol in reached
     }
     return field.substitute(element, values)
 

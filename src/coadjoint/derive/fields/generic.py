@@ -108,7 +108,7 @@ class GenericPoint:
         orders = {t.order for row in self.operator for entry in row for t in entry}
         for value in self.densities.values():
             orders |= {len(self.jets.slopes(value, name)) - 1 for name in self.setting.state}
-        orders |= circle.inertia(self.setting).keys()
+        orders |= circle.inertia_along(self.setting).keys()
         return max(width_of(k, self.order) for k in orders if k >= 0)
 
     # -- at points, in any arithmetic -------------------------------------------------------

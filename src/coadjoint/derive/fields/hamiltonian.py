@@ -31,19 +31,18 @@ def field_equations(setting: Setting, route: str) -> Equations:
     rates = apply(operator, slopes, jets.total)
     space = setting.spec.space
     assert space is not None, setting.spec.name
+    power, s = ("D_x and D_y", "x") if space.across else ("D^k = d^k/ds^k", "s")
     steps = (
         write_step("Density of the energy", "h", "h", {"h": h}),
         write_step(
             "Variational derivatives",
-            "dh/du = sum (-D)^k dh/du_k",
-            r"\delta h / \delta u = \sum (-\partial_s)^k \partial h / \partial u_k",
+            *_write_euler(setting),
             write_slopes("h", setting.state, slopes),
         ),
         write_step(
-            "Bracket of the fields: factors of D^k = d^k/ds^k, what stands behind D is "
-            "differentiated, too",
-            "{u_i(s), u_j(s')} = P_ij delta(s - s')",
-            r"\{u_i(s), u_j(s')\} = P_{ij}\, \delta(s - s')",
+            f"Bracket of the fields: factors of {power}, what stands behind D is differentiated, too",
+            f"{{u_i({s}), u_j({s}')}} = P_ij delta({s} - {s}')",
+            rf"\{{u_i({s}), u_j({s}')\}} = P_{{ij}}\, \delta({s} - {s}')",
             _entries(setting, operator),
         ),
         write_step(
@@ -65,19 +64,36 @@ def density(setting: Setting) -> Element:
     return close(setting, legendre(setting).energy)
 
 
+def _write_euler(setting: Setting) -> tuple[str, str]:
+    """The variational derivative, as text and in LaTeX."""
+    if not setting.spec.in_plane:
+        return (
+            "dh/du = sum (-D)^k dh/du_k",
+            r"\delta h / \delta u = \sum (-\partial_s)^k \partial h / \partial u_k",
+        )
+    return (
+        "dh/du = sum (-D_x)^i (-D_y)^j dh/du_ij",
+        r"\delta h / \delta u = "
+        r"\sum (-\partial_x)^i (-\partial_y)^j \partial h / \partial u_{ij}",
+    )
+
+
 def _entries(setting: Setting, operator: Operator) -> Iterator[tuple[Left, Element]]:
     """The terms of the bracket on and above the diagonal, each with its order."""
     for i, a in enumerate(setting.state):
         for j, b in enumerate(setting.state[i:], i):
             for term in operator[i][j]:
-                yield _name_term(bracket(a, b), term), term.left * term.right
+                named = _name_term(bracket(a, b), term, in_plane=setting.spec.in_plane)
+                yield named, term.left * term.right
 
 
-def _name_term(of: Left, term: Term) -> Left:
+def _name_term(of: Left, term: Term, *, in_plane: bool) -> Left:
     """A bracket and what its value is a factor of."""
-    if not term.order:
+    if not (term.order or term.across):
         return of
     power = f"D^{term.order}" if term.order > 1 else "D"
+    if in_plane:
+        power = "D_y" if term.across else "D_x"
     after = f" behind {power}" if term.right != 1 else f" before {power}"
     return Left(
         of.text + after,

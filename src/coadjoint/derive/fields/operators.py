@@ -4,6 +4,7 @@ An entry is a sum of terms :math:`f\, \partial^k\, g`, each of which multiplies 
 differentiates k times and multiplies by f. So the order in which things are done is kept: on a
 grid, where Leibniz' rule fails, :math:`m \partial + \partial m` is antisymmetric and
 :math:`2 m \partial + m_s` is not.
+In a plane a term has derivatives along both coordinates, :math:`f\, \partial_x^i \partial_y^j\, g`.
 The adjoint of a term is :math:`(-1)^k g\, \partial^k f`. Comes in: terms. Goes out: what they do,
 exactly. Read next: `coadjoint.derive.fields.structure`.
 """
@@ -12,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from math import comb
 
 from coadjoint.derive.fields.jets import Jets
@@ -20,16 +22,18 @@ from coadjoint.exact import Element
 
 @dataclass(frozen=True)
 class Term:
-    """``left * D^order * right``, to be applied to what follows."""
+    """``left * D^order * right``, to be applied to what follows; across: along the second one."""
 
     left: Element
     order: int
     right: Element
+    across: int = 0
 
     @property
     def adjoint(self) -> Term:
         """Integration by parts over the circle."""
-        return Term(self.right * (-1) ** self.order, self.order, self.left)
+        sign = (-1) ** (self.order + self.across)
+        return Term(self.right * sign, self.order, self.left, self.across)
 
 
 #: A sum of terms.
@@ -39,19 +43,21 @@ Operator = tuple[tuple[Entry, ...], ...]
 
 
 def apply(
-    operator: Operator, vector: Sequence[Element], differentiate: Callable[[Element, int], Element]
+    operator: Operator,
+    vector: Sequence[Element],
+    differentiate: Callable[[Element, int, int], Element],
 ) -> tuple[Element, ...]:
     """What an operator makes of a vector.
 
     Args:
         operator: Its entries.
         vector: One value for each column.
-        differentiate: ``D^k`` of a value: `Jets.total`, or that of a grid.
+        differentiate: ``D_x^i D_y^j`` of a value, `Jets.total`.
     """
     rows = list[Element]()
     for row in operator:
         values = [
-            term.left * differentiate(term.right * value, term.order)
+            term.left * differentiate(term.right * value, term.order, term.across)
             for entry, value in zip(row, vector, strict=True)
             for term in entry
         ]
@@ -67,15 +73,15 @@ def adjoint(operator: Operator) -> Operator:
     )
 
 
-def expand(entry: Iterable[Term], jets: Jets) -> dict[int, Element]:
-    """The coefficients of ``D^j`` of an entry by Leibniz' rule, zeros left out."""
-    found = dict[int, Element]()
+def expand(entry: Iterable[Term], jets: Jets) -> dict[tuple[int, int], Element]:
+    """The coefficients of ``D_x^i D_y^j`` of an entry by Leibniz' rule, zeros left out."""
+    found = dict[tuple[int, int], Element]()
     for term in entry:
-        for j in range(term.order + 1):
-            moved = jets.total(term.right, term.order - j)
-            part = term.left * moved * comb(term.order, j)
-            found[j] = found.get(j, jets.field.zero) + part
-    return {j: value for j, value in sorted(found.items()) if value}
+        for i, j in product(range(term.order + 1), range(term.across + 1)):
+            moved = jets.total(term.right, term.order - i, term.across - j)
+            part = term.left * moved * (comb(term.order, i) * comb(term.across, j))
+            found[i, j] = found.get((i, j), jets.field.zero) + part
+    return {place: value for place, value in sorted(found.items()) if value}
 
 
 def skew_defects(operator: Operator, jets: Jets) -> dict[tuple[int, int], list[Element]]:
@@ -91,4 +97,4 @@ def skew_defects(operator: Operator, jets: Jets) -> dict[tuple[int, int], list[E
 
 def order_of(operator: Operator) -> int:
     """The highest order of its terms."""
-    return max((t.order for row in operator for entry in row for t in entry), default=0)
+    return max((t.order + t.across for row in operator for entry in row for t in entry), default=0)

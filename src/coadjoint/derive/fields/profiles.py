@@ -1,4 +1,4 @@
-"""Profiles: the fields at the beginning, evaluated at points of the circle.
+"""Profiles: the fields at the beginning, evaluated at points of the circle or the plane.
 
 Comes in: a Spec with [profiles]. Goes out: numbers at the defaults of the parameters, computed to
 50 digits and rounded to doubles. Read next: `coadjoint.derive.fields.grid`.
@@ -7,6 +7,7 @@ Comes in: a Spec with [profiles]. Goes out: numbers at the defaults of the param
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from typing import Any, cast
 
 import mpmath
@@ -42,13 +43,13 @@ class _Numbers:
         return getattr(mpmath, function)(*arguments)
 
 
-def evaluate_profile(spec: Spec, name: str, part: Fraction) -> tuple[Fraction, ...]:
-    """The components of a field at a part of the way around the circle.
+def evaluate_profile(spec: Spec, name: str, *parts: Fraction) -> tuple[Fraction, ...]:
+    """The components of a field at a part of the way around the circle, or around both circles.
 
     Args:
         spec: With a profile of the field.
         name: The field.
-        part: From 0 to 1.
+        parts: From 0 to 1, one for each coordinate.
     """
     space, numbers = spec.space, _Numbers()
     assert space is not None, spec.name
@@ -58,18 +59,28 @@ def evaluate_profile(spec: Spec, name: str, part: Fraction) -> tuple[Fraction, .
             own = [numbers.number(x) for x in each.default or ()]
             values |= zip(each.components, own, strict=True)
             values[each.name] = assemble(each, values)
-        values[space.name] = numbers.number(part) * values[space.length]
+        for each, part in zip((space, space.across), parts, strict=False):
+            assert each is not None, spec.name
+            values[each.name] = numbers.number(part) * values[each.length]
         value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
         numbers_of: Any = entries(value)
         return tuple(Fraction(float(x)) for x in numbers_of)
 
 
-def sample_profiles(spec: Spec, size: int | None) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
-    """The fields at the beginning at so many points, by component; nothing without a number."""
+def sample_profiles(spec: Spec) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
+    """The fields at the beginning at the declared points, by component; nothing without a number.
+
+    In a plane points follow each other along the second coordinate first.
+    """
+    space = spec.space
+    assert space is not None, spec.name
+    sizes = [each.size or 0 for each in (space, space.across) if each is not None]
+    steps = [size - space.has_ends for size in sizes]  # a line has a point at each end
+    places = [*product(*map(range, sizes))]
     found = dict[str, tuple[tuple[Fraction, ...], ...]]()
-    for name in spec.profiles if size else ():
-        assert spec.space is not None, spec.name
-        steps = (size or 0) - spec.space.has_ends  # a line has a point at each end
-        points = (evaluate_profile(spec, name, Fraction(i, steps)) for i in range(size or 0))
+    for name in spec.profiles if all(sizes) else ():
+        points = (
+            evaluate_profile(spec, name, *map(Fraction, place, steps)) for place in places
+        )
         found[name] = tuple(zip(*points, strict=True))
     return found

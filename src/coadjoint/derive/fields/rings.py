@@ -46,7 +46,8 @@ class Rings:
 
     def make(self, size: int, kept: Mapping[str, Kept]) -> Equations:
         """The ordinary system of so many points: a tensor, and the gradient of the energy."""
-        spec = replace(self._bare(size), family=self.declared)
+        variables = tuple(write_point(v, k) for v in self.spec.state for k in range(size))
+        spec = replace(make_bare(self.spec, variables), family=self.declared)
         setting = settings.make_setting(spec)
         field = setting.field
         inverse = self.point.find_inverse(field.number(size), field[self.space.length])
@@ -55,7 +56,7 @@ class Rings:
             (c, k): own
             for v in self.spec.state
             for k in range(size)
-            for c, own in zip(v.components, _write_point(v, k).components, strict=True)
+            for c, own in zip(v.components, write_point(v, k).components, strict=True)
         }
 
         velocities = self.velocities[size] = self.point.solve(field, inverse, size, names)
@@ -136,25 +137,6 @@ class Rings:
         order, has_ends = self.point.order, self.space.has_ends
         return find_weight(order, find_place(order, i, size)) if has_ends else Fraction(1)
 
-    def _bare(self, size: int) -> Spec:
-        """A spec with the variables of so many points, and no formulas that lead anywhere."""
-        variables = tuple(_write_point(v, k) for v in self.spec.state for k in range(size))
-        return replace(
-            self.spec,
-            variables=variables,
-            algebra=None,
-            diffeomorphisms=None,
-            space=None,
-            profiles={},
-            poisson=Poisson(kind="brackets"),
-            lagrangian=None,
-            hamiltonian=None,
-            lax=None,
-            casimirs=(),
-            conserved=(),
-            definitions=(),
-        )
-
     @cached_property
     def declared(self) -> Windows:
         """What is known of the points that no ring has."""
@@ -163,7 +145,7 @@ class Rings:
             variables=tuple(v.name for v in self.spec.state),
             shared=tuple(p.name for p in self.spec.parameters),
             indexed=(),
-            defaults=sample_profiles(self.spec, self.space.size),
+            defaults=sample_profiles(self.spec),
             repeating=(),
             reach=self.point.reach,
             alone=(0, 0),
@@ -173,7 +155,26 @@ class Rings:
         )
 
 
-def _write_point(of: Variable, place: int) -> Variable:
+def make_bare(spec: Spec, variables: tuple[Variable, ...]) -> Spec:
+    """A spec with the variables of some points, and no formulas that lead anywhere."""
+    return replace(
+        spec,
+        variables=variables,
+        algebra=None,
+        diffeomorphisms=None,
+        space=None,
+        profiles={},
+        poisson=Poisson(kind="brackets"),
+        lagrangian=None,
+        hamiltonian=None,
+        lax=None,
+        casimirs=(),
+        conserved=(),
+        definitions=(),
+    )
+
+
+def write_point(of: Variable, place: int) -> Variable:
     """A field at one point, as a variable of its own."""
     return Variable(
         name=member_name(of.name, place),

@@ -48,7 +48,7 @@ def find_factors(
     """
     found: dict[int, Any] = {}
     level = is_level(setting)
-    for derivative, factor in circle.inertia(setting).items():
+    for derivative, factor in circle.inertia_along(setting).items():
         known = stencil(derivative, order)
         for r, c in (_divide(known) if level else known).items():
             part = value(factor) * number(c) * inverse**derivative
@@ -58,7 +58,7 @@ def find_factors(
 
 def is_level(setting: Setting) -> bool:
     """Whether A takes constants to 0."""
-    operator = circle.inertia(setting)
+    operator = circle.inertia_along(setting)
     return bool(operator) and 0 not in operator
 
 

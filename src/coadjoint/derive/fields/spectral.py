@@ -47,7 +47,7 @@ def write_spectral(point: GenericPoint) -> Spectral:
     place = point.placer(calculus, lambda name, _: sympy.Symbol(name), convert)
     rates = [rate(0) for rate in point.motion(calculus, place)]
     densities = {name: place(value)(0) for name, value in point.densities.items()}
-    operator = {n: element_text(field, x) for n, x in circle.inertia(point.setting).items()}
+    operator = {n: element_text(field, x) for n, x in circle.inertia_along(point.setting).items()}
     return Spectral(
         length=point.space.length,
         derivatives=calculus.derivatives,

@@ -11,13 +11,19 @@ bracket of a semidirect product with a cocycle). Of diffeomorphisms of the circl
 
 .. math:: \{m(s), m(s')\} = -(m \partial_s + \partial_s m + c\, \partial_s^3)\, \delta(s - s'),
 
-with the central charge c (Khesin and Ovsienko 1987).
+with the central charge c (Khesin and Ovsienko 1987). Of the maps of a plane that keep areas,
+
+.. math:: \{w(x), w(x')\} = (w_y \partial_x - w_x \partial_y)\, \delta(x - x'),
+
+in which functions of w are Casimirs (Arnold and Khesin 2021, Topological Methods in Hydrodynamics,
+2nd ed., section I.9).
 Comes in: a Setting. Goes out: the bracket as an `Operator`.
 Read next: `coadjoint.derive.routes.lie_poisson`.
 """
 
 from __future__ import annotations
 
+from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Operator, Term
 from coadjoint.derive.setting import Setting, once
 from coadjoint.derive.structure import poisson_structure
@@ -30,6 +36,10 @@ def field_operator(setting: Setting) -> Operator:
     field, one = setting.field, setting.field.one
     if setting.spec.diffeomorphisms is not None:
         (m,) = setting.elements(setting.state)
+        if setting.spec.in_plane:
+            jets = jets_of(setting)
+            m_x, m_y = jets.total(m), jets.total(m, 0, 1)
+            return ((((Term(m_y, 1, one), Term(-m_x, 0, one, 1))),),)
         terms = [Term(-m, 1, one), Term(-one, 1, m)]
         charge = central_charge(setting)
         return ((tuple([*terms, Term(-charge, 3, one)] if charge else terms),),)

@@ -86,7 +86,12 @@ def find_matrix(
 
 
 def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Seen:
-    """The roots of the principal symbol at some points; none where it calls functions."""
+    """The roots of the principal symbol at some points; none where it calls functions.
+
+    Nor in a plane, where one field is carried by a velocity.
+    """
+    if setting.spec.in_plane:
+        return Seen(1, 0)
     order, matrix = find_matrix(setting, jets, rates)
     points = 0
     if not order:

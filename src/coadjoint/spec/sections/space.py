@@ -1,4 +1,4 @@
-"""Space: the table [space], the coordinate along which variables are fields.
+"""Space: the table [space], the coordinate along which variables are fields, or two of a plane.
 
 Comes in: its keys, and the variables. Goes out: a `Space` with the derivatives that formulas may
 name: with a coordinate s, those of ``Xi`` are ``Xi_s``, ``Xi_ss`` and so on.
@@ -8,7 +8,7 @@ Read next: `coadjoint.derive.fields.jets`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -46,7 +46,7 @@ _ROLES = ("velocity", "momentum", "strain", "advected")
 
 
 class SpacePart(Part):
-    """The coordinate along which variables are fields: around a circle, or between two ends."""
+    """A coordinate along which variables are fields: around a circle, or between two ends."""
 
     length: str = Field(description="the parameter that is the length of the circle or line")
     size: Annotated[int, Field(ge=1)] | None = Field(
@@ -74,8 +74,10 @@ class Jet:
 
     Attributes:
         of: The field.
-        order: How often it is differentiated.
+        order: How often it is differentiated along the coordinate.
         coordinate: The name of the coordinate.
+        second: That of the second one in a plane; "" on a line.
+        across: How often it is differentiated along that one.
     """
 
     default: ClassVar[None] = None
@@ -83,16 +85,21 @@ class Jet:
     of: Variable
     order: int
     coordinate: str
+    second: str = ""
+    across: int = 0
 
     @property
     def name(self) -> str:
         """``Xi_ss``."""
-        return jet_name(self.of.name, self.coordinate, self.order)
+        return self._name(self.of.name)
 
     @property
     def components(self) -> tuple[str, ...]:
         """``Xi1_ss`` and so on."""
-        return tuple(jet_name(c, self.coordinate, self.order) for c in self.of.components)
+        return tuple(map(self._name, self.of.components))
+
+    def _name(self, name: str) -> str:
+        return jet_name(name, self.coordinate, self.order, self.second, across=self.across)
 
     @property
     def role(self) -> str:
@@ -115,13 +122,14 @@ class Jet:
         return self.of.value_shape
 
 
-def jet_name(name: str, coordinate: str, order: int) -> str:
+def jet_name(name: str, coordinate: str, order: int, second: str = "", *, across: int = 0) -> str:
     """What a derivative along space is called.
 
-    >>> jet_name("Xi1", "s", 2), jet_name("u", "s", 0)
-    ('Xi1_ss', 'u')
+    >>> jet_name("Xi1", "s", 2), jet_name("u", "s", 0), jet_name("w", "x", 2, "y", across=1)
+    ('Xi1_ss', 'u', 'w_xxy')
     """
-    return f"{name}_{coordinate * order}" if order else name
+    word = coordinate * order + second * across
+    return f"{name}_{word}" if word else name
 
 
 @dataclass(frozen=True)
@@ -137,6 +145,7 @@ class Space:
         derivatives: The highest derivative that formulas name.
         jets: The derivatives that formulas may name.
         unit: Unit of the coordinate.
+        across: The second coordinate of a plane; None on a line.
     """
 
     name: str
@@ -147,6 +156,12 @@ class Space:
     derivatives: int
     jets: tuple[Jet, ...]
     unit: str = ""
+    across: Space | None = None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of all coordinates."""
+        return (self.name,) if self.across is None else (self.name, self.across.name)
 
     @property
     def index(self) -> Index:
@@ -168,29 +183,69 @@ def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
             another kind of coordinate, or a table or a role does not go with fields.
     """
     (name, part), *more = parts.items()
-    if more:
-        problem, found = f"there are {len(parts)} coordinates of space", list_names(parts)
-        raise reading.at_key(("space", more[0][0]), problem, found, "one", "Remove the others.")
+    _check_plane(reading, parts)
     _check_tables(reading)
-    _check_length(reading, name, part)
     _check_ends(reading, name, part)
-    fields = state_of(VARIABLES.of(reading))
-    velocities = (each for each in VARIABLES.of(reading) if each not in fields)
-    jets = (
-        Jet(each, order, name)
-        for each in (*fields, *velocities)
-        for order in range(1, part.derivatives + 1)
-    )
+    for each, own in parts.items():
+        _check_length(reading, each, own)
+    order = max(each.derivatives for each in parts.values())
+    jets = tuple(_list_jets(reading, order, *parts))
+    across = _make(*more[0], order, ()) if more else None
+    return replace(_make(name, part, order, jets), across=across)
+
+
+def _make(name: str, part: SpacePart, derivatives: int, jets: tuple[Jet, ...]) -> Space:
+    """One coordinate."""
     return Space(
         name=name,
         length=part.length,
         size=part.size,
         order=part.order,
         ends=part.ends,
-        derivatives=part.derivatives,
-        jets=tuple(jets),
+        derivatives=derivatives,
+        jets=jets,
         unit=part.unit,
     )
+
+
+def _list_jets(reading: Reading, most: int, name: str, second: str = "") -> Iterator[Jet]:
+    """The derivatives of all fields up to an order."""
+    fields = state_of(VARIABLES.of(reading))
+    velocities = (each for each in VARIABLES.of(reading) if each not in fields)
+    for each in (*fields, *velocities):
+        for order in range(1, most + 1):
+            for across in range(order + 1 if second else 1):
+                yield Jet(each, order - across, name, second, across)
+
+
+def _check_plane(reading: Reading, parts: Mapping[str, SpacePart]) -> None:
+    """There is a line, or a plane that closes in both directions and is moved by its maps.
+
+    Raises:
+        SpecError: There are more coordinates, or two of something else.
+    """
+    _, *more = parts.items()
+    if len(parts) > 2:
+        problem, found = f"there are {len(parts)} coordinates of space", list_names(parts)
+        raise reading.at_key(
+            ("space", more[1][0]), problem, found, "one, or two of a plane", "Remove the others."
+        )
+    if more and reading.file.diffeomorphisms is None:
+        problem, found = "there are two coordinates of space, and no maps move them", more[0][0]
+        expected = "a plane with [diffeomorphisms], or one coordinate"
+        hint = f"Remove {more[0][0]}, or write [diffeomorphisms]."
+        raise reading.at_key(("space", more[0][0]), problem, found, expected, hint)
+    for long in (each for each in parts if more and len(each) > 1):
+        problem = f"the coordinate {long!r} of a plane has {len(long)} letters"
+        hint = "Write x and y, so that w_xxy is a derivative."
+        raise reading.at_key(("space", long), problem, long, "one letter", hint)
+    for each, part in parts.items() if more else ():
+        for key, default in (("ends", "periodic"), ("order", 4)):
+            if getattr(part, key) != default:
+                problem = f"a plane has {key} = {getattr(part, key)!r}"
+                expected, hint = "Fourier derivatives around both circles", f"Remove {key}."
+                found = str(getattr(part, key))
+                raise reading.source.fault(("space", each, key), problem, found, expected, hint)
 
 
 def _check_tables(reading: Reading) -> None:
@@ -264,7 +319,8 @@ def _name_all(table: str, space: Space | None) -> Iterator[Naming]:
     if space is None:
         return
     why = "It is the name of a derivative along space; rename the other."
-    yield Naming(key=(table, space.name), name=space.name)
+    for name in space.coordinates:
+        yield Naming(key=(table, name), name=name)
     for each in space.jets:
         yield Naming(key=(table, space.name), name=each.name, components=each.components, why=why)
 
@@ -272,7 +328,7 @@ def _name_all(table: str, space: Space | None) -> Iterator[Naming]:
 SPACE = Table[Space | None](
     "space",
     SpacePart,
-    'the coordinate along which variables are fields, as s = { length = "L" }',
+    'the coordinate along which variables are fields, as s = { length = "L" }, or the two of a plane',
     read_space,
     many=True,
     absent=None,
@@ -293,7 +349,7 @@ def read_profiles(reading: Reading, texts: Mapping[str, str]) -> Mapping[str, Fo
         problem, expected = "there is a table [profiles] without [space]", "fields"
         raise source.fault(("profiles",), problem, "profiles", expected, "Remove [profiles].")
     fields = {each.name: each for each in state_of(VARIABLES.of(reading))}
-    scope = reading.scope("a profile", (), [space.name])
+    scope = reading.scope("a profile", (), space.coordinates)
     read = dict[str, Formula]()
     for name, text in texts.items():
         if name not in fields:

@@ -1,0 +1,286 @@
+r"""Torus: a field at points of a plane that closes in both directions, by truncated Fourier series.
+
+The waves up to :math:`K = \lfloor (N - 1)/3 \rfloor` along each coordinate move, so that products
+of two fields have no false ones among them. SciPy transforms; between its transforms the generated
+kernels compute what is to be computed at each point, in C or in NumPy, from derivatives that they
+take as parameters. Python leads the steps.
+
+A state has the values at points ``(N_x, N_y)``, those along the second coordinate next to each
+other; a row is called ``w[3,5]``. Waves of a state beyond K do not move and are not seen.
+Comes in: the declarations of a generated package. Goes out: a System.
+Read next: `coadjoint.derive.fields.torus`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cached_property, partial
+from math import prod
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.render.targets.protocol import Call, Kernel
+from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.formulas import Formula
+from coadjoint.solve.kernels import Kernels
+from coadjoint.solve.quantities import Quantities
+from coadjoint.solve.spectral import FUNCTIONS, MEAN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.declared import Quantity
+    from coadjoint.families import Torus
+    from coadjoint.solve.system import System
+
+    Array = NDArray[np.float64]
+    Factors = Mapping[tuple[int, int], Array]
+
+#: The part of a field that waves beyond K may be where they are 0 but for rounding.
+ROUNDING: Final = 1e-9
+#: The fewest points along a coordinate: with them one wave moves.
+LEAST: Final = 4
+
+
+class TorusSystem(FamilySystem):
+    """A field at points of a plane.
+
+    Args:
+        declared: What a `FamilySystem` takes, of points that do not see each other.
+        torus: What is computed around them.
+        given: What else a `FamilySystem` takes.
+
+    Attributes:
+        sizes: How many points there are along both coordinates.
+        points: The points, with the derivatives there as parameters.
+    """
+
+    derivatives = "fourier"
+    obstacle = "its derivatives are those of Fourier series, between which Python leads the steps"
+
+    def __init__(self, *declared: Any, torus: Torus, **given: Any) -> None:
+        self.torus, self._given = torus, given
+        self.sizes = tuple(size or LEAST for size in torus.sizes)
+        self.points = FamilySystem(*declared, **given)
+        super().__init__(*declared, **given)
+        shared = self._declared[1]
+        self.PARAMETERS = shared
+        self.functions = {name: self.functions[name] for name in FUNCTIONS}
+
+    def resize(self, sizes: Mapping[str, int]) -> TorusSystem:
+        """The field at another number of points.
+
+        Args:
+            sizes: The numbers by the coordinates: ``{"x": 64, "y": 64}``.
+
+        Raises:
+            KernelArgumentError: Other coordinates, or too few points.
+            ResourceError: So many points do not fit into memory.
+        """
+        names = self.torus.coordinates
+        own = dict(zip(names, self.torus.sizes, strict=True)) | dict(sizes)
+        if not {*sizes} <= {*names} or None in own.values():
+            raise KernelArgumentError(
+                f"sizes of {self.name} are {dict(sizes)!r}; expected a number of points for each of "
+                f"{' and '.join(names)}. Choose them, sizes={dict.fromkeys(names, 64)!r}.",
+                found=list(sizes),
+                expected=list(names),
+            )
+        for name, size in own.items():
+            if not isinstance(size, int) or isinstance(size, bool) or size < LEAST:
+                raise KernelArgumentError(
+                    f"the size of {name} of {self.name} is {size!r}; expected a whole number of at "
+                    f"least {LEAST}, from which on a wave moves.",
+                    found=size,
+                    expected=LEAST,
+                )
+        old = self.torus
+        torus = type(old)(
+            old.coordinates, old.lengths, tuple(own.values()), old.derivatives, old.solved
+        )
+        state, shared, indexed, observables, functions, elementary = self._declared
+        made = TorusSystem(
+            self.name,
+            str(self.folder / "__init__.py"),
+            (replace(self.index, size=prod(own[name] or 0 for name in names)), self.small),
+            state,
+            shared,
+            indexed,
+            observables,
+            functions,
+            elementary,
+            self.id,
+            torus=torus,
+            **self._given,
+        )
+        made.levels = self.levels
+        return made
+
+    def _repeat(self, quantity: Quantity, size: int) -> Quantity:
+        """A quantity of a point as one of all points."""
+        repeated = super()._repeat(quantity, size)
+        places = [f"{i},{j}" for i in range(self.sizes[0]) for j in range(self.sizes[1])]
+        components = tuple(f"{c}[{place}]" for c in quantity.components for place in places)
+        return replace(repeated, shape=(*quantity.shape, *self.sizes), components=components)
+
+    def with_derivatives(self, derivatives: str) -> TorusSystem:
+        """Itself: a plane has Fourier derivatives alone.
+
+        Raises:
+            KernelArgumentError: The derivatives have another name than `System` knows.
+        """
+        if derivatives not in ("differences", "fourier"):
+            raise KernelArgumentError(
+                f"derivatives are {derivatives!r}; expected 'fourier', which a plane has alone.",
+                found=str(derivatives),
+                expected=["fourier"],
+            )
+        return self
+
+    @cached_property
+    def _kernels(self) -> Kernels:
+        return _TorusKernels(self)
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
+        """Pickled by reference, and its sizes."""
+        resized, (find, given, _) = super().__reduce__()
+        return resized, (find, given, dict(zip(self.torus.coordinates, self.sizes, strict=True)))
+
+    def __repr__(self) -> str:
+        state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
+        points = " x ".join(map(str, self.sizes))
+        return f"<System {self.name}: {points} points; state {state}; parameters {parameters}>"
+
+
+class _TorusKernels(Kernels):
+    """Kernels at points, with transforms around them."""
+
+    system: TorusSystem
+
+    def _load(self, target: str) -> Kernel:
+        return TorusKernel(self.system, self.system.points.find_kernel(target))
+
+
+class TorusKernel(Kernel):
+    """Rates, energy and observables of a field by those at points."""
+
+    def __init__(self, system: TorusSystem, points: Kernel) -> None:
+        self.source, self._points, self._torus = points.source, points, system.torus
+        self._sizes, self._shared = system.sizes, list(system.PARAMETERS.components)
+        (self._name,) = system.own_state
+        scope = dict.fromkeys(self._shared, ())
+        self._factors = {
+            u: {place: Formula(text, scope, "a factor") for place, text in factors.items()}
+            for u, (_, factors) in self._torus.solved.items()
+        }
+
+    def prepare(self, function: str = "") -> None:
+        """Compile what is needed at the points."""
+        self._points.prepare(function)
+
+    def calls(self, function: str, call: Call) -> Iterator[Callable[[], Any]]:
+        """One call for all trajectories."""
+        yield partial(self._evaluate, function, call)
+
+    def _evaluate(self, function: str, call: Call) -> None:
+        """A function of all trajectories at once."""
+        members = call.members
+        rows = call.parameters.reshape(len(self._shared), -1)
+        given = dict(zip(self._shared, np.broadcast_to(rows, (len(rows), members)), strict=True))
+        with np.errstate(all="ignore"):
+            waves = PlaneWaves(self._sizes, *(given[name] for name in self._torus.lengths))
+            field = call.state.reshape(*self._sizes, members)
+            series = {self._name: waves.transform(field)}
+            for u, (m, _) in self._torus.solved.items():
+                parts = {
+                    place: np.broadcast_to(formula.evaluate(given)[0], (members,))
+                    for place, formula in self._factors[u].items()
+                }
+                series[u] = waves.solve(series[m], parts)
+            shown = [
+                waves.show(series[of], i, j) for of, i, j in self._torus.derivatives.values()
+            ]
+            state = waves.show(series[self._name]).reshape(-1, members)
+            known = [rows_of.reshape(-1, members) for rows_of in (*given.values(), *shown)]
+            inner = replace(call, state=state, parameters=np.concatenate(known))
+            if function == "rhs":
+                inner = replace(inner, block=np.empty_like(state))
+            for piece in self._points.calls(function, inner):
+                piece()
+            if function == "rhs":
+                moved = waves.transform(inner.block.reshape(*self._sizes, members))
+                call.block[...] = waves.show(moved).reshape(call.block.shape)
+
+
+class PlaneWaves:
+    """The waves in a plane.
+
+    Args:
+        sizes: How many points it has along both coordinates.
+        lengths: How long it is, a number for each trajectory.
+    """
+
+    def __init__(self, sizes: tuple[int, ...], *lengths: Array) -> None:
+        self.sizes = sizes
+        whole = [np.fft.fftfreq(n, 1 / n) for n in sizes]
+        whole[1] = np.arange(sizes[1] // 2 + 1)
+        kept = [np.abs(own) <= (n - 1) // 3 for own, n in zip(whole, sizes, strict=True)]
+        self._kept = (kept[0][:, np.newaxis] & kept[1])[..., np.newaxis]
+        self._x = 2j * np.pi * whole[0][:, np.newaxis, np.newaxis] / lengths[0]
+        self._y = 2j * np.pi * whole[1][:, np.newaxis] / lengths[1]
+
+    def transform(self, values: Array) -> NDArray[np.complex128]:
+        """The waves of values ``(N_x, N_y, trajectories)`` that are kept."""
+        from scipy import fft
+
+        return np.where(self._kept, fft.rfftn(values, axes=(0, 1)), 0)
+
+    def show(self, waves: NDArray[np.complex128], i: int = 0, j: int = 0) -> Array:
+        """The values of a derivative at the points."""
+        from scipy import fft
+
+        found: Array = fft.irfftn(waves * self._x**i * self._y**j, s=self.sizes, axes=(0, 1))
+        return np.ascontiguousarray(found)
+
+    def solve(self, right: NDArray[np.complex128], factors: Factors) -> NDArray[np.complex128]:
+        """U with ``sum a_ij D_x^i D_y^j u = right``; with the mean 0 where A takes constants to 0."""
+        parts = (a * self._x**i * self._y**j for (i, j), a in factors.items())
+        symbol = sum(parts, np.zeros(right.shape)).real
+        if (0, 0) not in factors:
+            symbol[0, 0] = np.inf
+        return right / symbol
+
+
+def check_plane(system: TorusSystem, state: Array) -> None:
+    """The field at the beginning has a mean of 0 where w = A psi has, and no waves that stay.
+
+    Raises:
+        KernelArgumentError: It has.
+    """
+    field = state.reshape(*system.sizes, -1)
+    largest = np.max(np.abs(field), axis=(0, 1))
+    for u, (m, factors) in system.torus.solved.items():
+        means = np.mean(field, axis=(0, 1))
+        if (0, 0) not in factors and (np.abs(means) > MEAN * largest).any():
+            mean = float(means[np.argmax(np.abs(means) - MEAN * largest)])
+            raise KernelArgumentError(
+                f"the mean of {m} of {system.name} is {mean:.6g} at the beginning; expected 0, "
+                f"since {m} is made of derivatives of {u}. Subtract the mean.",
+                found=mean,
+                expected=0.0,
+            )
+    one = np.ones(field.shape[-1])
+    waves = PlaneWaves(system.sizes, one, one)
+    rest = np.max(np.abs(field - waves.show(waves.transform(field))), axis=(0, 1))
+    if (rest > ROUNDING * largest).any():
+        most = " and ".join(str((n - 1) // 3) for n in system.sizes)
+        raise KernelArgumentError(
+            f"the field of {system.name} has waves beyond {most} at the beginning, up to "
+            f"{float(np.max(rest)):.3g}, which {' x '.join(map(str, system.sizes))} points do not "
+            "move; expected longer ones alone. Take more points, or leave these waves out.",
+            found=float(np.max(rest)),
+            expected=0.0,
+        )
