@@ -42,7 +42,6 @@ from coadjoint.render.environment import compile_templates
 from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.folders import load_texts
-from coadjoint.solve.torus import TorusSystem
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Windows
 
@@ -152,7 +151,9 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     certificate = prove(spec, list(routes)).require()
     check_loops(family, loops)
     progress("render")
-    facts, methods = judge_family(windows, declared, family, loops, certificate)
+    facts, methods = judge_family(
+        windows, declared, family, loops, certificate, in_plane=spec.in_plane
+    )
     supported = certificate.count(Verdict.SUPPORTED)
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)
@@ -187,8 +188,7 @@ def verify(
     with load_texts(rendered.texts, LEVELS if loads else WRITTEN_LEVELS) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
-            points = system.points if isinstance(system, TorusSystem) else system
-            return crosscheck_family(*given, rendered.texts, own.printed, points)
+            return crosscheck_family(*given, rendered.texts, own.printed, system)
         reference = Reference(rendered.equations)
         maps = rendered.maps
         return crosscheck(rendered.programs, rendered.texts, reference, system, maps=maps)

@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive, make_setting
-from coadjoint.derive.fields.circle import close, inertia
+from coadjoint.derive.fields.circle import close, inertia_along
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of
 from coadjoint.derive.fields.operators import Term, adjoint, apply, expand
 from coadjoint.derive.fields.symbol import look_at_symbol
@@ -254,7 +254,7 @@ def test_camassa_and_holm():
         assert equations.exact.rates == (-u * m_s - 2 * m * u_s,)
         assert equations.exact.energy == m * u / 2
     square = field["alpha"] ** 2
-    assert inertia(setting) == {0: field.one, 2: -square}
+    assert inertia_along(setting) == {0: field.one, 2: -square}
     assert close(setting, m) == u - square * u_ss
     assert close(setting, m_s) == u_s - square * u_sss
 
@@ -266,7 +266,7 @@ def test_more_derivatives_make_another_operator():
     text = text.replace("u^2/2 + alpha^2*u_s^2/2", "u^2/2 + u_s^2/2 + 3*u_ss^2/2")
     setting = make_setting(read_spec_text(text, "c.toml"))
     one = setting.field.one
-    assert inertia(setting) == {0: one, 2: -one, 4: 3 * one}
+    assert inertia_along(setting) == {0: one, 2: -one, 4: 3 * one}
 
 
 def evaluate(equations, values):

@@ -10,6 +10,7 @@ from tests.specs import RIGID_BODY, shipped
 STRAND = shipped("spin_chain").path.read_text(encoding="utf-8")
 MAGNET = shipped("landau_lifshitz").path.read_text(encoding="utf-8")
 KDV = shipped("kdv").path.read_text(encoding="utf-8")
+PLANE = shipped("euler_2d").path.read_text(encoding="utf-8")
 
 
 def read(text, **sizes):
@@ -45,7 +46,13 @@ def test_another_number_of_points_is_chosen_where_a_spec_is_loaded():
         (STRAND, 'length = "L"', 'length = "M"', "there is no parameter 'M'", "below it M = "),
         (STRAND, "L = { positive = true,", "L = {", "may be negative", "positive = true"),
         (STRAND, 'length = "L"', 'length = "K"', "is no scalar", "Write K = "),
-        (STRAND, "order = 4 }", 'order = 4 }\nr = { length = "L" }', "2 coordinates", "Remove"),
+        (STRAND, "order = 4 }", 'order = 4 }\nr = { length = "L" }', "no maps move them", "Remove"),
+        (PLANE, "\ny = {", '\nz = { length = "Lx" }\ny = {', "3 coordinates", "Remove the others"),
+        (PLANE, "\ny = {", "\nyy = {", "has 2 letters", "Write x and y"),
+        (PLANE, "Ly\", size = 32 }", "Ly\", size = 32, order = 6 }", "a plane has order = 6", "Remove order"),
+        (PLANE, "Ly\", size = 32 }", "Ly\", size = 32, ends = \"free\" }", "a plane has ends = 'free'", "Remove ends"),
+        (PLANE, "[diffeomorphisms]", "[diffeomorphisms]\ncentral = \"Lx\"", "central charge", "Remove central"),
+        (PLANE, "[profiles]\nw = \"", "[profiles]\nw = \"z + ", "z", "x"),
         (STRAND, "order = 4", "order = 3", "order", "2, 4, 6 or 8"),
         (STRAND, "order = 4", 'order = 6, ends = "free"', "at free ends have the order 6", "Write order = 4"),
         (STRAND, "order = 4", 'order = 4, ends = "open"', "ends", "'free'"),
@@ -74,6 +81,27 @@ def test_mistakes_are_shown_with_the_likely_fix(text, old, new, message, fix):
         read(text.replace(old, new))
     assert message in str(error.value)
     assert fix in str(error.value)
+
+
+def test_a_plane_has_two_coordinates_and_mixed_derivatives():
+    """Named in the order of the coordinates."""
+    space = read(PLANE.replace('Lx", size = 32', 'Lx", size = 32, derivatives = 2')).space
+    assert space.coordinates == ("x", "y")
+    names = {each.name for each in space.jets if each.of.name == "w"}
+    assert names == {"w_x", "w_y", "w_xx", "w_xy", "w_yy"}
+    sizes = read(PLANE, x=8, y=9).space
+    assert (sizes.size, sizes.across.size) == (8, 9)
+
+
+def test_derivatives_in_a_plane_take_part_in_units():
+    """psi_x is psi over the unit of x."""
+    text = PLANE.replace('Lx", size = 32', 'Lx", size = 32, unit = "m"')
+    text = text.replace('Ly", size = 32', 'Ly", size = 32, unit = "km"')
+    text = text.replace('psi = { role = "velocity"', 'psi = { role = "velocity", unit = "m^2/s"')
+    with pytest.raises(SpecError, match="m"):
+        read(text)
+    same = text.replace('unit = "km"', 'unit = "m"')
+    assert read(same).space.across.unit == "m"
 
 
 @pytest.mark.parametrize(("sizes", "message"), [({"i": 4}, "no coordinate"), ({"s": 0}, "integer")])
@@ -117,6 +145,10 @@ SPACE = 's = { length = "L" }'
         (STRAND.replace('length = "L"', 'length = "M"'), ("[parameters]", "[parameters]\nM = { positive = true, default = 1 }")),
         (STRAND.replace("L = { positive = true,", "L = {"), ("L = { default = 10,", "L = { positive = true, default = 1,")),
         (STRAND.replace("order = 4 }", 'order = 4 }\nr = { length = "L" }'), ('\nr = { length = "L" }', "")),
+        (PLANE.replace("\ny = {", '\nz = { length = "Lx" }\ny = {'), ('z = { length = "Lx" }\n', "")),
+        (PLANE.replace("\ny = {", "\nyy = {"), ("\nyy = {", "\ny = {")),
+        (PLANE.replace('Ly", size = 32 }', 'Ly", size = 32, order = 6 }'), (", order = 6", "")),
+        (PLANE.replace("[diffeomorphisms]", '[diffeomorphisms]\ncentral = "Lx"'), ('central = "Lx"', "")),
         (STRAND.replace('"P"]', '{ claim = "P", where = ["Xi1"] }]'), (', where = ["Xi1"]', "")),
         (STRAND.replace("[claims]", '[time]\nname = "t"\n\n[claims]'), ('[time]\nname = "t"', "")),
         (STRAND.replace('Xi = "vector(0, sin(2*pi*s/L)/2, 0)"', 'Xi = "sin(2*pi*s/L)"'), ('"sin(2*pi*s/L)"', '"vector(sin(2*pi*s/L), 0, 0)"')),

@@ -235,6 +235,7 @@ def crosscheck_family(
     """
     chosen = available_targets() if targets is None else tuple(targets)
     loops, steps = context.loops, context.torus is None  # of a plane Python leads the steps
+    system = system.points
     lines = check_family_text(context, texts, printed)
     for target, source in system.load_kernels(chosen).items():
         if source != hashlib.sha256(texts[BUILDS[target].kernel].encode()).hexdigest():

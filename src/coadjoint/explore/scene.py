@@ -255,6 +255,8 @@ def _describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> 
     names = [name for each in context.state for name in each.components]
     if spec.space is None:
         raise _refuse(spec, "it counts equal members", "a body, particles or a field")
+    if context.torus is not None:
+        raise _refuse(spec, "it is a field in a plane", "a body, particles or a field along a line")
     if size * len(names) > MOST_ROWS:
         raise _refuse(
             spec, f"{size * len(names)} rows of its state are too many", f"at most {MOST_ROWS}"

@@ -24,10 +24,10 @@ from coadjoint.derive.emitted import list_following
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
-from coadjoint.derive.fields.torus import TorusGrid
 from coadjoint.derive.fields.jets import jets_of, solved
 from coadjoint.derive.fields.stencils import find_largest
 from coadjoint.derive.fields.symbol import find_matrix
+from coadjoint.derive.fields.torus import TorusGrid
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.exact import element_text

@@ -44,6 +44,7 @@ _SPHERES: Final = (
 _SPLIT: Final = (
     "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
 )
+_PLANE: Final = "Python leads the steps of a field in a plane, between transforms"
 _NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
 
 
@@ -217,6 +218,8 @@ def judge_family(
     family: Family,
     loops: Mapping[str, Loops],
     certificate: Certificate,
+    *,
+    in_plane: bool = False,
 ) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
     """The facts of a system of equal members, and every method judged by them.
 
@@ -226,6 +229,7 @@ def judge_family(
         family: Those of the generic member.
         loops: Its functions.
         certificate: What is proved for every number of members.
+        in_plane: Whether the members are points of a plane.
     """
     facts = FamilyFacts(windows, declared, family, loops, certificate)
     refusals = {name: _NONE for name, x in STRUCTURED.items() if x.file not in LOOPED}
@@ -237,6 +241,8 @@ def judge_family(
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
+    elif in_plane:
+        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _PLANE)
     elif facts.has_kinks:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), KINKED)
     if facts.is_driven:

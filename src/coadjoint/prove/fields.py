@@ -26,9 +26,9 @@ from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, list_rows, solved
 from coadjoint.derive.fields.operators import Operator, apply, order_of, skew_defects
-from coadjoint.derive.fields.torus import make_torus
 from coadjoint.derive.fields.structure import cocycle, field_operator
 from coadjoint.derive.fields.symbol import look_at_symbol
+from coadjoint.derive.fields.torus import make_torus
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.grids import about_grid
@@ -51,7 +51,9 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from _about_densities(first)
     for equations in routes:
         yield from _about_pair(first, routes, equations)
-    yield from about_torus(make_torus(first)) if first.spec.in_plane else about_grid(make_grid(first))
+    yield from (
+        about_torus(make_torus(first)) if first.spec.in_plane else about_grid(make_grid(first))
+    )
 
 
 # -- the bracket ------------------------------------------------------------------------------
@@ -109,7 +111,15 @@ class _Trivector:
 
     def __init__(self, operator: Operator, jets: Jets) -> None:
         self.names, size = [*jets.towers], len(operator)
-        depth = 3 * order_of(operator) + 1
+        read = (
+            jets.places[x][1:]
+            for row in operator
+            for entry in row
+            for t in entry
+            for x in (jets.field.reach(t.left) | jets.field.reach(t.right)) & jets.places.keys()
+        )
+        deeper = max(0, *map(sum, read), 1) - 1  # coefficients with derivatives reach further
+        depth = 3 * (order_of(operator) + deeper) + 1
         coordinates = jets.coordinates
         rows = {name: list_rows(name, coordinates, depth) for name in self.names}
         self.covectors = [[f"{of}{n}" for n in range(1, size + 1)] for of in _COVECTORS]
@@ -259,15 +269,15 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
             return replace(decision, method=method)
         fluxes = jets.integrate(-rate)
         if fluxes is None:
-            texts.append("its rate is a total derivative, by the Euler operator")
+            texts.append("a flux, since the Euler operator takes its rate to 0")
             continue
         assert setting.field.is_zero(jets.diverge(fluxes) + rate), equations.spec.name
         text = ", ".join(element_text(setting.field, flux) for flux in fluxes)
         text = f"({text})" if setting.spec.in_plane else text
-        long = f"a flux of {sum(len(setting.field.terms(flux)) for flux in fluxes)} terms"
-        texts.append(f"flux {text if len(text) <= SHOWN else long}")
+        count = sum(len(setting.field.terms(flux)) for flux in fluxes)
+        texts.append(f"the flux {text}" if len(text) <= SHOWN else f"a flux of {count} terms")
     law = "d/dt + div flux = 0" if setting.spec.in_plane else "d/dt + d/ds flux = 0"
-    return Decision(verdict=Verdict.PROVED, method=f"{law} with the {'; '.join(texts)}")
+    return Decision(verdict=Verdict.PROVED, method=f"{law} with {'; '.join(texts)}")
 
 
 def _decide_between_ends(equations: Equations) -> Decision:

@@ -21,7 +21,7 @@ from coadjoint.prove.zero import Decision, Discovery, Examined
 #: A wave: its numbers along both coordinates.
 Wave = tuple[int, int]
 #: Up to which K waves are counted.
-COUNTED = 16
+COUNTED = 8
 #: Where the numbers of points stand in statements.
 _WHERE = "with the waves up to K along each coordinate of N > 3 K points"
 
@@ -29,7 +29,8 @@ _WHERE = "with the waves up to K along each coordinate of N > 3 K points"
 def about_torus(grid: TorusGrid) -> Iterator[Examined]:
     """What is proved of a field at the points of a plane."""
     yield (
-        f"products of two fields at the points have the truncated series of these products, {_WHERE}",
+        "products of two fields at the points have the truncated series of these products, "
+        f"{_WHERE}",
         "equivalence",
         _decide_aliases,
     )
@@ -86,15 +87,15 @@ def find_aliases(N: int, K: int) -> list[int]:
 def _decide_projection() -> Decision:
     """What `TorusGrid.exact` says, with the integral that the field itself keeps."""
     method = (
-        "its variation is linear in the field, so that it has no waves that are left out, and times "
-        "{psi, w} it is of the third degree, of which sums over N > 3 K points are integrals; these "
-        "are 0 by the flux above"
+        "its variation is linear in the field, so that it has no waves that are left out, and "
+        "times the rate it is of the third degree, of which sums over N > 3 K points are "
+        "integrals; these are 0 by the flux above"
     )
     return Decision(verdict=Verdict.PROVED, method=method)
 
 
 def find_defect(waves: tuple[Wave, Wave, Wave], most: int) -> int:
-    """The cyclic sum of ``{{w_k, w_l}, w_m}``, ``{w_k, w_l} = (k x l) w_(k + l)`` of waves up to K.
+    """The cyclic sum of ``{{w_k, w_q}, w_m}``, ``{w_k, w_q} = (k x q) w_(k + q)`` of waves up to K.
 
     >>> find_defect(((2, 0), (1, 1), (-2, 0)), most=2) != 0
     True
@@ -104,12 +105,12 @@ def find_defect(waves: tuple[Wave, Wave, Wave], most: int) -> int:
     turns = [waves[n:] + waves[:n] for n in range(3)]
     assert {*turns} <= {*permutations(waves)}, waves
     total = 0
-    for k, l, m in turns:
-        both = k[0] + l[0], k[1] + l[1]
+    for k, q, m in turns:
+        both = k[0] + q[0], k[1] + q[1]
         if max(map(abs, both)) <= most:
-            total += _cross(k, l) * _cross(both, m)
+            total += _cross(k, q) * _cross(both, m)
     return total
 
 
-def _cross(k: Wave, l: Wave) -> int:
-    return k[0] * l[1] - k[1] * l[0]
+def _cross(k: Wave, q: Wave) -> int:
+    return k[0] * q[1] - k[1] * q[0]

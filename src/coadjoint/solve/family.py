@@ -174,6 +174,11 @@ class FamilySystem(System):
         """N, the number of members."""
         return self.index.size or self.small
 
+    @property
+    def points(self) -> FamilySystem:
+        """What generated kernels compute: itself, but for a field in a plane."""
+        return self
+
     @cached_property
     def fixed(self) -> Mapping[str, NDArray[np.float64]]:
         """N, as kernels take it."""

@@ -33,6 +33,7 @@ from coadjoint.solve.scenes import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.families import Torus
     from coadjoint.solve.occurrences import Occurrences
     from coadjoint.solve.solution import Solution
 
@@ -47,6 +48,10 @@ LEGEND_ROWS, LINES = 14, 28
 AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 #: Pictures of members, one above the other.
 STACKED = 3
+#: How many times of a field in a plane are shown.
+SHOWN = 4
+#: How many points are drawn along each coordinate of a plane for each one that there is.
+FINER = 4
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -273,6 +278,10 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
     panels = place.subgridspec(len(quantities), 1)
     shared = None
     for n, (name, quantity) in enumerate(quantities):
+        torus = getattr(solution.system, "torus", None)
+        if torus is not None:
+            _draw_plane(figure, panels[n], solution, name, torus)
+            continue
         if len(quantity.components) > LINES:
             _draw_rows(figure, panels[n], solution, name, ends=n == len(quantities) - 1)
             continue
@@ -310,6 +319,56 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
+
+
+def _draw_plane(figure: Any, place: Any, solution: Solution, name: str, torus: Torus) -> None:
+    """A field in a plane at some times, all with the same colours."""
+    values = solution[name]
+    shown = np.unique(np.linspace(0, len(solution) - 1, SHOWN).round().astype(int))
+    largest = float(np.abs(values).max()) or 1.0
+    lengths = (solution.system.PARAMETERS.rows(length) for length in torus.lengths)
+    x, y = (
+        np.arange(FINER * n) * (np.ravel(solution.parameters[row])[0] / (FINER * n))
+        for n, row in zip(values.shape, lengths, strict=False)
+    )
+    rows = -(-len(shown) // 2)
+    panels = place.subgridspec(rows, min(len(shown), 2))
+    every = []
+    for n, at in enumerate(shown):
+        axes = figure.add_subplot(panels[n // 2, n % 2])
+        every.append(axes)
+        colours = axes.pcolormesh(
+            x,
+            y,
+            _refine(values[..., at]).T,
+            cmap="PuOr",
+            vmin=-largest,
+            vmax=largest,
+            shading="nearest",
+        )
+        colours.set_rasterized(True)
+        axes.set_aspect("equal")
+        time = f"t = {solution.time[at]:.4g} {unit_label(solution.unit('time'))}".strip()
+        axes.set_title(time, fontsize=9)
+        axes.tick_params(labelsize=8, labelleft=n % 2 == 0, labelbottom=n + 2 >= len(shown))
+        axes.set_xlabel(torus.coordinates[0] * (n + 2 >= len(shown)), fontsize=9)
+        axes.set_ylabel(torus.coordinates[1] * (n % 2 == 0), fontsize=9)
+    bar = figure.colorbar(colours, ax=every, pad=0.02, aspect=40)
+    bar.set_label(f"{_symbol(name)} {unit_label(solution.system.STATE[name].unit)}", fontsize=9)
+    bar.ax.tick_params(labelsize=8)
+
+
+def _refine(field: Array) -> Array:
+    """The same trigonometric polynomial at more points."""
+    from scipy import fft
+
+    waves, shape = fft.fftshift(fft.fft2(field)), [FINER * n for n in field.shape]
+    room = [
+        (new // 2 - n // 2, (new + 1) // 2 - (n + 1) // 2)
+        for new, n in zip(shape, field.shape, strict=True)
+    ]
+    found: Array = fft.ifft2(fft.ifftshift(np.pad(waves, room))).real * FINER**2
+    return found
 
 
 def _unit_of(unit: str, place: int, count: int) -> str:

@@ -176,8 +176,9 @@ def simulate(
 
         check_means(system, request.state)
     if isinstance(system, FamilySystem) and system.torus is not None:
-        from coadjoint.solve.torus import check_plane
+        from coadjoint.solve.torus import TorusSystem, check_plane
 
+        assert isinstance(system, TorusSystem), system.name
         check_plane(system, request.state)
     elif system.obstacle:  # else there is nothing to load
         from coadjoint.solve.spectral import warn_of_jump

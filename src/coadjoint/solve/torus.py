@@ -26,7 +26,6 @@ from coadjoint.render.targets.protocol import Call, Kernel
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.formulas import Formula
 from coadjoint.solve.kernels import Kernels
-from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.spectral import FUNCTIONS, MEAN
 
 if TYPE_CHECKING:
@@ -54,21 +53,25 @@ class TorusSystem(FamilySystem):
         given: What else a `FamilySystem` takes.
 
     Attributes:
-        sizes: How many points there are along both coordinates.
-        points: The points, with the derivatives there as parameters.
+        counts: How many points there are along both coordinates.
+        around: What is computed around the points.
     """
 
     derivatives = "fourier"
     obstacle = "its derivatives are those of Fourier series, between which Python leads the steps"
 
     def __init__(self, *declared: Any, torus: Torus, **given: Any) -> None:
-        self.torus, self._given = torus, given
-        self.sizes = tuple(size or LEAST for size in torus.sizes)
-        self.points = FamilySystem(*declared, **given)
+        self.torus, self.around, self._given = torus, torus, given
+        self.counts = tuple(size or LEAST for size in torus.sizes)
+        self._points = FamilySystem(*declared, **given)
         super().__init__(*declared, **given)
-        shared = self._declared[1]
-        self.PARAMETERS = shared
+        self.PARAMETERS = self._declared[1]
         self.functions = {name: self.functions[name] for name in FUNCTIONS}
+
+    @property
+    def points(self) -> FamilySystem:
+        """What generated kernels compute: each point, with the derivatives there as parameters."""
+        return self._points
 
     def resize(self, sizes: Mapping[str, int]) -> TorusSystem:
         """The field at another number of points.
@@ -80,12 +83,12 @@ class TorusSystem(FamilySystem):
             KernelArgumentError: Other coordinates, or too few points.
             ResourceError: So many points do not fit into memory.
         """
-        names = self.torus.coordinates
-        own = dict(zip(names, self.torus.sizes, strict=True)) | dict(sizes)
+        names = self.around.coordinates
+        own = dict(zip(names, self.around.sizes, strict=True)) | dict(sizes)
         if not {*sizes} <= {*names} or None in own.values():
             raise KernelArgumentError(
-                f"sizes of {self.name} are {dict(sizes)!r}; expected a number of points for each of "
-                f"{' and '.join(names)}. Choose them, sizes={dict.fromkeys(names, 64)!r}.",
+                f"sizes of {self.name} are {dict(sizes)!r}; expected a number of points for each "
+                f"of {' and '.join(names)}. Choose them, sizes={dict.fromkeys(names, 64)!r}.",
                 found=list(sizes),
                 expected=list(names),
             )
@@ -97,7 +100,7 @@ class TorusSystem(FamilySystem):
                     found=size,
                     expected=LEAST,
                 )
-        old = self.torus
+        old = self.around
         torus = type(old)(
             old.coordinates, old.lengths, tuple(own.values()), old.derivatives, old.solved
         )
@@ -122,9 +125,9 @@ class TorusSystem(FamilySystem):
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
         """A quantity of a point as one of all points."""
         repeated = super()._repeat(quantity, size)
-        places = [f"{i},{j}" for i in range(self.sizes[0]) for j in range(self.sizes[1])]
+        places = [f"{i},{j}" for i in range(self.counts[0]) for j in range(self.counts[1])]
         components = tuple(f"{c}[{place}]" for c in quantity.components for place in places)
-        return replace(repeated, shape=(*quantity.shape, *self.sizes), components=components)
+        return replace(repeated, shape=(*quantity.shape, *self.counts), components=components)
 
     def with_derivatives(self, derivatives: str) -> TorusSystem:
         """Itself: a plane has Fourier derivatives alone.
@@ -147,11 +150,11 @@ class TorusSystem(FamilySystem):
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Pickled by reference, and its sizes."""
         resized, (find, given, _) = super().__reduce__()
-        return resized, (find, given, dict(zip(self.torus.coordinates, self.sizes, strict=True)))
+        return resized, (find, given, dict(zip(self.around.coordinates, self.counts, strict=True)))
 
     def __repr__(self) -> str:
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
-        points = " x ".join(map(str, self.sizes))
+        points = " x ".join(map(str, self.counts))
         return f"<System {self.name}: {points} points; state {state}; parameters {parameters}>"
 
 
@@ -168,8 +171,8 @@ class TorusKernel(Kernel):
     """Rates, energy and observables of a field by those at points."""
 
     def __init__(self, system: TorusSystem, points: Kernel) -> None:
-        self.source, self._points, self._torus = points.source, points, system.torus
-        self._sizes, self._shared = system.sizes, list(system.PARAMETERS.components)
+        self.source, self._points, self._torus = points.source, points, system.around
+        self._sizes, self._shared = system.counts, list(system.PARAMETERS.components)
         (self._name,) = system.own_state
         scope = dict.fromkeys(self._shared, ())
         self._factors = {
@@ -189,7 +192,10 @@ class TorusKernel(Kernel):
         """A function of all trajectories at once."""
         members = call.members
         rows = call.parameters.reshape(len(self._shared), -1)
-        given = dict(zip(self._shared, np.broadcast_to(rows, (len(rows), members)), strict=True))
+        given = {
+            name: np.broadcast_to(row, (members,))
+            for name, row in zip(self._shared, rows, strict=True)
+        }
         with np.errstate(all="ignore"):
             waves = PlaneWaves(self._sizes, *(given[name] for name in self._torus.lengths))
             field = call.state.reshape(*self._sizes, members)
@@ -200,11 +206,9 @@ class TorusKernel(Kernel):
                     for place, formula in self._factors[u].items()
                 }
                 series[u] = waves.solve(series[m], parts)
-            shown = [
-                waves.show(series[of], i, j) for of, i, j in self._torus.derivatives.values()
-            ]
+            shown = [waves.show(series[of], i, j) for of, i, j in self._torus.derivatives.values()]
             state = waves.show(series[self._name]).reshape(-1, members)
-            known = [rows_of.reshape(-1, members) for rows_of in (*given.values(), *shown)]
+            known = [each.reshape(-1, members) for each in (*given.values(), *shown)]
             inner = replace(call, state=state, parameters=np.concatenate(known))
             if function == "rhs":
                 inner = replace(inner, block=np.empty_like(state))
@@ -224,9 +228,8 @@ class PlaneWaves:
     """
 
     def __init__(self, sizes: tuple[int, ...], *lengths: Array) -> None:
-        self.sizes = sizes
-        whole = [np.fft.fftfreq(n, 1 / n) for n in sizes]
-        whole[1] = np.arange(sizes[1] // 2 + 1)
+        self.counts = sizes
+        whole = [np.fft.fftfreq(sizes[0], 1 / sizes[0]), np.fft.rfftfreq(sizes[1], 1 / sizes[1])]
         kept = [np.abs(own) <= (n - 1) // 3 for own, n in zip(whole, sizes, strict=True)]
         self._kept = (kept[0][:, np.newaxis] & kept[1])[..., np.newaxis]
         self._x = 2j * np.pi * whole[0][:, np.newaxis, np.newaxis] / lengths[0]
@@ -242,13 +245,14 @@ class PlaneWaves:
         """The values of a derivative at the points."""
         from scipy import fft
 
-        found: Array = fft.irfftn(waves * self._x**i * self._y**j, s=self.sizes, axes=(0, 1))
+        found: Array = fft.irfftn(waves * self._x**i * self._y**j, s=self.counts, axes=(0, 1))
         return np.ascontiguousarray(found)
 
     def solve(self, right: NDArray[np.complex128], factors: Factors) -> NDArray[np.complex128]:
-        """U with ``sum a_ij D_x^i D_y^j u = right``; with the mean 0 where A takes constants to 0."""
-        parts = (a * self._x**i * self._y**j for (i, j), a in factors.items())
-        symbol = sum(parts, np.zeros(right.shape)).real
+        """U with ``sum a_ij D_x^i D_y^j u = right``; the mean is 0 where A takes constants to 0."""
+        symbol = np.zeros(right.shape)
+        for (i, j), a in factors.items():
+            symbol += (a * self._x**i * self._y**j).real
         if (0, 0) not in factors:
             symbol[0, 0] = np.inf
         return right / symbol
@@ -260,9 +264,9 @@ def check_plane(system: TorusSystem, state: Array) -> None:
     Raises:
         KernelArgumentError: It has.
     """
-    field = state.reshape(*system.sizes, -1)
+    field = state.reshape(*system.counts, -1)
     largest = np.max(np.abs(field), axis=(0, 1))
-    for u, (m, factors) in system.torus.solved.items():
+    for u, (m, factors) in system.around.solved.items():
         means = np.mean(field, axis=(0, 1))
         if (0, 0) not in factors and (np.abs(means) > MEAN * largest).any():
             mean = float(means[np.argmax(np.abs(means) - MEAN * largest)])
@@ -273,13 +277,13 @@ def check_plane(system: TorusSystem, state: Array) -> None:
                 expected=0.0,
             )
     one = np.ones(field.shape[-1])
-    waves = PlaneWaves(system.sizes, one, one)
+    waves = PlaneWaves(system.counts, one, one)
     rest = np.max(np.abs(field - waves.show(waves.transform(field))), axis=(0, 1))
     if (rest > ROUNDING * largest).any():
-        most = " and ".join(str((n - 1) // 3) for n in system.sizes)
+        most = " and ".join(str((n - 1) // 3) for n in system.counts)
         raise KernelArgumentError(
             f"the field of {system.name} has waves beyond {most} at the beginning, up to "
-            f"{float(np.max(rest)):.3g}, which {' x '.join(map(str, system.sizes))} points do not "
+            f"{float(np.max(rest)):.3g}, which {' x '.join(map(str, system.counts))} points do not "
             "move; expected longer ones alone. Take more points, or leave these waves out.",
             found=float(np.max(rest)),
             expected=0.0,

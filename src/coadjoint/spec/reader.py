@@ -127,16 +127,20 @@ def _choose_points(source: Source, file: Any, sizes: Mapping[str, int]) -> Any:
     Raises:
         SpecError: The coordinate is another one, or the size is no number of points.
     """
-    name, part = next(iter(file.space.items()))
+    names = [*file.space]
     for other, size in sizes.items():
-        if other != name:
+        if other not in names:
             problem = f"a size is chosen for {other!a}, which is no coordinate of space"
-            raise source.at_key(("space", name), problem, other, f"the coordinate {name!r}")
+            expected = f"the coordinate {' or '.join(map(repr, names))}"
+            raise source.at_key(("space", names[0]), problem, other, expected)
         if isinstance(size, bool) or not isinstance(size, int) or size < 1:
-            problem = f"the size {size!r} is chosen for {name!r}"
-            raise source.at_key(("space", name), problem, str(size), "an integer of 1 or more")
-    chosen = part.model_copy(update={"size": sizes.get(name, part.size)})
-    return file.model_copy(update={"space": {**file.space, name: chosen}})
+            problem = f"the size {size!r} is chosen for {other!r}"
+            raise source.at_key(("space", other), problem, str(size), "an integer of 1 or more")
+    chosen = {
+        name: part.model_copy(update={"size": sizes.get(name, part.size)})
+        for name, part in file.space.items()
+    }
+    return file.model_copy(update={"space": chosen})
 
 
 def _refuse_indices(source: Source, file: Any, sizes: Mapping[str, int]) -> None:

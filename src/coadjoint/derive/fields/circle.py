@@ -119,9 +119,9 @@ def _slope(setting: Setting) -> Element:
 
 @once
 def inertia(setting: Setting) -> Mapping[tuple[int, int], Element]:
-    """The coefficients of ``D_x^i D_y^j`` in the operator A with m = A u; empty without derivatives.
+    """The coefficients of ``D_x^i D_y^j`` in the operator A with m = A u; on a circle j is 0.
 
-    On a circle j is 0. That of u itself may be missing.
+    Empty without derivatives. That of u itself may be missing.
 
     Raises:
         DerivationError: The Lagrangian is no sum of squares with constant positive factors.
@@ -148,8 +148,8 @@ def inertia(setting: Setting) -> Mapping[tuple[int, int], Element]:
     for (i, j), x in found.items():
         if i % 2 or j % 2:
             message = (
-                f"the momentum dl/d{name} has the derivative {jets.rows[name][j][i]}; expected even "
-                f"ones along each coordinate, those of a sum of squares of derivatives of {name}."
+                f"the momentum dl/d{name} has the derivative {jets.rows[name][j][i]}; expected "
+                f"even ones along each coordinate, those of a sum of squares of derivatives of {name}."
             )
             raise fault(setting, formula, message, formula.text)
         at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** ((i + j) // 2)
@@ -201,8 +201,8 @@ def close(setting: Setting, element: Element) -> Element:
         return element
     (m,), rows, reached = setting.state, jets.rows[_name(setting)], field.reach(element)
     values = {
-        symbol: field.sum(x * field[rows[l + j][k + i]] for (i, j), x in operator.items())
-        for symbol, (of, k, l) in jets.places.items()
+        symbol: field.sum(x * field[rows[b + j][a + i]] for (i, j), x in operator.items())
+        for symbol, (of, a, b) in jets.places.items()
         if of == m and symbol in reached
     }
     return field.substitute(element, values)

@@ -40,7 +40,8 @@ def field_equations(setting: Setting, route: str) -> Equations:
             write_slopes("h", setting.state, slopes),
         ),
         write_step(
-            f"Bracket of the fields: factors of {power}, what stands behind D is differentiated, too",
+            f"Bracket of the fields: factors of {power}, what stands behind D is differentiated, "
+            "too",
             f"{{u_i({s}), u_j({s}')}} = P_ij delta({s} - {s}')",
             rf"\{{u_i({s}), u_j({s}')\}} = P_{{ij}}\, \delta({s} - {s}')",
             _entries(setting, operator),

@@ -147,7 +147,12 @@ class Jets:
         every = self.rows.values()
         return (
             {a: b for rows in every for row in rows for a, b in pairwise(row)},
-            {a: b for rows in every for pair in pairwise(rows) for a, b in zip(*pair, strict=False)},
+            {
+                a: b
+                for rows in every
+                for pair in pairwise(rows)
+                for a, b in zip(*pair, strict=False)
+            },
         )
 
     def total(self, element: Element, order: int = 1, across: int = 0) -> Element:
@@ -247,18 +252,20 @@ class Jets:
             for n, part in parts.items()
             for name in self.rows
         ]
-        along, aside = (field.sum(own) for own in zip(*fluxes, strict=True)) if fluxes else (
-            field.zero,
-            field.zero,
+        along, aside = (
+            (field.sum(own) for own in zip(*fluxes, strict=True))
+            if fluxes
+            else (
+                field.zero,
+                field.zero,
+            )
         )
         in_plane = any(len(rows) > 1 for rows in self.rows.values())
         return (along, aside) if in_plane else (along,)
 
     def diverge(self, fluxes: Sequence[Element]) -> Element:
         """``D P``, or ``D_x P + D_y Q``."""
-        return self.field.sum(
-            self.total(flux, 1 - n, n) for n, flux in enumerate(fluxes)
-        )
+        return self.field.sum(self.total(flux, 1 - n, n) for n, flux in enumerate(fluxes))
 
 
 @once

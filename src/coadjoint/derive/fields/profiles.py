@@ -59,9 +59,9 @@ def evaluate_profile(spec: Spec, name: str, *parts: Fraction) -> tuple[Fraction,
             own = [numbers.number(x) for x in each.default or ()]
             values |= zip(each.components, own, strict=True)
             values[each.name] = assemble(each, values)
-        for each, part in zip((space, space.across), parts, strict=False):
-            assert each is not None, spec.name
-            values[each.name] = numbers.number(part) * values[each.length]
+        for along, part in zip((space, space.across), parts, strict=False):
+            assert along is not None, spec.name
+            values[along.name] = numbers.number(part) * values[along.length]
         value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
         numbers_of: Any = entries(value)
         return tuple(Fraction(float(x)) for x in numbers_of)
@@ -79,8 +79,6 @@ def sample_profiles(spec: Spec) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
     places = [*product(*map(range, sizes))]
     found = dict[str, tuple[tuple[Fraction, ...], ...]]()
     for name in spec.profiles if all(sizes) else ():
-        points = (
-            evaluate_profile(spec, name, *map(Fraction, place, steps)) for place in places
-        )
+        points = (evaluate_profile(spec, name, *map(Fraction, place, steps)) for place in places)
         found[name] = tuple(zip(*points, strict=True))
     return found

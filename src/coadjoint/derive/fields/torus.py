@@ -1,4 +1,4 @@
-r"""Torus: a field in a plane that closes in both directions, at points, by truncated Fourier series.
+r"""Torus: a field at points of a plane that closes in both directions, by truncated series.
 
 Of :math:`N_x \times N_y` points the waves :math:`|n_x| \le K_x`, :math:`|n_y| \le K_y` with
 :math:`3 K < N` are kept (:math:`\Pi` leaves the others out), and

@@ -2,7 +2,8 @@
 
 The velocity u of such a motion is a vector field on the circle, with ``ad_u v = v u_s - u v_s``,
 and right invariant. In a plane that closes in both directions they are those that keep areas, and a
-stream function psi stands for the velocity ``(psi_y, -psi_x)``. Comes in: its keys. Goes out: a `Diffeomorphisms`.
+stream function psi stands for the velocity ``(psi_y, -psi_x)``.
+Comes in: its keys. Goes out: a `Diffeomorphisms`.
 Read next: `coadjoint.spec.sections.space`.
 """
 
@@ -64,7 +65,7 @@ def read_diffeomorphisms(reading: Reading, part: DiffeomorphismsPart) -> Diffeom
 DIFFEOMORPHISMS = Table[Diffeomorphisms | None](
     "diffeomorphisms",
     DiffeomorphismsPart,
-    "the group of diffeomorphisms of the circle, or those of a plane that keep areas, in the place of "
-    "an algebra",
+    "the group of diffeomorphisms of the circle, or those of a plane that keep areas, in the place "
+    "of an algebra",
     read_diffeomorphisms,
 )

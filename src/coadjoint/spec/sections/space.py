@@ -328,7 +328,7 @@ def _name_all(table: str, space: Space | None) -> Iterator[Naming]:
 SPACE = Table[Space | None](
     "space",
     SpacePart,
-    'the coordinate along which variables are fields, as s = { length = "L" }, or the two of a plane',
+    'the coordinate along which variables are fields, as s = { length = "L" }, or two of a plane',
     read_space,
     many=True,
     absent=None,
