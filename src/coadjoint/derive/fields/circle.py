@@ -149,7 +149,8 @@ def inertia(setting: Setting) -> Mapping[tuple[int, int], Element]:
         if i % 2 or j % 2:
             message = (
                 f"the momentum dl/d{name} has the derivative {jets.rows[name][j][i]}; expected "
-                f"even ones along each coordinate, those of a sum of squares of derivatives of {name}."
+                "even ones along each coordinate, those of a sum of squares of derivatives of "
+                f"{name}."
             )
             raise fault(setting, formula, message, formula.text)
         at = field.evaluate(x, field.region.defaults, Fraction) * (-1) ** ((i + j) // 2)
