@@ -31,6 +31,7 @@ PICTURES = {
     "spin_chain_chiral.png": "simulate spin_chain_chiral --time 20 --plot",
     "landau_lifshitz.png": "simulate landau_lifshitz --time 4 --plot",
     "kdv.png": "simulate kdv --time 1.2 --plot",
+    "euler_2d.png": "simulate euler_2d --time 20 --plot",
 }
 
 

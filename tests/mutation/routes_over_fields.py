@@ -18,12 +18,24 @@ RINGS = ("tests/derive/test_grid.py -k 'ring or level'",)
 REFUSED = ("tests/derive/test_fields.py -k 'refused or mass'",)
 #: The sign of a rate, which a certificate alone does not tell, shows in a flux.
 FLUX = ("tests/prove/test_fields.py -k 'fluxes'",)
+#: The curl of the fluid's equation, claims in a plane, and rates by sums over waves.
+PLANE = ("tests/prove/test_torus.py", "tests/solve/test_torus.py -k 'waves or velocity'")
 
 FIELDS = (
     *core_of(
-        "lie-poisson", "fields/structure", "field_operator", systems=("kdv", *STRANDS), tests=BOOKS
+        "lie-poisson",
+        "fields/structure",
+        "field_operator",
+        systems=("kdv", "euler_2d", *STRANDS),
+        tests=(*BOOKS, *PLANE),
     ),
-    *core_of("euler-poincare", "fields/circle", "euler_poincare", systems=("kdv",), tests=BOOKS),
+    *core_of(
+        "euler-poincare",
+        "fields/circle",
+        "euler_poincare",
+        systems=("kdv", "euler_2d"),
+        tests=(*BOOKS, *PLANE),
+    ),
     *core_of(
         "hamilton-pontryagin",
         "hamilton_pontryagin",
@@ -34,16 +46,23 @@ FIELDS = (
     *core_of(
         "lie-poisson",
         "fields/jets",
-        "euler rate _homotopy",
-        systems=("kdv",),
-        tests=(*BOOKS, *FLUX),
+        "total rate _move integrate",
+        systems=("kdv", "euler_2d"),
+        tests=(*BOOKS, *FLUX, *PLANE),
     ),
     *core_of(
         "euler-poincare",
         "fields/circle",
         "inertia vary close velocity energy",
-        systems=CIRCLES,
-        tests=(*FLUX, *REFUSED, *WAVES),
+        systems=(*CIRCLES, "euler_2d"),
+        tests=(*FLUX, *REFUSED, *WAVES, *PLANE),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/torus",
+        "_is_linear make_window family",
+        systems=("euler_2d",),
+        tests=PLANE,
     ),
     *core_of(
         "lie-poisson",

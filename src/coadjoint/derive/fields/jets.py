@@ -282,7 +282,7 @@ def narrow(jets: Jets, density: Element) -> Element:
     """A density with the same integral, whose products of two derivatives are summed by parts.
 
     >>> field = Field(["u", "u_s", "u_ss", "c", "_degree"])
-    >>> jets = Jets(field, {"u": ("u", "u_s", "u_ss")})
+    >>> jets = Jets(field, {"u": list_rows("u", ["s"], 2)})
     >>> narrow(jets, field["c"] * field["u_s"] ** 2 / 2 + field["u"] ** 3)
     -c*u*u_ss/2 + u**3
     """

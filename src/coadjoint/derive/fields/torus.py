@@ -101,7 +101,7 @@ class _Making:
         self.count, self.point = choose_names(self.spec, ["N", "point"])
         sizes = [each.size for each in self.both]
         whole = None if None in sizes else (sizes[0] or 0) * (sizes[1] or 0)
-        self.index = Index(self.point, whole, periodic=True, from_zero=True)
+        self.index = Index(name=self.point, size=whole, periodic=True, from_zero=True)
 
     @cached_property
     def densities(self) -> dict[str, Element]:

@@ -215,7 +215,13 @@ def _list_jets(reading: Reading, most: int, name: str, second: str = "") -> Iter
     for each in (*fields, *velocities):
         for order in range(1, most + 1):
             for across in range(order + 1 if second else 1):
-                yield Jet(each, order - across, name, second, across)
+                yield Jet(
+                    of=each,
+                    order=order - across,
+                    coordinate=name,
+                    second=second,
+                    across=across,
+                )
 
 
 def _check_plane(reading: Reading, parts: Mapping[str, SpacePart]) -> None:
