@@ -107,7 +107,7 @@ class FamilySystem(System):
         self._driving |= {"shared_noise": noise, "indexed_noise": own_noise}
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
-        size = self.index.size or self.small
+        size = self.size
         counted = state.size + indexed.size + own.size + own_noise.size
         check_memory(name, self.index, size * counted)
         self.members = size
@@ -168,8 +168,8 @@ class FamilySystem(System):
 
     @property
     def size(self) -> int:
-        """N, the number of members."""
-        return self.index.size or self.small
+        """The number of members: N, or its square where members are entries of matrices."""
+        return self.index.count_members(self.index.size or self.small)
 
     @cached_property
     def fixed(self) -> Mapping[str, NDArray[np.float64]]:
@@ -276,7 +276,7 @@ class FamilySystem(System):
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Pickled by reference, and its size."""
         find, given = super().__reduce__()
-        return _find_resized, (find, given, {self.index.name: self.size})
+        return _find_resized, (find, given, {self.index.name: self.index.find_size(self.size)})
 
     def __repr__(self) -> str:
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
