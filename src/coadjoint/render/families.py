@@ -571,6 +571,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
             for order in sorted({each.order for each in implicit})
         },
         "spheres": [rows[0] for rows in context.spheres.values()],
+        "matrices": any(loops.products for loops in context.loops.values()),
         "schedules": {
             each.macro: [(flows[flow], repr(part)) for flow, part in schedules[each.name]]
             for each in own
