@@ -92,6 +92,25 @@ def _find_scale(equations: Equations, text: str, count: sympy.Symbol) -> sympy.E
     return scale
 
 
+def tell_motion(family: Family) -> tuple[tuple[str, str], ...]:
+    """The equations of matrices, left and right sides as texts."""
+    matrices = family.matrices
+    assert matrices is not None, "of entries of matrices alone"
+    rows = sympy.Symbol(family.index.name, positive=True)
+    (count,) = family.count
+    scale = str(sympy.factor_terms(matrices.scale.xreplace({count: rows**2}))).replace("**", "^")
+    return (
+        (f"d{matrices.state}/dt", f"[{matrices.state}, V]"),
+        (f"{scale}*L V", str(matrices.state)),
+        (
+            "(L V)[i, j]",
+            "2*(s*(s + 1) - z[i]*z[j])*V[i, j] - c[i]*c[j]*V[i+1, j+1] - c[i-1]*c[j-1]*V[i-1, j-1]",
+        ),
+        ("s, z[i]", f"({rows} - 1)/2, s - i"),
+        ("c[i]", f"sqrt((i + 1)*({rows} - 1 - i))"),
+    )
+
+
 def multiply_out(equations: Equations) -> tuple[Element, ...]:
     """The rates of the entries as a commutator of matrices, whatever the structure constants are.
 

@@ -23,12 +23,11 @@ from coadjoint.derive import derive
 from coadjoint.derive.truncated import multiply_out
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import decide_zero, make_entry
-from coadjoint.spec.core.faults import list_names
 from coadjoint.spec.model import Spec
 
-#: Kinds of claims of a few N that say something of the motion of matrices.
-KINDS = ("algebra", "jacobi", "conserved")
 _ALGEBRA = "the algebra u(N) satisfies the Jacobi identity"
+#: What is said of all Casimirs of a few N; each of these N has other ones.
+_COMPLETE = "every Casimir is a function of the "
 
 
 def extend_truncated(spec: Spec, certificates: Sequence[Certificate]) -> Certificate:
@@ -41,12 +40,15 @@ def extend_truncated(spec: Spec, certificates: Sequence[Certificate]) -> Certifi
     family = spec.family
     assert family is not None, spec.name
     few = _list_few(spec)
-    own = [[c for c in each.claims if c.kind in KINDS] for each in certificates]
+    own = [
+        [c for c in each.claims if c.kind != "casimir" or c.statement.startswith(_COMPLETE)]
+        for each in certificates
+    ]
     assert len({tuple(c.kind for c in each) for each in own}) == 1, spec.name
-    claims = [_join(same, few) for same in zip(*own, strict=True)]
+    claims = [_join(spec, same, few) for same in zip(*own, strict=True)]
     claims.append(_compare_products(spec, few))
     if all(claim.verdict is Verdict.PROVED for claim in claims):
-        claims += _follow(spec)
+        claims = [claim for claim in claims if claim.kind != "conserved"] + _follow(spec, few)
     return Certificate(spec.name, tuple(claims))
 
 
@@ -55,14 +57,20 @@ def _list_few(spec: Spec) -> str:
     family = spec.family
     assert family is not None, spec.name
     sizes = [str(family.index.find_size(len(each.state))) for each in family.windows]
-    return f"{family.index.name} = {list_names(sizes)}"
+    return f"{family.index.name} = {' and '.join(sizes)}"
 
 
-def _join(same: Sequence[Claim], few: str) -> Claim:
+def _join(spec: Spec, same: Sequence[Claim], few: str) -> Claim:
     """One claim from those of the few, of which the weakest decides."""
+    assert spec.family is not None, spec.name
     order = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
     worst = min(same, key=lambda claim: order.index(claim.verdict))
     statement = _ALGEBRA if worst.kind == "algebra" else worst.statement
+    if worst.kind == "casimir":
+        counts = [spec.family.index.find_size(len(w.state)) for w in spec.family.windows]
+        told = [each.statement.removeprefix(_COMPLETE) for each in same]
+        assert told == [f"{n} known, near almost every point" for n in counts], told
+        statement = f"{_COMPLETE}{spec.family.index.name} known, near almost every point"
     seconds = sum(claim.seconds for claim in same)
     return replace(worst, statement=f"{statement}, for {few}", seconds=seconds)
 
@@ -84,7 +92,7 @@ def _compare_products(spec: Spec, few: str) -> Claim:
     return claim
 
 
-def _follow(spec: Spec) -> list[Claim]:
+def _follow(spec: Spec, few: str) -> list[Claim]:
     """What follows for every number of rows from the form of the motion."""
     assert spec.family is not None, spec.name
     rows, least = spec.family.index.name, spec.family.least
@@ -101,7 +109,8 @@ def _follow(spec: Spec) -> list[Claim]:
             statement=f"the energy is conserved, {scope}",
             kind="conserved",
             verdict=Verdict.PROVED,
-            method="V = dh/dW as L is symmetric on each diagonal, and tr(V [W, V]) = 0",
+            method="V = dh/dW as L is symmetric on each diagonal, and tr(V [W, V]) = 0; its rate "
+            f"vanishes by normal forms, for {few}",
             seconds=0.0,
         ),
     ]

@@ -76,7 +76,7 @@ def read_truncated(
         windows=windows,
         truncation=file.truncation[index.name].inertia,
     )
-    return replace(windows[-1], family=family, index=(index,))
+    return replace(windows[0], family=family, index=(index,))
 
 
 def _check_tables(source: Source, file: Any) -> None:
