@@ -38,7 +38,7 @@ LEAST: Final = 2
 #: What an inertia calls the degree of harmonics.
 DEGREE: Final = "l"
 #: Tables of a spec with [truncation].
-TABLES: Final = ("truncation", "variables", "parameters")
+TABLES: Final = ("truncation", "variables", "parameters", "claims")
 _HEAD: Final = ("title", "source", "description", "license", "routes")
 
 
@@ -102,6 +102,15 @@ def _check_tables(source: Source, file: Any) -> None:
             if getattr(part, key) is not None:
                 problem, expected = f"{name!r} has the key {key!r}", "entries of a matrix"
                 raise source.fault(("variables", name, key), problem, key, expected, "Remove it.")
+    for key in ("casimirs", "brackets"):
+        if getattr(file.claims, key):
+            problem, expected = f"there are claims about {key}", "the energy alone"
+            raise source.fault(("claims", key), problem, key, expected, f"Remove {key}.")
+    for place, claim in enumerate(file.claims.conserved):
+        if claim.claim != "energy" or claim.where:
+            problem, expected = f"{claim.claim!a} is claimed to be conserved", "the energy alone"
+            path = ("claims", "conserved", place)
+            raise source.fault(path, problem, claim.claim, expected, "Remove it.")
     for name, part in file.parameters.items():
         if part.index is not None:
             problem, expected = f"{name!r} has an index", "a parameter of all entries"
