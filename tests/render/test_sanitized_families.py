@@ -71,7 +71,8 @@ static int simulate(size_t size, size_t members, double step)
         .rates = %(name)s_rhs, %(projection)s .sizes = sizes, .rows = rows,
         .parameter_rows = values, .members = members, .last = members, .state = state, .time = time,
         .step = first, .next = next, .steps = steps, .rejected = rejected, .status = status,
-        .memory = memory, .sweeps = sweeps, .parameters = parameters, .samples = samples, .sample_count = SAMPLES, .out = out,
+        .memory = memory, .sweeps = sweeps,
+        .parameters = parameters, .samples = samples, .sample_count = SAMPLES, .out = out,
         %(lines)s
         .rtol = 1e-6, .atol = 1e-6, .size = step, .max_steps = MAX_STEPS, .work = 3};
     %(name)s_solver_ensemble rest = run;
@@ -85,7 +86,8 @@ static int simulate(size_t size, size_t members, double step)
     for (size_t n = 0; n < members; ++n)
         on |= status[n] == 0 || steps[n] + rejected[n] == 0;
     free(state), free(parameters), free(time), free(first), free(out);
-    free(next), free(steps), free(rejected), free(status), free(memory), free(sweeps)%(freed_signals)s;
+    free(memory), free(sweeps);
+    free(next), free(steps), free(rejected), free(status)%(freed_signals)s;
     return on;
 }
 int main(void)

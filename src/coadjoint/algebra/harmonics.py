@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import gcd, pi, prod, sqrt
+from math import gcd, pi, sqrt
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, from_matrices
 from coadjoint.algebra.matrices import (
@@ -62,7 +62,7 @@ def harmonics(n: int) -> LieAlgebra:
 
 
 def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
-    r"""The real matrix X of :math:`(X - X^T)/2 + \mathrm{i} (X + X^T)/2` for harmonics on the sphere.
+    r"""The real matrix X of :math:`(X - X^T)/2 + \mathrm{i} (X + X^T)/2` for some harmonics.
 
     It stands for the function with the parts of C_l0, C_l1, S_l1, ..., C_ll, S_ll, degree by degree
     from 1 on: real harmonics with the mean square 1 over 4 pi, positive near the pole where the
@@ -91,7 +91,9 @@ def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
 def _list_towers(n: int, degree: int) -> list[list[float]]:
     """The diagonals of T_lm above the main one by m from 0 on, with tr T_lm T_lm^T = n/(4 pi)."""
     c = [sqrt((i + 1) * (n - 1 - i)) for i in range(n - 1)]  # of S_+, the transpose of S_-
-    own, towers = [prod(c[i : i + degree]) for i in range(n - degree)], list[list[float]]()
+    own, towers = [1.0] * (n - degree), list[list[float]]()
+    for k in range(degree):  # a power of S_+, whose size would leave the range of numbers
+        own = [x * c[i + k] / n for i, x in enumerate(own)]
     for order in range(degree, -1, -1):
         size = sqrt(sum(x * x for x in own) * 4 * pi / n)
         own = [x / size for x in own]

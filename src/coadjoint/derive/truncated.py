@@ -85,8 +85,8 @@ def _find_scale(equations: Equations, text: str, count: sympy.Symbol) -> sympy.E
     scale = sympy.simplify(inertia / (degree * (degree + 1)))
     if scale.has(degree) or scale == 0:
         raise DerivationError(
-            f"{spec.path}: truncation.{rows}.inertia is {text!a}; expected a multiple of l*(l + 1), "
-            "as that of an ideal fluid. Write it as '2*l*(l + 1)/sqrt(N^2 - 1)'.",
+            f"{spec.path}: truncation.{rows}.inertia is {text!a}; expected a multiple of "
+            "l*(l + 1), as that of an ideal fluid. Write it as '2*l*(l + 1)/sqrt(N^2 - 1)'.",
             found=text,
         )
     return scale
@@ -138,9 +138,7 @@ def multiply_out(equations: Equations) -> tuple[Element, ...]:
         _commute(own[0], slopes[1], 1),
         _commute(own[1], slopes[0], 1),
     ]
-    return tuple(
-        field.sum(part[i][j] for part in parts) for i in range(n) for j in range(n)
-    )
+    return tuple(field.sum(part[i][j] for part in parts) for i in range(n) for j in range(n))
 
 
 def _commute(a: Matrix, b: Matrix, sign: int) -> list[list[Element]]:

@@ -46,8 +46,8 @@ from coadjoint.spec.sections.indices import read_indices
 from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.spatial import grams, spatial_momenta
 from coadjoint.spec.tables import TABLES
-from coadjoint.spec.validate import validate
 from coadjoint.spec.truncated import read_truncated
+from coadjoint.spec.validate import validate
 from coadjoint.spec.windows import name_fault, read_windows
 
 

@@ -158,9 +158,7 @@ def _find_defaults(
     return {variable: (tuple(Fraction(x) for row in rows for x in row),)}
 
 
-def _write_out(
-    source: Source, file: Any, count: str, variable: str, n: int
-) -> tuple[Source, Any]:
+def _write_out(source: Source, file: Any, count: str, variable: str, n: int) -> tuple[Source, Any]:
     """The file of n rows: a momentum for each entry, and the energy."""
     part, places = file.truncation[count], Places(source.positions)
     own = file.variables[variable].model_copy(update={"default": None})

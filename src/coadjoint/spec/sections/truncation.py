@@ -1,7 +1,7 @@
 """Truncation: the table [truncation], a fluid on the sphere by matrices of N rows.
 
-Comes in: its keys. Goes out: nothing by itself: matrices of a few rows are written out as systems on
-u(N), and what is known of all others is a `Windows`.
+Comes in: its keys. Goes out: nothing by itself: matrices of a few rows are written out as systems
+on u(N), and what is known of all others is a `Windows`.
 Read next: `coadjoint.spec.truncated`.
 """
 
