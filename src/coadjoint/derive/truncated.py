@@ -83,7 +83,7 @@ def _find_scale(equations: Equations, text: str, count: sympy.Symbol) -> sympy.E
     known = {DEGREE: degree, rows: sympy.sqrt(count)}
     inertia = Written(equations).value(read_expression(text), known)
     scale = sympy.simplify(inertia / (degree * (degree + 1)))
-    if scale.has(degree) or scale == 0:
+    if scale.has(degree):
         raise DerivationError(
             f"{spec.path}: truncation.{rows}.inertia is {text!a}; expected a multiple of "
             "l*(l + 1), as that of an ideal fluid. Write it as '2*l*(l + 1)/sqrt(N^2 - 1)'.",

@@ -48,6 +48,8 @@ PRODUCTS: Final[Mapping[str, str]] = {
     "bracket_vector": "commutator",
     "sandwich": "sandwich",
 }
+#: Functions that are given the vector by which they multiply.
+GIVEN: Final = ("bracket_vector", "sandwich")
 #: Operations of a tree beyond which it is left as it is: to collect its terms takes seconds.
 COLLECTED: Final = 60
 
@@ -358,8 +360,9 @@ class _Lowering:
         """A function with what is computed before it begins."""
         family, name = self.family, f"{function.name}_factors"
         if family.matrices is not None:
-            is_given = function.name in ("bracket_vector", "sandwich")
-            scale = None if is_given else self._part(name, [family.matrices.scale], {})
+            scale = (
+                None if function.name in GIVEN else self._part(name, [family.matrices.scale], {})
+            )
             return replace(function, products=Products(scale, PRODUCTS.get(function.name, "")))
         for each in family.solved:
             factors = self._part(name, each.factors, {})

@@ -19,7 +19,7 @@ from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family, MatrixMotion, Symbol, Tree
-from coadjoint.lower.families import PRODUCTS, SUM, Loops, Part, Read
+from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 
 #: Digits of the comparison where functions are called, and how much of them has to agree.
@@ -57,10 +57,12 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
 
 def _check_products(matrices: MatrixMotion, loops: Loops, symbols: _Symbols) -> None:
     """Before a function the right product is computed, of V by the right equation or as given."""
-    products = loops.products
+    products, wanted = loops.products, PRODUCTS.get(loops.name, "")
     assert products is not None, loops.name
-    assert products.product == PRODUCTS.get(loops.name, ""), loops.name
-    assert (products.scale is None) == (loops.name in ("bracket_vector", "sandwich")), loops.name
+    if products.product != wanted:
+        raise _fail(loops.name, f"the product {products.product!r} in the place of {wanted!r}")
+    if (products.scale is None) != (loops.name in GIVEN):
+        raise _fail(loops.name, "V is given, and should be solved for, or the other way round")
     if products.scale is not None:
         _check_part(loops.name, products.scale, [matrices.scale], symbols, ())
 

@@ -143,12 +143,18 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
 def _find_defaults(
     source: Source, file: Any, index: Index, variable: str
 ) -> dict[str, tuple[tuple[Fraction, ...], ...]]:
-    """The entries at the beginning, from parts of spherical harmonics; none without a size."""
+    """The entries at the beginning, from parts of spherical harmonics; none without a size.
+
+    Raises:
+        SpecError: It is no list, or there are more parts than harmonics.
+    """
     given = file.variables[variable].default
     if given is None or index.size is None:
         return {}
     count = len(given) if isinstance(given, list) else 0
     key = ("variables", variable, "default")
+    if count >= index.size**2 and index.size != file.truncation[index.name].size:
+        return {}  # so few rows have none of the last harmonics
     if not 0 < count < index.size**2:
         problem = f"the default has {count} parts" if count else "the default is no list"
         expected = f"parts of 1 to {index.size**2 - 1} harmonics, degree by degree from 1 on"
