@@ -89,7 +89,7 @@ def test_the_angular_momentum_turns_nothing(name):
     ],
 )
 def test_the_isospectral_midpoint_keeps_all_casimirs(method, keeps, target):
-    """The spectrum of 15 rows to 1e-13 of its size, and so tr W^k for k = 2 to 15; others do not."""
+    """The spectrum of 15 rows to 1e-13 of its size, and so tr W^k, k = 2 to 15; others do not."""
     n, state = 15, random_state(15) / 4
     system = FLUID.resize({"N": n})
     motion = system.simulate(state, (0, 4), step=0.05, method=method, samples=2, target=target)
