@@ -9,6 +9,7 @@ from coadjoint.derive import derive
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.truncated import multiply_out, tell_motion
 from coadjoint.errors import DerivationError
+from coadjoint.prove import prove
 from coadjoint.spec.reader import read_spec_text
 from tests.spec.test_truncated import TEXT
 from tests.specs import shipped
@@ -34,6 +35,8 @@ def test_an_inertia_that_is_no_laplacian_is_refused(inertia):
     with pytest.raises(DerivationError, match=r"expected a multiple of l\*\(l \+ 1\)") as error:
         family_of(TEXT.replace("k*l*(l + 1)", inertia))
     assert repr(inertia) in str(error.value)
+    with pytest.raises(DerivationError, match="expected a multiple"):
+        prove(read_spec_text(TEXT.replace("k*l*(l + 1)", inertia), Path("fluid.toml")))
 
 
 @pytest.mark.parametrize("window", [0, 1])

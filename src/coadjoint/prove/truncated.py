@@ -20,7 +20,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from coadjoint.derive import derive
-from coadjoint.derive.truncated import multiply_out
+from coadjoint.derive.truncated import derive_truncated, multiply_out
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import decide_zero, make_entry
 from coadjoint.spec.model import Spec
@@ -36,9 +36,11 @@ def extend_truncated(spec: Spec, certificates: Sequence[Certificate]) -> Certifi
     Args:
         spec: With a table [truncation].
         certificates: Of the few that are written out, in their order, without searches.
+
+    Raises:
+        DerivationError: The inertia is no multiple of that of degree 1, which is written out.
     """
-    family = spec.family
-    assert family is not None, spec.name
+    derive_truncated(derive(spec))
     few = _list_few(spec)
     own = [
         [c for c in each.claims if c.kind != "casimir" or c.statement.startswith(_COMPLETE)]

@@ -60,6 +60,7 @@ def read_truncated(
     """
     _check_tables(source, file)
     (variable,) = file.variables
+    _check_names(source, file)
     index = _choose(source, file, sizes)
     windows = tuple(read(*_write_out(source, file, index.name, variable, n)) for n in WRITTEN)
     family = Windows(
@@ -115,6 +116,18 @@ def _check_tables(source: Source, file: Any) -> None:
         if part.index is not None:
             problem, expected = f"{name!r} has an index", "a parameter of all entries"
             raise source.fault(("parameters", name, "index"), problem, name, expected, "Remove it.")
+
+
+def _check_names(source: Source, file: Any) -> None:
+    """The number of rows, the degree and what is declared have names that differ."""
+    (rows,) = file.truncation
+    taken = {name: table for table in ("variables", "parameters") for name in getattr(file, table)}
+    for name in (rows, DEGREE):
+        if name in taken or (name, DEGREE) == (DEGREE, rows):
+            what = "number of rows" if name == rows else "degree of harmonics"
+            key = (taken.get(name, "truncation"), name)
+            problem, hint = f"{name!r} is the {what}, too", "Rename one of them."
+            raise source.at_key(key, problem, name, "names that differ", hint)
 
 
 def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
