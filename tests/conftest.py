@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import random
+import re
 import signal
 from collections import Counter
 from fractions import Fraction
@@ -28,12 +29,14 @@ _TEXTS = {
 }
 #: Systems with an index whose members are all written out; tests/spec/test_windows.py sees to it.
 WRITTEN = ("n_link_chain", "so8_body")
-#: Fields along a coordinate of space, systems whose state is written out, and N equal members.
+#: Fields along a coordinate of space, systems whose state is written out, and N equal members, or
+#: entries of matrices of N rows.
 FIELDS = tuple(name for name, text in _TEXTS.items() if "\n[space]\n" in text)
 SYSTEMS = tuple(
     name
     for name, text in _TEXTS.items()
-    if name in WRITTEN or ("\n[index]\n" not in text and name not in FIELDS)
+    if name in WRITTEN
+    or (re.search(r"^\[(index|truncation)\]$", text, re.MULTILINE) is None and name not in FIELDS)
 )
 FAMILIES = tuple(name for name in _TEXTS if name not in (*SYSTEMS, *FIELDS))
 

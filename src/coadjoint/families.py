@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isqrt
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -36,6 +37,7 @@ class Index:
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
         from_zero: Whether names count from 0 all the same, as where members are looped over.
+        of_rows: Whether it counts the rows of square matrices, whose entries are the members.
     """
 
     name: str
@@ -44,11 +46,27 @@ class Index:
     first: int = 0
     count: str = ""
     from_zero: bool = False
+    of_rows: bool = False
 
     @property
     def first_name(self) -> int:
         """The number of the first member in names."""
         return 0 if self.from_zero else self.first
+
+    @property
+    def member(self) -> str:
+        """What stands for a member in brackets behind the name of what it has."""
+        return "i, j" if self.of_rows else self.name
+
+    def count_members(self, size: int) -> int:
+        """How many members there are where the index counts up to a size."""
+        return size * size if self.of_rows else size
+
+    def find_size(self, members: int) -> int:
+        """Up to what the index counts where there are so many members."""
+        size = isqrt(members) if self.of_rows else members
+        assert self.count_members(size) == members, members
+        return size
 
 
 class Strand:
@@ -197,6 +215,33 @@ class Solved:
 
 
 @dataclass(frozen=True)
+class MatrixMotion:
+    r"""A motion ``W' = [W, V]`` of skew-Hermitian matrices on a sphere, whose entries are members.
+
+    Member ``i*n + j`` is the real number ``W_ij`` that stands for the matrix :math:`(W - W^T)/2 +
+    \mathrm{i} (W + W^T)/2`, and so is ``V_ij``. V follows from W by ``scale L V = W`` on each
+    diagonal,
+
+    .. math:: (L V)_{ij} = 2 (s (s + 1) - z_i z_j) V_{ij} - c_i c_j V_{i+1, j+1}
+        - c_{i-1} c_{j-1} V_{i-1, j-1},
+
+    with :math:`s = (n - 1)/2`, :math:`z_i = s - i` and :math:`c_i^2 = (i + 1)(n - 1 - i)`, where V
+    has the trace 0 and W is taken without its trace.
+
+    Attributes:
+        state: The entry of W that a member is.
+        velocity: That of V.
+        product: That of the product of matrices which a function reads: ``[W, V]``, or V W V.
+        scale: The factor of L, in symbols of shared parameters and of the number of members.
+    """
+
+    state: Symbol
+    velocity: Symbol
+    product: Symbol
+    scale: Tree
+
+
+@dataclass(frozen=True)
 class Family:
     """The equations of the generic member of an indexed system.
 
@@ -237,6 +282,7 @@ class Family:
         count: The symbol of N, if the equations name it.
         solved: Components that rates and totals read next to those of the state, with neighbours as
             these have.
+        matrices: What the members are where they are entries of matrices, else None.
     """
 
     index: Index
@@ -265,6 +311,14 @@ class Family:
     sides: tuple[Symbol, ...] = ()
     count: tuple[Symbol, ...] = ()
     solved: tuple[Solved, ...] = ()
+    matrices: MatrixMotion | None = None
+
+    @property
+    def completed(self) -> tuple[Symbol, ...]:
+        """Symbols of what stands below the state of member i before a function begins."""
+        if self.matrices is not None:
+            return self.matrices.velocity, self.matrices.product
+        return tuple(each.symbol for each in self.solved)
 
     @property
     def own(self) -> tuple[Symbol, ...]:

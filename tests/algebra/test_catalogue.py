@@ -68,7 +68,8 @@ def test_every_flipped_sign_of_every_named_algebra_is_caught(name):
 #: algebra, since all simple brackets of a triple go through one product; nilpotent ones, the plane
 #: and the line rescale too. Jacobi cannot see such a change, the matrices do.
 RESCALE = {
-    *("so(3)", "so(2,1)", "se(2)", "su(2)", "u(2)", "quaternions", "coquaternions"),
+    *("so(3)", "so(2,1)", "se(2)", "su(2)", "u(2)", "entries(2)", "quaternions"),
+    "coquaternions",
     *("sl(2,R)", "sp(2)", "gl(2)", "h(1)", "h(2)", "aff(1)"),
 }
 

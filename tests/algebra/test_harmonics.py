@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from coadjoint.algebra import algebra_by_name
-from coadjoint.algebra.harmonics import spin_matrices
+from coadjoint.algebra.harmonics import find_entries, spin_matrices
 from coadjoint.algebra.matrices import combination, commutator, realify
 from tests.sources.fluids import HARMONICS, matrix_of
+from tests.truncated import POLYNOMIALS, harmonic, pack, unpack
+from tests.truncated import laplacian as apply_laplacian
 
 
 def laplacian(matrix, n):
@@ -95,3 +97,23 @@ def test_the_bracket_tends_to_that_of_the_sphere():
     errors = [np.abs(parts_of_commutator(n) - exact).max() for n in (9, 18, 36)]
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
     np.testing.assert_allclose(orders, 2, atol=0.1)
+
+
+@pytest.mark.parametrize("n", [4, 7])
+def test_entries_are_those_of_symmetrized_polynomials(n):
+    """Each harmonic up to degree 3, with its sign and size, as i times a Hermitian matrix."""
+    for place, name in enumerate(POLYNOMIALS):
+        found = np.array(find_entries(n, [0.0] * place + [1.0]))
+        np.testing.assert_allclose(found.ravel(), pack(1j * harmonic(name, n)), atol=1e-13)
+    assert place == 14
+
+
+@pytest.mark.parametrize(("degree", "order"), [(1, 0), (9, 4), (30, 30), (39, 0), (39, 17)])
+def test_entries_of_high_degree_are_unit_vectors_of_the_laplacian(degree, order):
+    """For 40 rows, of the eigenvalue ``-l (l + 1)``; of another degree that is not so."""
+    n, parts = 40, [0.0] * (degree * degree - 1 + 2 * order) + [1.0]
+    W = unpack(np.array(find_entries(n, parts)).ravel())
+    assert -np.trace(W @ W).real * 4 * np.pi / n == pytest.approx(1, rel=1e-12)
+    size = degree * (degree + 1)
+    np.testing.assert_allclose(apply_laplacian(W), -size * W, atol=1e-12 * size)
+    assert np.abs(apply_laplacian(W) + (size + 1) * W).max() > 0.01

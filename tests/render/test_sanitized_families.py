@@ -9,6 +9,7 @@ import re
 import pytest
 
 from coadjoint import pipeline
+from coadjoint.resources import derivations_folder, systems_folder
 from coadjoint.spec.reader import read_spec_text
 from tests.conftest import FAMILIES, FIELDS
 from tests.families import MOVED, TOPS, read
@@ -62,12 +63,15 @@ static int simulate(size_t size, size_t members, double step)
     double *time = calloc(members, 8), *first = calloc(members, 8);
     double *out = fill(rows * members * SAMPLES, 0.0), sizes[1] = {(double)size};
     double samples[SAMPLES] = {0.001, 0.01, 0.02};
+    double *memory = calloc(rows * members, 8);
+    size_t *sweeps = calloc(members, 8);
     size_t *next = calloc(members, 8), *steps = calloc(members, 8), *rejected = calloc(members, 8);
     int8_t *status = calloc(members, 1);
     %(name)s_solver_ensemble run = {
         .rates = %(name)s_rhs, %(projection)s .sizes = sizes, .rows = rows,
         .parameter_rows = values, .members = members, .last = members, .state = state, .time = time,
         .step = first, .next = next, .steps = steps, .rejected = rejected, .status = status,
+        .memory = memory, .sweeps = sweeps,
         .parameters = parameters, .samples = samples, .sample_count = SAMPLES, .out = out,
         %(lines)s
         .rtol = 1e-6, .atol = 1e-6, .size = step, .max_steps = MAX_STEPS, .work = 3};
@@ -82,18 +86,19 @@ static int simulate(size_t size, size_t members, double step)
     for (size_t n = 0; n < members; ++n)
         on |= status[n] == 0 || steps[n] + rejected[n] == 0;
     free(state), free(parameters), free(time), free(first), free(out);
+    free(memory), free(sweeps);
     free(next), free(steps), free(rejected), free(status)%(freed_signals)s;
     return on;
 }
 int main(void)
 {
-    const size_t sizes[] = {SMALL, SMALL + 1, 7, 17, 43};
+    const size_t sizes[] = {%(sizes)s};
     for (size_t k = 0; k < 5; ++k)
         for (size_t count = 1; count < 13; count += 11) {
             evaluate(sizes[k], count);
             if (simulate(sizes[k], count, 0.005))
                 return 1;
-#if !defined(HEUN) && !defined(MIDPOINT)
+#if !defined(HEUN) && !defined(MIDPOINT) && !defined(ISOSPECTRAL_MIDPOINT)
             if (simulate(sizes[k], count, 0.0))
                 return 1;
 #endif
@@ -102,6 +107,18 @@ int main(void)
 }
 """
 METHODS = {"rk4": "RK4", "dop853": "DOP853", "taylor": "ORDER=6"}
+METHODS["isospectral_midpoint"] = "ISOSPECTRAL_MIDPOINT"
+
+
+def has_method(name, method):
+    """Whether a shipped family has a method: of what is solved for first there are no series."""
+    if name == "tops" or method not in ("taylor", "isospectral_midpoint"):
+        return method != "isospectral_midpoint"
+    if method == "taylor":
+        return "SOLVES" not in (systems_folder() / name / "solver.py").read_text()
+    return "\n[truncation]\n" in (derivations_folder() / f"{name}.toml").read_text()
+
+
 NOISY = {"heun": "HEUN", "midpoint": "MIDPOINT"}
 #: What a family has in addition that inputs, the time and noise move; else nothing.
 DRIVEN = {
@@ -128,7 +145,7 @@ def write(rendered, change=lambda main: main):
     given = f"count, state, count, parameters, stride, {driving}sizes, 0, out, count"
     calls = "\n".join(f"        {name}_{each}({given});" for each in functions)
     totals = max(10 * len(family.states), len(family.totals), len(family.residuals))
-    main = MAIN % {
+    main = {
         **driven,
         "name": name,
         "components": len(family.states),
@@ -137,7 +154,13 @@ def write(rendered, change=lambda main: main):
         "small": family.small,
         "calls": calls,
         "projection": f".projection = {name}_projection," if family.turned else "",
+        "sizes": "SMALL, SMALL + 1, 7, 17, 43",
     }
+    if family.matrices is not None:
+        own = ("energy_gradient", "bracket_vector", "sandwich")
+        main["sizes"] = "4, 9, 16, 25, 49"  # entries of so many rows
+        main["projection"] = " ".join(f".{each} = {name}_{each}," for each in own)
+    main = MAIN % main
     files = {n: texts[n] for n in ("kernel.c", "kernel.h", "solver.c", "solver.h")}
     return files | {"main.c": change(main.replace("OUT", f"({totals} * size)"))}
 
@@ -167,6 +190,7 @@ CASES = [
     pytest.param(name, method, each, marks=[pytest.mark.campaign] * (name != "tops" or slow))
     for name in ("tops", *FAMILIES, *FIELDS)
     for method in METHODS
+    if has_method(name, method)
     for each in SANITIZERS
     for slow in ((method, each) != ("dop853", "address,undefined"),)
 ]

@@ -80,7 +80,8 @@ def test_kernels_equal_those_of_numpy(name, exact):
 
 
 @pytest.mark.parametrize(
-    ("name", "size"), [("spin_chain", 41), ("n_body", 43), ("camassa_holm", 33)]
+    ("name", "size"),
+    [("spin_chain", 41), ("n_body", 43), ("camassa_holm", 33), ("zeitlin_su_n", 7)],
 )
 def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
     """So do loops over members, in blocks and without, with sums over pairs and solutions."""
@@ -95,7 +96,9 @@ def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
             state = points(rng, system.STATE.size, 1)[:, 0]
             wanted = system.evaluate(function, state, parameters, target="numpy")
             given = json.dumps([state.tolist(), parameters.tolist()])
-            call = f"Array.from({function}(...{given}.map(a => Float64Array.from(a)), {size}, "
+            call = (
+                f"Array.from({function}(...{given}.map(a => Float64Array.from(a)), {system.size}, "
+            )
             out = f"new Float64Array({max(np.size(wanted), 1)})))"
             found = np.array(json.loads(js.eval(f"JSON.stringify({call}{out})")))
             if not system.elementary:

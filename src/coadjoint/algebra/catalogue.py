@@ -98,6 +98,7 @@ FAMILIES = (
     _family("su(n)", 2, lambda n: n * n - 1, families.su),
     _family("harmonics(n)", 2, lambda n: n * n - 1, harmonics.harmonics),
     _family("u(n)", 1, lambda n: n * n, families.u),
+    _family("entries(n)", 1, lambda n: n * n, families.entries),
     _family("sl(n,R)", 2, lambda n: n * n - 1, families.sl),
     _family("gl(n,R)", 1, lambda n: n * n, families.gl),
     Family(
@@ -130,6 +131,7 @@ ALIASES = {"heisenberg": "h(1)", "galilei": "g(3)"}
 CATALOGUE = (
     *("so(2)", "so(3)", "so(4)", "so(5)", "so(2,1)", "so(3,1)", "so(2,2)", "so(1,1)"),
     *("se(2)", "se(3)", "se(4)", "su(2)", "su(3)", "u(1)", "u(2)", "harmonics(3)"),
+    "entries(2)",
     *("sl(2,R)", "sl(3,R)", "gl(1)", "gl(2)", "sp(2)", "sp(4)", "h(1)", "h(2)", "R^3"),
     *("g(3)", "bargmann", "aff(1)", "quaternions", "coquaternions"),
 )

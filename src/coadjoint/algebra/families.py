@@ -13,7 +13,7 @@ from functools import cache
 from itertools import combinations, combinations_with_replacement, permutations, product
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, from_matrices
-from coadjoint.algebra.matrices import Matrix, realify, unit
+from coadjoint.algebra.matrices import Matrix, combination, realify, unit
 
 Generators = Iterator[tuple[str, Matrix]]
 
@@ -174,6 +174,22 @@ def _unitary(n: int, diagonal: Sequence[Matrix]) -> Generators:
 def u(n: int) -> LieAlgebra:
     """``X* + X = 0`` for complex X."""
     return _algebra(f"u({n})", _unitary(n, [unit(k, k) for k in range(n)]))
+
+
+def entries(n: int) -> LieAlgebra:
+    """u(n) in a basis in which an element is a real matrix X, ``(X - X^T)/2 + i (X + X^T)/2``.
+
+    It is orthonormal by minus the trace of products, so that momenta are entries as well.
+    """
+    return _algebra(f"entries({n})", _list_entries(n))
+
+
+def _list_entries(n: int) -> Generators:
+    half = Fraction(1, 2)
+    for i, j in product(range(n), repeat=2):
+        here, there = unit(i, j), unit(j, i)
+        turned = combination([(half, here), (-half, there)])
+        yield label("X", i, j), realify(turned, combination([(half, here), (half, there)]), n)
 
 
 def su(n: int) -> LieAlgebra:

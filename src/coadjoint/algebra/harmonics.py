@@ -22,10 +22,10 @@ Source:
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import gcd
+from math import gcd, pi, sqrt
 
 from coadjoint.algebra.lie_algebra import LieAlgebra, from_matrices
 from coadjoint.algebra.matrices import (
@@ -59,6 +59,50 @@ def harmonics(n: int) -> LieAlgebra:
     basis, matrices = zip(*_generators(n), strict=True)
     degrees = {f"degree_{d}": tuple(range(d * d - 1, d * (d + 2))) for d in range(1, n)}
     return from_matrices(f"harmonics({n})", basis, matrices, degrees)
+
+
+def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
+    r"""The real matrix X of :math:`(X - X^T)/2 + \mathrm{i} (X + X^T)/2` for some harmonics.
+
+    It stands for the function with the parts of C_l0, C_l1, S_l1, ..., C_ll, S_ll, degree by degree
+    from 1 on: real harmonics with the mean square 1 over 4 pi, positive near the pole where the
+    longitude is 0, or pi/(2 m) for the sine of m times it.
+
+    Args:
+        n: Rows of the matrix.
+        parts: As many as there are; degrees behind them have none.
+    """
+    whole = [[0.0] * n for _ in range(n)]
+    for degree in range(1, n):
+        own = [*parts[degree * degree - 1 : degree * (degree + 2)]]
+        if not any(own):
+            continue
+        own += [0.0] * (2 * degree + 1 - len(own))
+        for order, diagonal in enumerate(_list_towers(n, degree)):
+            cosine, sine = own[2 * order - 1 : 2 * order + 1] if order else (own[0], 0.0)
+            for i, x in enumerate(diagonal):
+                share = x / sqrt(2) if order else x
+                whole[i][i + order] += share * (cosine + sine)
+                if order:
+                    whole[i + order][i] += share * (cosine - sine)
+    return whole
+
+
+def _list_towers(n: int, degree: int) -> list[list[float]]:
+    """The diagonals of T_lm above the main one by m from 0 on, with tr T_lm T_lm^T = n/(4 pi)."""
+    c = [sqrt((i + 1) * (n - 1 - i)) for i in range(n - 1)]  # of S_+, the transpose of S_-
+    own, towers = [1.0] * (n - degree), list[list[float]]()
+    for k in range(degree):  # a power of S_+, whose size would leave the range of numbers
+        own = [x * c[i + k] / n for i, x in enumerate(own)]
+    for order in range(degree, -1, -1):
+        size = sqrt(sum(x * x for x in own) * 4 * pi / n)
+        own = [x / size for x in own]
+        towers.append(own)
+        if order:  # [T, S_-], at (i, i + order - 1)
+            before = [0.0, *(a * b for a, b in zip(c, own, strict=False))]
+            after = [*(a * b for a, b in zip(own, c[order - 1 :], strict=True)), 0.0]
+            own = [a - b for a, b in zip(after, before, strict=True)]
+    return towers[::-1]
 
 
 def _generators(n: int) -> Iterator[tuple[str, Matrix]]:

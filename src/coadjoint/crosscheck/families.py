@@ -45,6 +45,7 @@ from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.families import Loops
 from coadjoint.render.families import FamilyContext
 from coadjoint.render.kernels import elementary_functions
@@ -68,11 +69,18 @@ POINTS: Final = 24
 #: Members whose bits are compared, beyond the fewest and one more: fewer and more than vectors
 #: have, and no multiple of them; and more than pairs need to be taken in blocks.
 SIZES: Final = (7, 17, MEMBERS, 64)
+#: The most rows of matrices whose bits are compared: products take the cube of their number.
+LARGEST_MATRIX: Final = 17
 #: Methods whose steps are compared with those of their twins.
 METHODS: Final = (
     Choice(name="rk4", order=4),
     Choice(name="dop853", order=8),
     Choice(name="taylor", order=ORDER),
+)
+#: Functions with a row for each of the state, in its order.
+OF_STATE: Final = (
+    *("rhs", "jacobian_vector", "projection"),
+    *("energy_gradient", "bracket_vector", "sandwich"),
 )
 #: Trajectories of a batch whose bits are compared.
 BATCHES: Final = ((), (9,))
@@ -172,7 +180,7 @@ class _Window:
         inputs |= zip(self.state, state.tolist(), strict=False)
         inputs |= zip(self.inputs, point.inputs.tolist(), strict=True)
         inputs |= dict.fromkeys(self.time, point.time)
-        if function == "jacobian_vector":
+        if KERNEL_FUNCTIONS[function].below == "vector":
             place = {name: n for n, name in enumerate(own, 1)}
             vector = state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
@@ -181,7 +189,7 @@ class _Window:
         if function == "sided_rhs":  # at the signs that are those of the point
             function = "rhs"
         values = oracle(self.replayed, function, inputs)
-        if function in ("rhs", "jacobian_vector", "projection"):
+        if function in OF_STATE:
             by_name = dict(zip(own, values, strict=True))
             values = [by_name[name] for name in self.state]
         if function == "observables":
@@ -245,10 +253,10 @@ def crosscheck_family(
         window = _Window.of(equations, declared, family)
         for name, each in loops.items():
             _check_window(window, each, system, chosen, figures[name])
-        sized = system.resize({system.index.name: window.size})
+        sized = _resize(system, window.size)
         names = (window.state, window.parameters, window.inputs, window.time)
         made = {"c", "numpy"} & set(chosen)
-        if made and steps and loops["rhs"].solve is None:
+        if made and steps and loops["rhs"].has_series:
             check_series(window.reference, names, sized, sorted(made))
     for each in loops.values():
         if each.partners is not None and "numpy" in chosen:
@@ -261,7 +269,7 @@ def crosscheck_family(
         together[name] = {target: count for target, count in counts.items() if target not in exact}
     for target in (each for each in chosen if steps and BUILDS[each].needs_compiler):
         for choice in (
-            *(each for each in METHODS if each.name != "taylor" or loops["rhs"].solve is None),
+            *(each for each in METHODS if each.name != "taylor" or loops["rhs"].has_series),
             *_list_structured(system),
             *(NOISY.values() if family.noise else ()),
         ):
@@ -279,6 +287,11 @@ def crosscheck_family(
         together=together,
         solvers={},
     )
+
+
+def _resize(system: Any, members: int) -> Any:
+    """The system with so many members."""
+    return system.resize({system.index.name: system.index.find_size(members)})
 
 
 def _list_structured(system: Any) -> list[Choice]:
@@ -319,7 +332,7 @@ def _check_window(
 ) -> None:
     """A function of all targets for the members of a window, against 50 digits."""
     name = loops.name
-    sized = system.resize({system.index.name: window.size})
+    sized = _resize(system, window.size)
     source = np.random.default_rng(window.size)
     rows = loops.blocks * window.size + loops.rows
     largest = _threshold(loops, window.size)
@@ -393,7 +406,8 @@ def _compare_targets(
     agree but for roundings.
     """
     equal = {target: 0 for target in targets if target != "numpy" and "numpy" in targets}
-    for size in (small, small + 1, *(size for size in SIZES if size > small + 1)):
+    most = LARGEST_MATRIX if system.index.of_rows else max(SIZES)
+    for size in (small, small + 1, *(size for size in SIZES if small + 1 < size <= most)):
         sized = system.resize({system.index.name: size})
         source = np.random.default_rng(size)
         for batch in BATCHES:

@@ -15,6 +15,7 @@ from decimal import localcontext
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations
+from math import isqrt, prod
 from operator import add
 from typing import Any
 
@@ -26,7 +27,7 @@ from coadjoint.crosscheck.oracle import (
     call,
     exact,
 )
-from coadjoint.lower.families import SUM, Loops, Part, Solve
+from coadjoint.lower.families import SUM, Loops, Part, Products, Solve
 from coadjoint.lower.program import run
 
 
@@ -83,6 +84,76 @@ class _Members:
             found += [*run_of, *equations.solve(right)]
         return replace(self, arrays={**self.arrays, "state": found})
 
+    def multiply(self, products: Products) -> _Members:
+        """The same with what is computed of matrices, by dense elimination on each diagonal."""
+        state, size, found = self.arrays["state"], self.size, list[Any]()
+        if products.scale is None:
+            pairs = [(list(state[:size]), list(state[size:]))]
+        else:
+            (scale,) = self.evaluate(products.scale, 0)
+            runs = (list(state[k : k + size]) for k in range(0, len(state), size))
+            pairs = [(W, self._find_velocity(scale, W)) for W in runs]
+        first, turns = pairs[0], products.product == "sandwich"
+        for k, (W, V) in enumerate(pairs):
+            found += [*W, *V]
+            both = self._multiply_entries(first[0], V, turns=turns)
+            if k:
+                others = self._multiply_entries(W, first[1], turns=turns)
+                both = [a + b for a, b in zip(both, others, strict=True)]
+            found += both if products.product else []
+        return replace(self, arrays={**self.arrays, "state": found})
+
+    def _find_velocity(self, scale: Any, W: Sequence[Any]) -> list[Any]:
+        """V with ``scale L V = W``; where L takes multiples of 1 to 0, the mean is added to it."""
+        n, V = isqrt(self.size), dict[int, Any]()
+
+        def number(value: int | Fraction) -> Any:
+            return self.number(Fraction(value))
+
+        mean = reduce(add, W[:: n + 1]) / number(n)
+        for diagonal in range(1 - n, n):
+            rows = [i for i in range(n) if 0 <= i + diagonal < n]
+            lower = list[Any]()
+            for a, i in enumerate(rows):
+                z, w = (Fraction(n - 1 - 2 * k, 2) for k in (i, i + diagonal))
+                own = [number(0 if diagonal else 1)] * (a + 1)
+                own[a] = own[a] + number(2 * (Fraction(n * n - 1, 4) - z * w))
+                if a:
+                    ends = ((k + 1) * (n - 1 - k) for k in (i - 1, i - 1 + diagonal))
+                    own[a - 1] = own[a - 1] + -self.call("sqrt", number(prod(ends)))
+                lower += own
+            right = [W[i * n + i + diagonal] for i in rows]
+            right = right if diagonal else [each + -mean for each in right]
+            known = [each / scale for each in right]
+            solved = BoundedEquations(lower).solve(known)
+            V |= {i * n + i + diagonal: x for i, x in zip(rows, solved, strict=True)}
+        return [V[k] for k in range(self.size)]
+
+    def _multiply_entries(self, W: Sequence[Any], V: Sequence[Any], *, turns: bool) -> list[Any]:
+        """[W, V], or V W V, of the matrices that real ones stand for."""
+        n, half = isqrt(self.size), self.number(Fraction(1, 2))
+
+        def split(X: Sequence[Any]) -> tuple[list[Any], list[Any]]:
+            pairs = [(X[i * n + j], X[j * n + i]) for i in range(n) for j in range(n)]
+            return [(a + -b) * half for a, b in pairs], [(a + b) * half for a, b in pairs]
+
+        def multiply(X: Any, Y: Any) -> tuple[list[Any], list[Any]]:
+            (a, b), (c, d) = X, Y
+            places = [(i * n, j) for i in range(n) for j in range(n)]
+            terms = [[(r + k, j + k * n) for k in range(n)] for r, j in places]
+            real = [[a[x] * c[y] + -(b[x] * d[y]) for x, y in each] for each in terms]
+            turned = [[a[x] * d[y] + b[x] * c[y] for x, y in each] for each in terms]
+            return [reduce(add, each) for each in real], [reduce(add, each) for each in turned]
+
+        w, v = split(W), split(V)
+        if turns:
+            real, turned = multiply(v, multiply(w, v))
+        else:
+            (a, b), (c, d) = multiply(w, v), multiply(v, w)
+            real = [x + -y for x, y in zip(a, c, strict=True)]
+            turned = [x + -y for x, y in zip(b, d, strict=True)]
+        return [x + y for x, y in zip(real, turned, strict=True)]
+
     def add_up(self, terms: Iterable[list[Any]]) -> list[Any]:
         """Sums of terms, column by column."""
         return [reduce(add, column) for column in zip(*terms, strict=True)]
@@ -131,6 +202,8 @@ def evaluate_loops(
             members = _Members(known, size, exact, call)
             if loops.solve is not None:
                 members = members.complete(loops.solve)
+            if loops.products is not None:
+                members = members.multiply(loops.products)
             if loops.member is None:
                 return members.find_totals(loops)
             rows = zip(*members.find_members(loops), strict=True)

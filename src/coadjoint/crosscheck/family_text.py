@@ -116,6 +116,8 @@ def _list_parts(loops: Loops) -> Iterator[tuple[str, Part]]:
         yield f"{loops.name}_finish", loops.finish
     if loops.solve is not None:
         yield f"{loops.name}_factors", loops.solve.factors
+    if loops.products is not None and loops.products.scale is not None:
+        yield f"{loops.name}_factors", loops.products.scale
 
 
 def _check_part(part: Part, found: _Text, wraps: bool, file: str, name: str) -> int:

@@ -206,10 +206,9 @@ def _list_symbols(
             if base in seen:
                 continue
             seen.add(base)
-            shown = names.write(
-                tree.Member(name=base, index=family.index.name, shift=0, indices=())
-            )
-            label = f"{base}[{family.index.name}]"
+            i = family.index.member
+            shown = names.write(tree.Member(name=base, index=i, shift=0, indices=()))
+            label = f"{base}[{i}]"
         rows.append(
             (
                 whole_line(shown),

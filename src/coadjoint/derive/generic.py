@@ -15,6 +15,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.lines import Line, Section, equal, write_line
 from coadjoint.derive.records import Left, member, symbol
+from coadjoint.derive.truncated import tell_motion
 from coadjoint.families import Family
 from coadjoint.notation.elements import write_sympy
 from coadjoint.notation.trees import write_sum
@@ -26,6 +27,9 @@ Names = Mapping[sympy.Symbol, Left]
 def show_members(equations: Equations) -> Iterator[Section]:
     """The equations that are the same for every number of members."""
     family = derive_family(equations)
+    if family.matrices is not None:
+        yield _show_matrices(equations, family)
+        return
     i, written = family.index.name, len(equations.spec.state)
     declared = equations.spec.family
     assert declared is not None, equations.spec.name
@@ -55,6 +59,20 @@ def show_members(equations: Equations) -> Iterator[Section]:
     if ends:
         law = "members that lack a neighbour, the first one being 0 and the last one N-1"
         yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends))
+
+
+def _show_matrices(equations: Equations, family: Family) -> Section:
+    """The equations of matrices of any number of rows."""
+    rows, count = family.index.name, len(equations.spec.state)
+    lines = (equal(literal(left), literal(right)) for left, right in tell_motion(family))
+    return Section(
+        title="Equations of motion",
+        law=f"matrices of {rows} rows counted from 0, {rows} >= {family.small}, with what has no "
+        f"neighbour left out; the steps that follow are those of {family.index.find_size(count)} "
+        "rows",
+        law_latex="",
+        lines=tuple(lines),
+    )
 
 
 def _list_shifts(family: Family) -> set[int]:

@@ -26,6 +26,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
 from coadjoint.derive.totals import TotalsReader
+from coadjoint.derive.truncated import derive_truncated
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.families import Family, Sum
@@ -46,6 +47,8 @@ def derive_family(equations: Equations) -> Family:
     """
     reader = _Reader(equations)
     declared = reader.declared
+    if declared.truncation:
+        return derive_truncated(equations)
     (before, after), totals = declared.ends, tuple(reader.totals)
     alone = [n + 1 if n >= 0 else -n for _, n in reader.singles_of(totals)]
     small = max([before + after, 2 if declared.pairs else 1, *alone])

@@ -41,6 +41,15 @@ LANES: Final = 8
 FEWEST: Final = 5 * LANES
 #: What the names of sums begin with; their number follows.
 SUM: Final = "_sum"
+#: The products of matrices that functions read.
+PRODUCTS: Final[Mapping[str, str]] = {
+    "rhs": "commutator",
+    "jacobian_vector": "commutator",
+    "bracket_vector": "commutator",
+    "sandwich": "sandwich",
+}
+#: Functions that are given the vector by which they multiply.
+GIVEN: Final = ("bracket_vector", "sandwich")
 #: Operations of a tree beyond which it is left as it is: to collect its terms takes seconds.
 COLLECTED: Final = 60
 
@@ -129,6 +138,28 @@ class Solve:
 
 
 @dataclass(frozen=True)
+class Products:
+    """Entries of matrices that are computed before a function begins (`MatrixMotion`).
+
+    The function is given runs of rows, W and, where ``given``, V, for each member. Parts read runs
+    of W, V and a product of both. The product of a further run, which is a vector, is that of its W
+    and the first V plus that of the first W and its V: the derivative along the vector.
+
+    Attributes:
+        scale: The factor of the equation for V; None where V is given.
+        product: ``commutator`` for [W, V], ``sandwich`` for V W V, or "" for none.
+    """
+
+    scale: Part | None
+    product: str
+
+    @property
+    def blocks(self) -> int:
+        """Rows of a run for each member, as they are given."""
+        return 1 if self.scale is not None else 2
+
+
+@dataclass(frozen=True)
 class Loops:
     """One function of a family.
 
@@ -138,6 +169,7 @@ class Loops:
         blocks: Rows of its first argument for each member.
         rows: Further rows of it, which all members share.
         solve: What is solved for first, if anything.
+        products: What is computed first of entries of matrices.
         shape: Of a result that does not depend on N, else None.
         partners: Terms of the sums over partners, if there are any: of member i, then of member j.
         member: The rates of member i.
@@ -157,6 +189,12 @@ class Loops:
     finish: Part | None = None
     rows: int = 0
     solve: Solve | None = None
+    products: Products | None = None
+
+    @property
+    def has_series(self) -> bool:
+        """Whether it has recurrences: all that is read is added up of members and pairs."""
+        return self.solve is None and self.products is None
 
     @property
     def pair_sums(self) -> int:
@@ -174,6 +212,7 @@ class Loops:
         listed = [self.partners, self.member, *(part for _, part in self.ends)]
         listed += [*(each.part for each in self.totals), self.finish]
         listed += [] if self.solve is None else [self.solve.factors]
+        listed += [] if self.products is None else [self.products.scale]
         return tuple(part for part in listed if part is not None)
 
     @property
@@ -209,7 +248,12 @@ def lower_family(family: Family) -> dict[str, Loops]:
     if held is not None:
         functions.append(_Lowering(held.family).rates("sided_rhs"))
         functions.append(_Lowering(held.family).kinks(held))
-    return {each.name: replace(each, solve=lowering.solve(each.name)) for each in functions}
+    if family.matrices is not None:
+        slopes, product = (family.matrices.velocity,), (family.matrices.product,)
+        functions.append(lowering.of_members("energy_gradient", slopes))
+        functions.append(lowering.of_members("bracket_vector", product, blocks=2))
+        functions.append(lowering.of_members("sandwich", product, blocks=2))
+    return {each.name: lowering.complete(each) for each in functions}
 
 
 class _Names:
@@ -239,8 +283,8 @@ class _Lowering:
             symbol: Read(name="", array="parameters", rows=len(family.shared), blocks=n)
             for n, symbol in enumerate(family.indexed)
         }
-        solved = [each.symbol for each in family.solved]
-        assert len(solved) <= 1, "one equation"
+        solved = family.completed
+        assert len(family.solved) <= 1, "one equation"
         assert not (solved and (family.noise or family.sides or family.pair_sums)), "no more"
         rows |= {
             symbol: Read(name="", array="state", rows=0, blocks=len(family.states) + n)
@@ -312,13 +356,19 @@ class _Lowering:
 
     # -- functions ----------------------------------------------------------------------
 
-    def solve(self, name: str) -> Solve | None:
-        """What is solved for before a function; None where the family has no such component."""
-        family = self.family
+    def complete(self, function: Loops) -> Loops:
+        """A function with what is computed before it begins."""
+        family, name = self.family, f"{function.name}_factors"
+        if family.matrices is not None:
+            scale = (
+                None if function.name in GIVEN else self._part(name, [family.matrices.scale], {})
+            )
+            return replace(function, products=Products(scale, PRODUCTS.get(function.name, "")))
         for each in family.solved:
-            factors = self._part(f"{name}_factors", each.factors, {})
-            return Solve(factors, len(family.states), family.states.index(each.of), each.level)
-        return None
+            factors = self._part(name, each.factors, {})
+            of = family.states.index(each.of)
+            return replace(function, solve=Solve(factors, len(family.states), of, each.level))
+        return function
 
     def rates(self, name: str) -> Loops:
         """The rates, or their derivative along a vector.
@@ -349,12 +399,12 @@ class _Lowering:
         assert found.pair_sums <= len(family.states), name
         return found
 
-    def of_members(self, name: str, trees: Sequence[Tree]) -> Loops:
-        """A function of each member alone."""
+    def of_members(self, name: str, trees: Sequence[Tree], blocks: int = 0) -> Loops:
+        """A function of each member alone, which is given so many rows of it, or its state."""
         return Loops(
             name=name,
             wraps=self.family.wraps,
-            blocks=len(self.family.states),
+            blocks=blocks or len(self.family.states),
             shape=None,
             member=self._part(name, trees, {}),
         )

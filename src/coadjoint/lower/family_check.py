@@ -18,8 +18,8 @@ from sympy.polys import lex
 from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.families import Family, Symbol, Tree
-from coadjoint.lower.families import SUM, Loops, Part, Read
+from coadjoint.families import Family, MatrixMotion, Symbol, Tree
+from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 
 #: Digits of the comparison where functions are called, and how much of them has to agree.
@@ -48,9 +48,23 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
             assert family.states[solve.of] == each.of, loops.name
             assert solve.level == each.level, loops.name
             _check_part(loops.name, solve.factors, each.factors, symbols, ())
+        if family.matrices is not None:
+            _check_products(family.matrices, loops, symbols)
         assert compared, loops.name
     if "kinks" in functions:
         check_sides(family, functions["sided_rhs"], functions["kinks"])
+
+
+def _check_products(matrices: MatrixMotion, loops: Loops, symbols: _Symbols) -> None:
+    """Before a function the right product is computed, of V by the right equation or as given."""
+    products, wanted = loops.products, PRODUCTS.get(loops.name, "")
+    assert products is not None, loops.name
+    if products.product != wanted:
+        raise _fail(loops.name, f"the product {products.product!r} in the place of {wanted!r}")
+    if (products.scale is None) != (loops.name in GIVEN):
+        raise _fail(loops.name, "V is given, and should be solved for, or the other way round")
+    if products.scale is not None:
+        _check_part(loops.name, products.scale, [matrices.scale], symbols, ())
 
 
 def check_sides(family: Family, rates: Loops, kinks: Loops) -> None:
@@ -83,7 +97,7 @@ class _Symbols:
 
     def __init__(self, family: Family) -> None:
         self._family = family
-        self.components = (*family.states, *(each.symbol for each in family.solved))
+        self.components = (*family.states, *family.completed)
         self.vector = {
             each: sympy.Symbol(f"h {each}")
             for each in (
@@ -290,6 +304,11 @@ def _list_parts(
         assert loops.finish is not None, loops.name
         assert len(ordered) == len(known), loops.name
         yield loops.finish, [total.formula for total in totals], ordered
+        return
+    if loops.name in ("energy_gradient", "bracket_vector", "sandwich"):
+        assert family.matrices is not None, loops.name
+        is_slope = loops.name == "energy_gradient"
+        yield loops.member, [family.completed[not is_slope]], ()
         return
     if loops.name in ("constraint_residual", "projection"):
         yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()

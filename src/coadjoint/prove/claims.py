@@ -52,6 +52,7 @@ from coadjoint.prove.reversibility import about_reversal
 from coadjoint.prove.rolling import about_rolling
 from coadjoint.prove.searches import within_budget
 from coadjoint.prove.symmetries import about_symmetries, about_transformations
+from coadjoint.prove.truncated import extend_truncated
 from coadjoint.prove.variational import about_extremals
 from coadjoint.prove.zero import (
     Decision,
@@ -248,7 +249,8 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     if spec.family is None:
         return indexed.bind_size(spec, _certify(spec, routes))
     windows = indexed.list_windows(spec)
-    return indexed.extend(spec, [_certify(each, searched=False) for each in windows])
+    extend = extend_truncated if spec.family.truncation else indexed.extend
+    return extend(spec, [_certify(each, searched=False) for each in windows])
 
 
 def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = True) -> Certificate:

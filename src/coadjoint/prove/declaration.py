@@ -30,6 +30,7 @@ from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.fields.torus import TorusGrid
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
+from coadjoint.derive.truncated import tell_motion
 from coadjoint.exact import element_text
 from coadjoint.families import Family, PrincipalSymbol, Strand
 from coadjoint.lower.families import Loops
@@ -131,7 +132,7 @@ def family_context(
         spec=f"derivations/{spec.name}.toml",
         license=spec.license,
         routes=(
-            f"Route {first} for every number of members.",
+            f"Route {first} for every number of {'rows' if family.matrices else 'members'}.",
             *(f"Proved equal to the route {route}." for route in others),
         ),
         equations=family_lines(family),
@@ -287,6 +288,8 @@ def family_lines(family: Family) -> tuple[str, ...]:
     >>> family_lines(ring)
     ('dq[i]/dt = q[i-1] - q[i]',)
     """
+    if family.matrices is not None:
+        return tuple(f"{left} = {right}" for left, right in tell_motion(family))
     i, own = family.index.name, (*family.own, *family.indexed_noise)
 
     def name(member: str) -> dict[Any, Any]:

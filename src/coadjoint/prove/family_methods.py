@@ -232,7 +232,8 @@ def judge_family(
         in_plane: Whether the members are points of a plane.
     """
     facts = FamilyFacts(windows, declared, family, loops, certificate)
-    refusals = {name: _NONE for name, x in STRUCTURED.items() if x.file not in LOOPED}
+    looped = {*LOOPED, *(["isospectral_midpoint"] if family.matrices is not None else [])}
+    refusals = {name: _NONE for name, x in STRUCTURED.items() if x.file not in looped}
     refusals |= {name: _NONE for name in MAPPED if name not in SPLITTINGS}
     if not facts.spheres:
         spheres = (name for name, x in STRUCTURED.items() if x.file == "spherical_midpoint")

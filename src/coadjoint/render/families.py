@@ -106,6 +106,15 @@ class SolveText:
 
 
 @dataclass(frozen=True)
+class ProductsText:
+    """What is computed of matrices before a function begins, as `Products` has it."""
+
+    scale: PartText | None
+    product: str
+    blocks: int
+
+
+@dataclass(frozen=True)
 class FamilyFunction:
     """A function of a family as the templates read it.
 
@@ -122,6 +131,7 @@ class FamilyFunction:
         partners: As `Loops` has it; likewise ``pair_sums``, ``member``, ``ends``, ``totals`` and
             ``finish``.
         solve: What is solved for first.
+        products: What is computed of matrices first.
         sums: How many sums there are in a function of sums.
     """
 
@@ -141,6 +151,7 @@ class FamilyFunction:
     totals: tuple[TotalsText, ...]
     finish: PartText | None
     solve: SolveText | None
+    products: ProductsText | None
     sums: int
 
 
@@ -269,6 +280,7 @@ def arrange_loops(loops: Loops, target: str, summary: str, costs: list[str]) -> 
         ),
         finish=finish,
         solve=_arrange_solve(loops, target),
+        products=_arrange_products(loops, target),
         sums=count,
     )
 
@@ -280,6 +292,17 @@ def _arrange_solve(loops: Loops, target: str) -> SolveText | None:
         return None
     factors = _arrange(solve.factors, loops.wraps, target, "")
     return SolveText(factors, solve.blocks, solve.of, solve.level)
+
+
+def _arrange_products(loops: Loops, target: str) -> ProductsText | None:
+    """What is computed of matrices first."""
+    products = loops.products
+    if products is None:
+        return None
+    scale = None
+    if products.scale is not None:
+        scale = _arrange(products.scale, loops.wraps, target, "")
+    return ProductsText(scale, products.product, products.blocks)
 
 
 def _arrange(part: Part, wraps: bool, target: str, to: str) -> PartText:
@@ -448,6 +471,7 @@ def render_family_template(
         "lanes": LANES,
         "solves": any(loops.solve for loops in context.loops.values()),
         "level": any(loops.solve and loops.solve.level for loops in context.loops.values()),
+        "multiplies": any(loops.products for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
         "inputs": inputs,
@@ -513,7 +537,8 @@ def render_family_template(
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "
-            f"periodic={context.index.periodic}), {context.small}"
+            f"periodic={context.index.periodic}{', of_rows=True' * context.index.of_rows}), "
+            f"{context.small}"
         ),
     }
     names = names_read(template)
@@ -551,6 +576,7 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
             for order in sorted({each.order for each in implicit})
         },
         "spheres": [rows[0] for rows in context.spheres.values()],
+        "matrices": any(loops.products for loops in context.loops.values()),
         "schedules": {
             each.macro: [(flows[flow], repr(part)) for flow, part in schedules[each.name]]
             for each in own

@@ -185,7 +185,7 @@ def arrange_family(rates: Loops, counts: Counts) -> FamilySolverText:
         wraps=rates.wraps,
         functions=tuple((f, "ab"[: ELEMENTARY[f].arity]) for f in sorted(calls - {"sqrt"})),
         orders="_orders[_m]" in read,
-        solves=rates.solve is not None,
+        solves=not rates.has_series,
         branches=any(ELEMENTARY[each].positive or ELEMENTARY[each].jumps[0] for each in calls),
     )
 

@@ -43,6 +43,8 @@ SHARE: Final = 0.5
 class FamilySystem(System):
     """A system of equal members, of which there are N.
 
+    Where these are the entries of square matrices, row by row, the index counts the rows.
+
     Rows of the state are the first component of members 0 to N-1, then the second one of them, and
     so on: ``state.reshape(components, N, *batch)``. A row is called ``S1[0]``. Parameters are those
     that all members share, then those of each member in the same order, and so are inputs.
@@ -110,7 +112,7 @@ class FamilySystem(System):
         self._driving |= {"shared_noise": noise, "indexed_noise": own_noise}
         self._defaults, self._repeating = defaults, repeating
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
-        size = self.index.size or self.small
+        size = self.size
         counted = state.size + indexed.size + own.size + own_noise.size
         check_memory(name, self.index, size * counted)
         self.members = size
@@ -171,8 +173,8 @@ class FamilySystem(System):
 
     @property
     def size(self) -> int:
-        """N, the number of members."""
-        return self.index.size or self.small
+        """The number of members: N, or its square where members are entries of matrices."""
+        return self.index.count_members(self.index.size or self.small)
 
     @property
     def points(self) -> FamilySystem:
@@ -293,11 +295,13 @@ class FamilySystem(System):
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Pickled by reference, and its size."""
         find, given = super().__reduce__()
-        return _find_resized, (find, given, {self.index.name: self.size})
+        return _find_resized, (find, given, {self.index.name: self.index.find_size(self.size)})
 
     def __repr__(self) -> str:
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
         members = f"{self.size} members {self.index.name}"
+        if self.index.of_rows:
+            members = f"{self.size} entries of {self.index.find_size(self.size)} rows"
         told = f"{members}; state {state}; parameters {parameters or 'none'}"
         driving = {"inputs": self.INPUTS, "noise": self.NOISE, "time": self.TIME}
         told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
@@ -324,9 +328,10 @@ def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -
         KernelArgumentError: No such index, or too few members.
     """
     if list(sizes) != [index.name]:
+        what, table = ("rows", "truncation") if index.of_rows else ("members", "index")
         raise KernelArgumentError(
-            f"sizes of {name} are {dict(sizes)!r}; expected a number of members for the index "
-            f"{index.name}. Choose it, sizes={{{index.name!r}: 1000}}, or declare it, [index] "
+            f"sizes of {name} are {dict(sizes)!r}; expected a number of {what} for the index "
+            f"{index.name}. Choose it, sizes={{{index.name!r}: 1000}}, or declare it, [{table}] "
             f"{index.name} = {{ size = 1000 }}.",
             found=list(sizes),
             expected=[index.name],

@@ -21,7 +21,7 @@ from coadjoint.build.library import Library, load_library
 from coadjoint.errors import CompilerError, CrossCheckError, KinkWarning
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.tableau import STAGES
-from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.methods import ACTION, MAPPED, STRUCTURED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import MET, Ensemble, Inputs
@@ -181,7 +181,9 @@ class FamilyTwin(StepwiseStepper):
         choice, family = self._choice, self._family
         if choice.is_structured:
             spheres = [(tuple(family.rows_of(rows)),) for rows in family.spheres.values()]
-            functions = {"rates": self._rates, "field": self._rates, "spheres": spheres}
+            functions: dict[str, Any] = {"rates": self._rates, "field": self._rates}
+            functions |= {"spheres": spheres, "bracket": self._bracket, "sandwich": self._sandwich}
+            functions["gradient"] = partial(self._evaluate, ("energy_gradient",))
             return Structured(
                 choice.name,
                 run.size,
@@ -231,7 +233,7 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        others = ("projection", "noise_vector", "kinks")
+        others = ("projection", "noise_vector", "kinks", *ACTION, "sandwich")
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}

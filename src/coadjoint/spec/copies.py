@@ -87,7 +87,7 @@ def differs(file: Any, part: Any) -> bool:
     return depth > (2 if matrix else 1 if along else len(whole.shape or ()))
 
 
-class _Places:
+class Places:
     """Where the keys of members stand: where the one key of the spec stands."""
 
     def __init__(self, positions: Positions) -> None:
@@ -122,7 +122,7 @@ class _Writer:
 
     def __init__(self, source: Source, file: Any, index: Index, count: int) -> None:
         self.source, self.file, self.index, self.count = source, file, index, count
-        self.places, self.bound = _Places(source.positions), dict[KeyPath, int]()
+        self.places, self.bound = Places(source.positions), dict[KeyPath, int]()
         self.members = make_members(file, index, count, self.bound)
 
     def name(self, name: str, member: int) -> str:

@@ -46,6 +46,7 @@ from coadjoint.spec.sections.indices import read_indices
 from coadjoint.spec.sections.reduction import REDUCTION
 from coadjoint.spec.spatial import grams, spatial_momenta
 from coadjoint.spec.tables import TABLES
+from coadjoint.spec.truncated import read_truncated
 from coadjoint.spec.validate import validate
 from coadjoint.spec.windows import name_fault, read_windows
 
@@ -114,6 +115,8 @@ def read_spec_text(
     if file.index:
         read_indices(Reading(source, file, name, TABLES), file.index)
         return read_windows(source, file, read, sizes)
+    if file.truncation:
+        return read_truncated(source, file, read, sizes)
     if file.space and sizes:
         file = _choose_points(source, file, sizes)
         sizes = {}

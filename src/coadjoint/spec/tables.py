@@ -43,12 +43,14 @@ from coadjoint.spec.sections.space import PROFILES, SPACE
 from coadjoint.spec.sections.symmetries import SYMMETRIES
 from coadjoint.spec.sections.time import TIME
 from coadjoint.spec.sections.transformations import TRANSFORMATIONS
+from coadjoint.spec.sections.truncation import TRUNCATION
 from coadjoint.spec.sections.variables import VARIABLES
 
 TABLES: tuple[Table[Any], ...] = (
     INDEX,
     ALGEBRA,
     POISSON,
+    TRUNCATION,
     SPACE,
     DIFFEOMORPHISMS,
     REPRESENTATIONS,

@@ -1,0 +1,147 @@
+r"""The equations of the entries of matrices on the sphere, for any number of rows.
+
+The route of the spec is followed for matrices of a few rows, by structure constants of u(N). For
+all others the coadjoint motion is a commutator of matrices,
+
+.. math:: \dot W = [W, V], \qquad V = \partial h/\partial W,
+
+which loops compute as products, and V follows from W diagonal by diagonal. That both are one motion
+is decided for the few rows (`coadjoint.prove.truncated`).
+Comes in: the Equations of matrices of a few rows. Goes out: a `Family`.
+Read next: `coadjoint.families`.
+"""
+
+from __future__ import annotations
+
+from math import isqrt
+
+import sympy
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.symbols import choose_names
+from coadjoint.derive.written import Written
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+from coadjoint.exact.dense import Matrix, product
+from coadjoint.families import Family, MatrixMotion, Sum, Total
+from coadjoint.spec.core.expressions import read_expression
+from coadjoint.spec.truncated import DEGREE
+
+
+def derive_truncated(equations: Equations) -> Family:
+    """The equations of an entry.
+
+    Args:
+        equations: Of matrices of a few rows.
+
+    Raises:
+        DerivationError: The inertia is no multiple of ``l*(l + 1)``.
+    """
+    spec = equations.spec
+    declared = spec.family
+    assert declared is not None, spec.name
+    (name,) = declared.variables
+    names = choose_names(spec, ["entries", f"{name}_velocity", f"{name}_product", f"{name}_energy"])
+    count, velocity, product_of, energy = map(sympy.Symbol, names)
+    state = sympy.Symbol(name)
+    return Family(
+        index=declared.index,
+        states=(state,),
+        shifts=(),
+        neighbours={},
+        shared=tuple(map(sympy.Symbol, equations.setting.parameters)),
+        indexed=(),
+        partners={},
+        rates=(product_of,),
+        pair_sums=(),
+        ends={},
+        totals=(
+            Total(
+                name="energy", formula=energy / 2, sums=(Sum(symbol=energy, term=state * velocity),)
+            ),
+        ),
+        small=declared.least,
+        count=(count,),
+        matrices=MatrixMotion(
+            state=state,
+            velocity=velocity,
+            product=product_of,
+            scale=_find_scale(equations, declared.truncation, count),
+        ),
+    )
+
+
+def _find_scale(equations: Equations, text: str, count: sympy.Symbol) -> sympy.Expr:
+    """The inertia over ``l*(l + 1)``, which no degree changes.
+
+    Raises:
+        DerivationError: It does.
+    """
+    spec = equations.spec
+    assert spec.family is not None, spec.name
+    degree, rows = sympy.Symbol(DEGREE), spec.family.index.name
+    known = {DEGREE: degree, rows: sympy.sqrt(count)}
+    inertia = Written(equations).value(read_expression(text), known)
+    scale = sympy.simplify(inertia / (degree * (degree + 1)))
+    if scale.has(degree):
+        raise DerivationError(
+            f"{spec.path}: truncation.{rows}.inertia is {text!a}; expected a multiple of "
+            "l*(l + 1), as that of an ideal fluid. Write it as '2*l*(l + 1)/sqrt(N^2 - 1)'.",
+            found=text,
+        )
+    return scale
+
+
+def tell_motion(family: Family) -> tuple[tuple[str, str], ...]:
+    """The equations of matrices, left and right sides as texts."""
+    matrices = family.matrices
+    assert matrices is not None, "of entries of matrices alone"
+    rows = sympy.Symbol(family.index.name, positive=True)
+    (count,) = family.count
+    scale = str(sympy.factor_terms(matrices.scale.xreplace({count: rows**2}))).replace("**", "^")
+    return (
+        (f"d{matrices.state}/dt", f"[{matrices.state}, V]"),
+        (f"{scale}*L V", str(matrices.state)),
+        (
+            "(L V)[i, j]",
+            "2*(s*(s + 1) - z[i]*z[j])*V[i, j] - c[i]*c[j]*V[i+1, j+1] - c[i-1]*c[j-1]*V[i-1, j-1]",
+        ),
+        ("s, z[i]", f"({rows} - 1)/2, s - i"),
+        ("c[i]", f"sqrt((i + 1)*({rows} - 1 - i))"),
+    )
+
+
+def multiply_out(equations: Equations) -> tuple[Element, ...]:
+    """The rates of the entries as a commutator of matrices, whatever the structure constants are.
+
+    Of ``A + i B``, A antisymmetric and B symmetric, an entry is that of A + B.
+    """
+    field, energy = equations.setting.field, equations.exact.energy
+    assert energy is not None, equations.spec.name
+    state = equations.setting.state
+    n = isqrt(len(state))
+
+    def split(entries: tuple[Element, ...]) -> tuple[Matrix, Matrix]:
+        rows = [entries[i * n : (i + 1) * n] for i in range(n)]
+        turned = list(zip(*rows, strict=True))
+        pairs = [list(zip(a, b, strict=True)) for a, b in zip(rows, turned, strict=True)]
+        return (
+            tuple(tuple((a - b) / 2 for a, b in row) for row in pairs),
+            tuple(tuple((a + b) / 2 for a, b in row) for row in pairs),
+        )
+
+    own = split(tuple(field[name] for name in state))
+    slopes = split(tuple(field.gradient(energy, state)))
+    parts = [
+        _commute(own[0], slopes[0], 1),
+        _commute(own[1], slopes[1], -1),
+        _commute(own[0], slopes[1], 1),
+        _commute(own[1], slopes[0], 1),
+    ]
+    return tuple(field.sum(part[i][j] for part in parts) for i in range(n) for j in range(n))
+
+
+def _commute(a: Matrix, b: Matrix, sign: int) -> list[list[Element]]:
+    """``sign [a, b]``."""
+    pairs = zip(product(a, b), product(b, a), strict=True)
+    return [[sign * (x - y) for x, y in zip(*both, strict=True)] for both in pairs]

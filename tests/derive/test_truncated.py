@@ -1,0 +1,50 @@
+"""The equations of entries of matrices: an inertia that is no Laplacian is refused."""
+
+from pathlib import Path
+
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.derive.indexed import derive_family
+from coadjoint.derive.truncated import multiply_out, tell_motion
+from coadjoint.errors import DerivationError
+from coadjoint.prove import prove
+from coadjoint.spec.reader import read_spec_text
+from tests.spec.test_truncated import TEXT
+from tests.specs import shipped
+
+
+def family_of(text):
+    """The equations of an entry."""
+    return derive_family(derive(read_spec_text(text, Path("fluid.toml"))))
+
+
+def test_the_scale_is_that_of_the_inertia():
+    """In parameters, and in the number of entries, whose root N is."""
+    family = family_of(TEXT)
+    assert family.matrices.scale == sympy.Symbol("k")
+    family = family_of(TEXT.replace("k*l*(l + 1)", "k*(3*l + 3*l^2)/N^2"))
+    assert sympy.simplify(family.matrices.scale - 3 * sympy.Symbol("k") / family.count[0]) == 0
+    assert dict(tell_motion(family))["3*k/N^2*L V"] == "W"
+
+
+@pytest.mark.parametrize("inertia", ["k*l", "l*(l + 1) + k", "k"])
+def test_an_inertia_that_is_no_laplacian_is_refused(inertia):
+    """Kernels solve an equation on each diagonal, which is that of the Laplacian alone."""
+    with pytest.raises(DerivationError, match=r"expected a multiple of l\*\(l \+ 1\)") as error:
+        family_of(TEXT.replace("k*l*(l + 1)", inertia))
+    assert repr(inertia) in str(error.value)
+    with pytest.raises(DerivationError, match="expected a multiple"):
+        prove(read_spec_text(TEXT.replace("k*l*(l + 1)", inertia), Path("fluid.toml")))
+
+
+@pytest.mark.parametrize("window", [0, 1])
+def test_structure_constants_and_products_of_matrices_are_one_motion(window):
+    """Rates by the bracket of u(N), and by commutators; some are not zero."""
+    equations = derive(shipped("zeitlin_su_n").family.windows[window])
+    field, compared = equations.setting.field, 0
+    for rate, product in zip(equations.exact.rates, multiply_out(equations), strict=True):
+        assert field.is_zero(equations.close(rate) - product)
+        compared += not field.is_zero(product)
+    assert compared == len(equations.variables)

@@ -1,0 +1,49 @@
+"""The certificate of matrices of any number of rows, and false motions that it refutes."""
+
+from dataclasses import replace
+
+import pytest
+
+from coadjoint.prove import Verdict, prove, truncated
+from tests.specs import shipped
+
+FLUID = "zeitlin_su_n"
+
+
+def test_every_claim_is_proved_and_says_for_which_rows():
+    """For the few that are written out, or for all."""
+    claims = prove(shipped(FLUID)).require().claims
+    assert {claim.verdict for claim in claims} == {Verdict.PROVED}
+    scopes = {claim.statement.rpartition(", for ")[2] for claim in claims}
+    assert scopes == {"N = 3 and 4", "every N >= 2"}
+    always = [claim.statement for claim in claims if claim.statement.endswith("every N >= 2")]
+    assert [each.partition(",")[0] for each in always] == [
+        "tr W^k is conserved",
+        "the energy is conserved",
+    ]
+    assert any("every Casimir is a function of the N known" in each.statement for each in claims)
+
+
+@pytest.mark.parametrize("sign", [-1, 2])
+def test_another_product_than_the_commutator_is_refuted(monkeypatch, sign):
+    """Nothing is said of every N then."""
+    honest = truncated.multiply_out
+
+    def spoiled(equations):
+        return tuple(sign * each for each in honest(equations))
+
+    monkeypatch.setattr(truncated, "multiply_out", spoiled)
+    certificate = prove(shipped(FLUID))
+    wrong = [claim for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
+    assert [claim.kind for claim in wrong] == ["equivalence"]
+    assert "the commutator [W, V]" in wrong[0].statement
+    assert not any("every N" in claim.statement for claim in certificate.claims)
+
+
+def test_a_bracket_of_the_other_side_is_refuted():
+    """Right invariant motions go the other way: ``dW/dt = [V, W]``."""
+    spec = shipped(FLUID)
+    windows = tuple(replace(each, invariance="right") for each in spec.family.windows)
+    certificate = prove(replace(spec, family=replace(spec.family, windows=windows)))
+    wrong = [claim.kind for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
+    assert wrong == ["equivalence"]
