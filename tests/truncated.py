@@ -8,6 +8,7 @@ from functools import reduce
 from itertools import permutations
 
 import numpy as np
+import sympy
 
 #: Harmonic polynomials with their terms: a factor and its letters.
 POLYNOMIALS = {
@@ -45,6 +46,17 @@ def harmonic(name, n):
         products = [reduce(np.matmul, [spin[each] for each in order]) for order in orders]
         total += factor * sum(products) / len(orders)
     return total * np.sqrt(n / (4 * np.pi * np.trace(total @ total).real))
+
+
+def quantize(polynomial, letters, n):
+    """The Hermitian matrix of a polynomial in x, y and z by symmetrized products of ``hbar S``."""
+    spin = [2 / np.sqrt(n**2 - 1) * each for each in spins(n)]
+    total = np.zeros((n, n), complex)
+    for powers, factor in sympy.Poly(polynomial, *letters).terms():
+        word = [each for each, power in zip(spin, powers, strict=True) for _ in range(power)]
+        products = [reduce(np.matmul, order) for order in permutations(word)]
+        total += float(factor) * sum(products) / len(products)
+    return total
 
 
 def laplacian(P):

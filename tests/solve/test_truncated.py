@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import sympy
 
 from coadjoint.errors import KernelArgumentError, ResourceError
 from coadjoint.systems import zeitlin_su_4, zeitlin_su_n
@@ -14,6 +15,7 @@ from tests.truncated import (
     harmonic,
     laplacian,
     pack,
+    quantize,
     spectrum,
     spins,
     unpack,
@@ -207,3 +209,29 @@ def test_a_size_counts_rows():
         FLUID.resize({"N": 1})
     with pytest.raises(ResourceError, match="rows"):
         FLUID.resize({"N": 10**6})
+
+
+def test_the_limit_of_many_rows_is_the_fluid():
+    """Rates are those of ``w_t = -{psi, w}``, ``{f, g} = x . grad f x grad g``, up to O(1/N^2).
+
+    Both by polynomials, which symmetrized products of ``hbar S`` stand for; with the other sign of
+    the bracket nothing tends to anything.
+    """
+    x = sympy.symbols("x y z")
+    harmonics = {2: x[0] * x[2], 3: 3 * x[0] ** 2 * x[1] - x[1] ** 3}
+    w = sum(harmonics.values())
+    psi = -sum(f / (degree * (degree + 1)) for degree, f in harmonics.items())
+    slopes = [[f.diff(each) for each in x] for f in (psi, w)]
+    rate = -sympy.Matrix(x).dot(sympy.Matrix(slopes[0]).cross(sympy.Matrix(slopes[1])))
+    misses, opposite = [], []
+    for n in (17, 33, 65):
+        W = 1j * quantize(w, x, n)
+        found = unpack(FLUID.resize({"N": n}).rhs(pack(W), []))
+        expected = 1j * quantize(rate, x, n)
+        size = np.linalg.norm(expected)
+        misses.append(np.linalg.norm(found - expected) / size)
+        opposite.append(np.linalg.norm(found + expected) / size)
+    orders = np.log(np.divide(misses[:-1], misses[1:])) / np.log([33 / 17, 65 / 33])
+    np.testing.assert_allclose(orders, 2, atol=0.1)
+    assert misses[-1] < 0.02
+    assert min(opposite) > 1
