@@ -256,13 +256,13 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
 
 def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
     """Whether the rates of densities are total derivatives, with the fluxes."""
-    setting, jets = equations.setting, jets_of(equations.setting)
+    setting, every = equations.setting, jets_of(equations.setting)
     rates = dict(zip(setting.state, equations.exact.rates, strict=True))
     texts, moved = list[str](), solved(setting.spec)
-    if moved:  # both fields are functions of one, the velocity
-        jets = jets.only(moved)
     for part in parts:
-        rate = _find_rate(equations, part, rates)
+        rate, jets = _find_rate(equations, part, rates), every
+        if moved and any(every.variation(rate).values()):  # then both fields as those of one
+            rate, jets = circle.close(setting, rate), every.only(moved)
         decision = decide_zero([*jets.variation(rate).values()], setting.field)
         if decision.verdict is not Verdict.PROVED:
             method = f"{decision.method} of the variational derivative of its rate"
@@ -302,8 +302,9 @@ def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]
     setting, jets = equations.setting, jets_of(equations.setting)
     if not solved(setting.spec):
         return jets.rate(part, rates)
-    terms = (circle.vary(setting, part, name) * rate for name, rate in rates.items())
-    return circle.close(setting, setting.field.sum(terms))
+    return setting.field.sum(
+        circle.vary(setting, part, name) * rate for name, rate in rates.items()
+    )
 
 
 def _about_pair(
