@@ -60,8 +60,27 @@ def stays_on_orbits(programs: Mapping[str, Program]) -> bool:
 
 def _is_linear(programs: Mapping[str, Program]) -> bool:
     """Whether the bracket with a vector is homogeneous of degree 1 in the state."""
-    program, state = programs["bracket_vector"], {*programs["rhs"].state}
-    inputs = {name: _Degree(int(name in state)) for name in program.names}
+    return _is_homogeneous(programs["bracket_vector"], programs["rhs"].state)
+
+
+def is_carried(programs: Mapping[str, Program]) -> bool:
+    """Whether a motion is a coadjoint action, and what it carries along moves linearly.
+
+    Then a step moves both by one element: with the state held, rates that are homogeneous of degree
+    1 in what is reconstructed are those of a group that acts on it.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    rates = programs.get("reconstruction")
+    if rates is None or not stays_on_orbits(programs):
+        return False
+    return _is_homogeneous(rates, rates.state[len(programs["rhs"].state) :])
+
+
+def _is_homogeneous(program: Program, by: Sequence[str]) -> bool:
+    """Whether all rows have the degree 1 in some names."""
+    inputs = {name: _Degree(int(name in by)) for name in program.names}
     try:
         rows = run(program, inputs, _constant, _call_degree)
     except NotLinearError:

@@ -20,7 +20,7 @@ from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_spheres, is_nambu, stays_on_orbits
+from coadjoint.lower.orbits import find_spheres, is_carried, is_nambu, stays_on_orbits
 from coadjoint.lower.program import (
     Call,
     Factors,
@@ -254,6 +254,8 @@ def select_programs(
     slopes = {JACOBIAN: known[JACOBIAN]} if JACOBIAN in known and "noise" not in known else {}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
     action = [name for name in ASKED if name in known] if has_action else []
+    if kind != SOLVER and is_carried(known):
+        action = [*ACTION]
     return {
         "rates": rates,
         **{
@@ -313,15 +315,18 @@ def describe_structured(
         noisy_spheres: Spheres on which noise moves the state.
     """
     bracket = programs.get("bracket_vector")
-    on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
-    spheres = find_spheres(programs) if on_orbits else ()
+    state = () if bracket is None else bracket.state
+    # with what is reconstructed below it, `select_programs` has asked
+    is_followed = bracket is not None and len(programs["rates"].state) > len(state) // 2
+    still = {**programs, "rhs": programs["rates"]}
+    on_orbits = is_followed or (bracket is not None and stays_on_orbits(still))
+    spheres = find_spheres(programs) if on_orbits and not is_followed else ()
     marks = {
         "orbits": on_orbits,
         "spheres": bool(spheres),
-        "nambu": is_nambu({**programs, "rhs": programs["rates"]}),
+        "nambu": is_nambu(still),
     }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
-    state = () if bracket is None else bracket.state
     has_newton = bool(methods) and JACOBIAN in programs
     composed = [each for each in methods if each.file != "gauss"]
     orders = sorted({each.order for each in composed})
@@ -331,6 +336,7 @@ def describe_structured(
             "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
+            "known": len(state) // 2 if is_followed else 0,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
             "noisy_spheres": noisy_spheres,

@@ -210,6 +210,7 @@ def render(written: Written) -> str:
                 "sweeps": SWEEPS,
                 "terms": TERMS,
                 "has_bracket": True,
+                "known": 0,
                 "has_newton": False,
                 "near": spherical_midpoint.NEAR,
                 "roundings": spherical_midpoint.ROUNDINGS,
