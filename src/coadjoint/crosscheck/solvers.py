@@ -51,7 +51,6 @@ from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import Program
 from coadjoint.methods import JACOBIAN
 from coadjoint.render.kernels import list_called
@@ -121,7 +120,6 @@ def check_solvers(
         CrossCheckError: A rung failed.
     """
     functions = _list_functions(subject, kind)
-    spheres = find_noisy_spheres(subject.programs)
     programs = select_programs(subject.programs.values(), kind, subject.maps)
     subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
     text = arrange(programs)
@@ -132,7 +130,6 @@ def check_solvers(
         files={file: texts[file] for file in kind.files},
         system=subject.system.name,
         kind=kind,
-        noisy_spheres=spheres,
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)

@@ -118,6 +118,32 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
     return vanish(find, bracket.names)
 
 
+def is_noisy_action(programs: Mapping[str, Program]) -> bool:
+    """Whether a motion with noise is the coadjoint action of the gradients of its Hamiltonians.
+
+    Those of noise are asked at points modulo primes, as that of the energy.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    still = {name: each for name, each in programs.items() if name != "noise"}
+    if not {"noise", "noise_gradient"} <= programs.keys() or not stays_on_orbits(still):
+        return False
+    fields, slopes = programs["noise"], programs["noise_gradient"]
+    bracket, n = programs["bracket_vector"], len(programs["rhs"].state)
+    vector = bracket.state[n:]
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        rows, columns = (run(each, at, number, call_modulo) for each in (fields, slopes))
+        count = len(rows) // n
+        for k in range(count):
+            along = at | dict(zip(vector, columns[k::count], strict=True))
+            turned = run(bracket, along, number, call_modulo)
+            yield from (a + -b for a, b in zip(rows[k::count], turned, strict=True))
+
+    return vanish(find, {*bracket.names, *fields.names, *slopes.names})
+
+
 def is_product(programs: Mapping[str, Program]) -> bool:
     """Whether the rates are ``bracket_vector`` of the gradient of the energy, likewise."""
     if not {*ACTION} <= programs.keys() or "noise" in programs:
@@ -234,17 +260,6 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
                 return ()
             place += 1
     return tuple(found)
-
-
-def find_noisy_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
-    """The same of a motion with noise, whose processes have Hamiltonians of their own.
-
-    What a process does is the bracket with its Hamiltonian, as it was derived.
-    """
-    still = {name: each for name, each in programs.items() if name != "noise"}
-    if "noise" not in programs or not stays_on_orbits(still):
-        return ()
-    return find_spheres(still)
 
 
 def _refuse(function: str, *_: Fraction) -> Fraction:

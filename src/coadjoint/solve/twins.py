@@ -23,7 +23,7 @@ from coadjoint.solve.methods.sequence import Maps, make_maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
-from coadjoint.solve.stochastic import METHODS
+from coadjoint.solve.stochastic import METHODS, Orbits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,6 +60,7 @@ class NumpyStepper:
             "domain",
             "projection",
             "noise",
+            "noise_gradient",
             "noise_vector",
             JACOBIAN,
             "jacobian_vector",
@@ -205,11 +206,9 @@ class NumpyStepper:
     @property
     def _noise(self) -> dict[str, Any]:
         """What moves the state with noise, as methods for it take it."""
-        return {"fields": self._fields}
-
-    def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
-        """What each Wiener process does to the state."""
-        return self._evaluate(("noise",), lanes, after, state)
+        slopes = partial(self._evaluate, ("noise_gradient",))
+        orbits = Orbits(gradient=self._element, slopes=slopes, bracket=self._bracket)
+        return {"fields": partial(self._evaluate, ("noise",)), "orbits": orbits}
 
     def _project(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The nearest states on the constraints; what is reconstructed stays."""
