@@ -43,7 +43,7 @@ from coadjoint.crosscheck.solver_exact import (
     find_point,
     find_steps,
 )
-from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, ORDER, list_choices
+from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, NEWTON, ORDER, list_choices
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -109,7 +109,10 @@ def check_steps(solvers: Solvers, batch: Batch, size: float) -> dict[str, dict[s
     for method, targets in solvers.advance.items():
         samples, known = find_steps(solvers, method, few, size)
         length = float(samples[-1] - START)
-        found = {each: solvers.begin(few, samples, size=length, steps=2) for each in targets}
+        found = {
+            each: solvers.begin(few, samples, size=length, steps=2, method=method)
+            for each in targets
+        }
         for target, ensemble in found.items():
             targets[target](ensemble, 1)
         figures[method] = {
@@ -263,7 +266,7 @@ def check_bits(
         targets = solvers.advance[method]
         found, rows = {}, len(solvers.subject.programs["rhs"].state)
         for target, most in (("numpy", MOST_STEPS), ("c", 3 if keeps else 5)):
-            ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS)
+            ensemble = solvers.begin(given, samples, size=fixed, steps=MOST_STEPS, method=method)
             record = Record.make(rows, choices[method].degree, given.size * MOST_STEPS + ROOM)
             for _ in range(2 * MOST_STEPS):
                 if not targets[target](ensemble, most, record if keeps else None):
@@ -309,7 +312,9 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
         yield "heun", given, size * 0.3125, True
         yield "midpoint", given, size * 0.3125, False
         yield "midpoint", given, size * 0.15, True
-        yield "midpoint_newton", given, size * 0.3125, True
+        yield "coadjoint_mean", given, size * 0.3125, True
+        for method in NEWTON:
+            yield method, given, size * 0.3125, True
         for method in COMPILED_MAPS:
             yield method, given, size * 0.3125, True
     for method in COMPILED_MAPS:
@@ -318,7 +323,8 @@ def _runs(batch: Batch, size: float) -> Iterator[tuple[str, Batch, float, bool]]
     yield "dop853", batch, size * 0.75, True
     yield "rk4", batch, size * 0.15, False
     yield "midpoint", batch, size * 0.03, False
-    yield "midpoint_newton", batch, size * 0.15, False
+    for method in NEWTON:
+        yield method, batch, size * 0.15, False
     yield "dop853", batch, size * 0.15, False
 
 
@@ -339,7 +345,8 @@ def check_together(
         samples, known = find_steps(solvers, method, few, size)
         found, left = [], np.zeros(few.size, bool)
         for target in ("numpy", "c"):
-            ensemble = solvers.begin(few, samples, size=float(samples[-1] - START), steps=2)
+            length = float(samples[-1] - START)
+            ensemble = solvers.begin(few, samples, size=length, steps=2, method=method)
             solvers.advance[method][target](ensemble, 1)
             found.append(ensemble.state)
             left |= np.isin(
