@@ -120,11 +120,14 @@ def test_bits_of_c_are_those_of_numpy_and_a_wrong_bit_is_caught(made, tmp_path, 
 
 
 #: Noise about two axes of a body, which do not commute.
-BODY = plain.QUARTIC + """
+BODY = (
+    plain.QUARTIC
+    + """
 [noise]
 dW1 = "Pi1/5"
 dW2 = "Pi2*Pi3/4"
 """
+)
 
 
 @needs_compiler

@@ -637,7 +637,7 @@ def test_newtons_method_of_other_steps_is_compared(method, is_wrong, tmp_path, m
             check_bits(made, batch, 0.125)
         return
     assert 0 < check_steps(made, batch, 0.125)[method]["c"].k < 1
-    assert min(check_bits(made, batch, 0.125).values()) > 400
+    assert check_bits(made, batch, 0.125) == {method: 105}  # rows, samples and members
 
 
 @pytest.mark.parametrize("method", WRONG_STEPS)

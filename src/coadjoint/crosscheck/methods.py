@@ -11,6 +11,7 @@ Read next: `coadjoint.crosscheck.solver_steps`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
 
@@ -141,7 +142,7 @@ def gauss4(
                 for own in shares
             ],
         )
-        if last == stages:
+        if all(map(_has_settled, last, stages)):
             break
     rises = [[part * k for k in rates(y, t)] for y, t in zip(stages, times, strict=True)]
     end = [a + (one + other) for a, one, other in zip(x, *rises, strict=True)]
@@ -168,7 +169,7 @@ def coadjoint_mean(
             share = number(Fraction(1, k + 1))
             mean = [a + share * each for a, each in zip(mean, term, strict=True)]
         middle = mean
-        if last == middle:
+        if _has_settled(last, middle):
             break
     if motion.is_noisy:
         return _draw_line(x, end, h, after), end
@@ -211,14 +212,25 @@ def discrete_gradient(
         turned = motion.turn(middle, added, middle, half)
         rates = motion(middle, half)
         rise = [h * (a + b) for a, b in zip(rates, turned, strict=True)]
-        if last == rise:
+        if _has_settled(last, rise):
             break
     end = [a + each for a, each in zip(x, rise, strict=True)]
     return _draw_cubic(motion, (x, end), h, after, number), end
 
 
+def _has_settled(last: Row, following: Row) -> bool:
+    """Whether a sweep changed next to nothing; never where values are counts."""
+    pairs = [
+        (a.value, b.value) for a, b in zip(last, following, strict=True) if hasattr(a, "value")
+    ]
+    top = max((abs(b) for _, b in pairs), default=0)
+    return bool(pairs) and all(abs(a - b) <= top * SETTLED for a, b in pairs)
+
+
+#: The part of the largest component by which the last sweep of an exact step may change it.
+SETTLED: Final = Decimal("1e-32")
 #: Terms of the series of a coadjoint action.
-MEAN_TERMS: Final = 40
+MEAN_TERMS: Final = 30
 #: Gauss's formula with four nodes on (0, 1): nodes below 1/2, and their weights.
 NODES: Final = (
     (0.5 - 0.861136311594052575224 / 2, 0.347854845137453857373 / 2),
