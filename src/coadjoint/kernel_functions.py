@@ -129,6 +129,14 @@ whose rows are those of the commutator of the two; the isospectral midpoint call
 ``dx = rhs dt + noise o dW``, in the sense of Stratonovich.""",
     ),
     KernelFunction(
+        name="noise_gradient",
+        summary="Derivatives of the Hamiltonians of noise by the state, one row for each component",
+        shape="(n, w, *batch)",
+        doc="""Only systems with [noise] and `bracket_vector` have it: the product of the bracket
+with a column is that column of `noise`. The coadjoint mean calls it.""",
+        looped="never",
+    ),
+    KernelFunction(
         name="noise_vector",
         summary="What the noise does to the state, for a number of each Wiener process",
         shape="(n, *batch)",

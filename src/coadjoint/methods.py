@@ -384,7 +384,7 @@ _MAPS: Final = (
 )
 
 #: Methods of motions with noise; ``"auto"`` is the last one.
-NOISY: Final = ("heun", "spherical_midpoint", "midpoint")
+NOISY: Final = ("heun", "spherical_midpoint", "coadjoint_mean", "midpoint")
 #: With a fixed step, without a method that keeps structure.
 PLAIN: Final = "dop853"
 

@@ -117,3 +117,36 @@ def test_bits_of_c_are_those_of_numpy_and_a_wrong_bit_is_caught(made, tmp_path, 
     one = made(method, tmp_path / "wrong", off)
     with pytest.raises(CrossCheckError, match="rung 5"):
         check_bits(one, plain.points(one), 0.125)
+
+
+#: Noise about two axes of a body, which do not commute.
+BODY = (
+    plain.QUARTIC
+    + """
+[noise]
+dW1 = "Pi1/5"
+dW2 = "Pi2*Pi3/4"
+"""
+)
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("STATE", "STATE"),
+        ("slopes[i * NOISE + k] * block->noise[k]", "slopes[k * STATE + i] * block->noise[k]"),
+    ],
+)
+def test_the_element_of_a_step_has_the_noise(good, bad, tmp_path):
+    """Steps of the coadjoint mean, with noise by Hamiltonians; slopes by other rows are caught."""
+    method = "coadjoint_mean"
+    context = plain.context_of("noisy_body", BODY)
+    made = plain.solvers(context, (method,), tmp_path, plain.replaced("solver.c", good, bad))
+    batch = plain.points(made)
+    if good == bad:
+        assert 0 < check_steps(made, batch, 0.125)[method]["c"].k < 1
+        assert check_bits(made, batch, 0.125)[method] > 400
+    else:
+        with pytest.raises(CrossCheckError, match="rung 4"):
+            check_steps(made, batch, 0.125)

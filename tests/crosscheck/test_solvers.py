@@ -45,6 +45,7 @@ from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import arrange, select_programs
+from coadjoint.solve.methods import average_gradient, coadjoint_mean, gauss
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
@@ -112,6 +113,7 @@ def subject(context):
         return lambda state, parameters, target, out: kernel[name](state, parameters, out)
 
     system = SimpleNamespace(
+        evaluate=lambda name, *given, **named: function(name)(*given, **named),
         name=context.name,
         PARAMETERS={each.name: each for each in context.parameters},
         DOMAIN=context.domain,
@@ -589,6 +591,62 @@ def test_newtons_method_is_compared(good, bad, tmp_path, monkeypatch):
     else:
         with pytest.raises(CrossCheckError, match="rung 5"):
             check_bits(made, batch, 0.125)
+
+
+#: A body with a quartic energy, which shows all that a mean along a chord is made of.
+QUARTIC = """
+title = "A body"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum" }
+[hamiltonian]
+h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Pi1^4/8 + Pi2*Pi3/7"
+"""
+#: Of each method, wrong slopes in C, and what NumPy is to have in the place of a table or function.
+WRONG_SLOPES = {
+    "gauss4_newton": ("stage_shares[s][j] * rows[i][k]", "stage_shares[s][j] * rows[k][i]"),
+    "coadjoint_mean_newton": ("slopes[i][k] - half * turn[i]", "slopes[i][k] + half * turn[i]"),
+    "discrete_gradient_newton": (
+        "half * rows[i * SLOPES + k]",
+        "half * rows[k * SLOPES + i]",
+    ),
+}
+SHARES = tuple(each[::-1] for each in gauss.TABLEAUS[4].shares)
+WRONG_STEPS = {
+    "gauss4_newton": (gauss, "TABLEAUS", {4: replace(gauss.TABLEAUS[4], shares=SHARES)}),
+    "coadjoint_mean_newton": (coadjoint_mean, "TERMS", 1),
+    "discrete_gradient_newton": (average_gradient, "NODES", average_gradient.NODES[:1]),
+}
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", WRONG_SLOPES)
+@pytest.mark.parametrize("is_wrong", [False, True])
+def test_newtons_method_of_other_steps_is_compared(method, is_wrong, tmp_path, monkeypatch):
+    """As that of the midpoint; the steps are those of 60 digits, and slopes have the same bits."""
+    runs = solver_steps._runs
+    own = lambda batch, size: (each for each in runs(batch, size) if each[0] == method)  # noqa: E731
+    monkeypatch.setattr(solver_steps, "_runs", own)
+    spoil = replaced("solver.c", *WRONG_SLOPES[method]) if is_wrong else lambda texts: texts
+    made = solvers(context_of("quartic", QUARTIC), (method,), tmp_path, spoil)
+    batch = points(made)
+    if is_wrong:
+        with pytest.raises(CrossCheckError, match="rung 5"):
+            check_bits(made, batch, 0.125)
+        return
+    assert 0 < check_steps(made, batch, 0.125)[method]["c"].k < 1
+    assert check_bits(made, batch, 0.125) == {method: 105}  # rows, samples and members
+
+
+@pytest.mark.parametrize("method", WRONG_STEPS)
+def test_wrong_implicit_steps_are_caught(method, monkeypatch):
+    """Exchanged shares, a series that ends too early, and a mean with half of its nodes."""
+    made = solvers(context_of("quartic", QUARTIC), (method,))
+    monkeypatch.setattr(*WRONG_STEPS[method])
+    with pytest.raises(CrossCheckError, match="rung 4"):
+        check_steps(made, points(made), 0.125)
 
 
 @needs_compiler

@@ -91,7 +91,7 @@ def test_every_function_that_applies_is_lowered(system):
         "bracket_vector": not has_bracket(equations),
         **dict.fromkeys(("distinguished", "distinguished_gradient"), not has_functions(equations)),
         "sandwich": equations.spec.name not in MATRICES,
-        "noise": not equations.spec.noise,
+        **dict.fromkeys(("noise", "noise_gradient"), not equations.spec.noise),
         "constraint_residual": not equations.spec.constraints and not equations.spec.turning,
         "projection": equations.projection is None,
         "reconstruction": not equations.followed,
@@ -111,7 +111,14 @@ def test_every_function_that_applies_is_lowered(system):
         "distinguished_gradient",
         "sandwich",
     ]
-    named += ["noise", "constraint_residual", "projection", "reconstruction", "domain"]
+    named += [
+        "noise",
+        "noise_gradient",
+        "constraint_residual",
+        "projection",
+        "reconstruction",
+        "domain",
+    ]
     assert list(programs) == [name for name in named if not without.get(name)]
 
 

@@ -1,4 +1,4 @@
-"""Noise on coadjoint orbits: what the spherical midpoint keeps on each path, and its order."""
+"""Noise on coadjoint orbits: what methods keep on each path, and their orders."""
 
 import math
 
@@ -10,7 +10,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import Sphere
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.steps import Lanes
-from coadjoint.solve.stochastic import Midpoint, SphericalMidpoint
+from coadjoint.solve.stochastic import CoadjointMean, Midpoint, Orbits, SphericalMidpoint
 from coadjoint.spec.reader import read_spec_text
 from coadjoint.systems import stochastic_rigid_body as body
 
@@ -45,27 +45,74 @@ def top():
 
 @pytest.mark.parametrize("target", ["numpy", "c"])
 def test_casimirs_are_kept_on_each_path(top, target):
-    """Of a top and of a body, by both midpoints; by Heun's method they are not."""
+    """Of a top, and of a body on one sphere, by implicit methods; by Heun's method they are not."""
     members = np.repeat(START[:, np.newaxis], 9, axis=1)
     given = {"step": 0.0625, "samples": 33, "seed": 3, "target": target}
-    for system, start in ((top, members), (body, members[:3])):
+    others = ("spherical_midpoint", "midpoint", "heun")
+    for system, start, methods in (
+        (top, members, ("coadjoint_mean", *others)),
+        (body, members[:3], others),
+    ):
         drifts = {}
-        for method in ("spherical_midpoint", "midpoint", "heun"):
+        for method in methods:
             run = system.simulate(start, (0, 6), method=method, **given)
             assert (run.status == "OK").all()
             own = [run.drift[name] for name in run.drift if name.startswith("casimir")]
             assert len(own) == len(start) // 3
             drifts[method] = np.max(own)
             assert np.ptp(run.state[0, :, -1]) > 0.1  # paths differ
+        assert drifts.get("coadjoint_mean", 0.0) < 1e-13
         assert drifts["spherical_midpoint"] < 1e-13
         assert drifts["midpoint"] < 1e-12
         assert drifts["heun"] > 1e-6
 
 
-def test_bits_are_those_of_the_twin(top):
+#: A cubic Casimir, that of sl(3): what no method for quadratic integrals keeps.
+CUBIC = """
+title = "A motion on sl(3,R) with noise"
+routes = ["lie-poisson"]
+[algebra]
+name = "sl(3,R)"
+[variables]
+mu = { role = "momentum" }
+[hamiltonian]
+h = "(mu1^2 + 2*mu2^2 + mu3^2 + 3*mu4^2 + mu5^2 + mu6^2 + 2*mu7^2 + mu8^2)/2 + mu1^3/9 + mu3*mu4"
+[noise]
+dW1 = "mu1/5 + mu4/7"
+dW2 = "mu2*mu8/4"
+"""
+
+
+def test_casimirs_of_an_algebra_without_spheres():
+    """Coefficients of the characteristic polynomial of sl(3), from the matrix by NumPy's own."""
+    rendered = pipeline.render(read_spec_text(CUBIC, "motion.toml"))
+    basis = np.zeros((8, 3, 3))
+    for place, matrix in enumerate(rendered.equations.setting.algebra.matrices):
+        for entry, value in matrix.items():
+            basis[place][entry] = float(value)
+    dual = np.linalg.inv(np.einsum("aij,bji->ab", basis, basis))
+
+    def list_casimirs(mu):
+        whole = np.einsum("an,ab,bij->nij", mu, dual, basis)
+        return np.array([np.trace(whole @ whole, axis1=1, axis2=2), np.linalg.det(whole)])
+
+    start = 0.4 * np.random.default_rng(2).normal(size=(8, 5))
+    drifts = {}
+    with load_texts(rendered.texts) as motion:
+        for method in ("coadjoint_mean", "midpoint"):
+            run = motion.simulate(start, (0, 4), method=method, step=1 / 64, seed=3, target="numpy")
+            assert (run.status == "OK").all()
+            assert np.ptp(run.state[0, :, -1]) > 0.1
+            drifts[method] = np.abs(list_casimirs(run.state[..., -1]) - list_casimirs(start)).max()
+    assert drifts["coadjoint_mean"] < 1e-14
+    assert drifts["midpoint"] > 1e-7
+
+
+@pytest.mark.parametrize("method", ["coadjoint_mean", "spherical_midpoint"])
+def test_bits_are_those_of_the_twin(top, method):
     """Whatever the company."""
     start = np.random.default_rng(0).normal(size=(6, 11))
-    given = {"method": "spherical_midpoint", "step": 0.125, "samples": 5, "seed": 4}
+    given = {"method": method, "step": 0.125, "samples": 5, "seed": 4}
     one = top.simulate(start, (0, 2), target="numpy", **given)
     other = top.simulate(start, (0, 2), target="c", threads=2, **given)
     np.testing.assert_array_equal(one.state, other.state)
@@ -92,6 +139,7 @@ def test_a_step_is_a_poisson_map(top):
         return np.abs(slope @ tensor(START) @ slope.T - tensor(end[:, -1])).max()
 
     assert find_defect(SphericalMidpoint) < 1e-8
+    assert find_defect(CoadjointMean) < 1e-8
     assert find_defect(Midpoint) > 1e-5
 
 
@@ -138,6 +186,23 @@ def fields(lanes, after, x):
     return np.stack([move(x, *each) for each in noise], axis=1)
 
 
+def turn(x, vector):
+    """The bracket with a vector."""
+    return move(x, vector[:3], vector[3:])
+
+
+def gradient(lanes, after, x):
+    """Of the energy of the top above."""
+    return np.concatenate([x[:3] / INERTIA, np.broadcast_to(WEIGHT, x[3:].shape)])
+
+
+def slopes(lanes, after, x):
+    """Of the Hamiltonians of its processes."""
+    found = np.zeros((6, 3, x.shape[1]))
+    found[0, 0], found[1, 1], found[5, 2] = 0.2, 0.3, 0.25
+    return found
+
+
 def make_lanes(x, n):
     """Members at step n."""
     members = x.shape[1]
@@ -163,7 +228,8 @@ def make_method(kind, h, increments):
             return increments[process, int(lanes.steps[0])] / h
 
     spheres = (Sphere((3, 4, 5), (0, 1, 2)),)
-    given = {"rates": rates, "fields": fields, "spheres": spheres}
+    orbits = Orbits(gradient=gradient, slopes=slopes, bracket=lambda lanes, after, x, v: turn(x, v))
+    given = {"rates": rates, "fields": fields, "spheres": spheres, "orbits": orbits}
     return Given(**given, size=h, seed=0, bound=math.inf)
 
 
@@ -202,15 +268,16 @@ def find_strong_order(kind, chosen, members, finest, least, scale):
     return np.polyfit(np.log2(counts), -np.log2(errors), 1)[0]
 
 
+@pytest.mark.parametrize("kind", [SphericalMidpoint, CoadjointMean])
 @pytest.mark.parametrize(("chosen", "order"), [([0, 1, 2], 0.5), ([1], 1.0)])
-def test_the_strong_order_of_a_top(chosen, order):
+def test_the_strong_order_of_a_top(kind, chosen, order):
     """Half where processes do not commute, 1 for one of them."""
-    found = find_strong_order(SphericalMidpoint, chosen, 100, 256, 4, 3.0)
+    found = find_strong_order(kind, chosen, 100, 256, 4, 3.0)
     assert abs(found - order) < 0.2
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("kind", [SphericalMidpoint, Midpoint])
+@pytest.mark.parametrize("kind", [SphericalMidpoint, CoadjointMean, Midpoint])
 @pytest.mark.parametrize(("chosen", "order"), [([0, 1, 2], 0.5), ([1], 1.0)])
 def test_the_strong_order_of_a_top_to_a_tenth(kind, chosen, order):
     """With more paths and a finer reference."""

@@ -386,3 +386,60 @@ def test_a_folder_from_before_goes_the_old_way(tmp_path):
     assert system.simulate([1, 1], **run).method == "taylor"
     with pytest.raises(KernelArgumentError, match="generated without them: run `coadjoint regen"):
         system.simulate(np.ones((2, 3)), reconstruct=True, **run)
+
+
+#: A body whose energy is no quadratic form: nothing but its element keeps the momentum in space.
+BODY = """
+title = "A body"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum", default = [0.4, -0.3, 1.2] }
+Omega = { role = "velocity" }
+[hamiltonian]
+h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Pi1^4/8 + Pi2*Pi3/7"
+[reconstruction]
+q = { attitude = "quaternion" }
+[observables]
+spatial = "rotate(q, Pi)"
+"""
+
+
+@needs_compiler
+def test_the_element_of_a_step_moves_the_attitude():
+    """10^5 steps keep the momentum in space to rounding, with the bits of NumPy.
+
+    The midpoint does not keep it.
+    """
+    body, given = built(BODY), {"step": 0.1, "samples": 5, "reconstruct": True}
+    for method, steps, newton in (
+        ("coadjoint_mean", 100_000, False),
+        ("coadjoint_mean4", 10_000, False),
+        ("coadjoint_mean", 10_000, True),
+    ):
+        run = body.simulate({}, (0, steps / 10), method=method, newton=newton, **given)
+        assert run.status == "OK"
+        assert np.ptp(run["spatial"], axis=1).max() < 5e-14
+        assert run.attitude_drift["q"] < 1e-14
+        short = [
+            body.simulate({}, (0, 5), method=method, newton=newton, target=target, **given)
+            for target in ("c", "numpy")
+        ]
+        for one, other in zip(*[(each.state, each["q"]) for each in short], strict=True):
+            assert not find_differing_bits(one, other).any()
+    run = body.simulate({}, (0, 100), method="midpoint", **given)
+    assert np.ptp(run["spatial"], axis=1).max() > 1e-5
+
+
+def test_what_is_carried_along_nonlinearly_has_no_element():
+    """The angle about the third axis moves by its velocity, whatever it is."""
+    text = BODY.replace('q = { attitude = "quaternion" }', 'angle = "Omega3*cos(angle)"')
+    text = text[: text.index("[observables]")]
+    with pytest.raises(
+        KernelArgumentError,
+        match=r"coadjoint_mean. with a fixed step is a generated solver, which does not",
+    ):
+        built(text).simulate(
+            {}, (0, 1), method="coadjoint_mean", step=0.1, reconstruct=True, target="numpy"
+        )

@@ -11,11 +11,13 @@ Read next: `coadjoint.crosscheck.solver_steps`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
 
+from coadjoint.crosscheck.solver_motion import Motion
 from coadjoint.lower.tableau import load_dop853
 
 #: Values in some arithmetic, row by row.
@@ -114,6 +116,126 @@ def structured_midpoint(
     rises = rates(middle, h * number(Fraction(1, 2)))
     end = [a + h * k for a, k in zip(x, rises, strict=True)]
     return _draw_cubic(rates, (x, end), h, after, number), end
+
+
+def gauss4(
+    rates: Rates, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """The method of Gauss with two stages by so many sweeps; between its ends as `rk4`.
+
+    E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, II.7: nodes
+    ``1/2 -+ sqrt(3)/6`` and shares ``a_ij/b_j = 1/2, 1/2 -+ sqrt(3)/3``, as doubles.
+    """
+    part, root = h * number(Fraction(1, 2)), 3.0**0.5
+    shares = [[0.5, 0.5 - root / 3], [0.5 + root / 3, 0.5]]
+    times = [number(Fraction(0.5 + sign * root / 6)) * h for sign in (-1.0, 1.0)]
+    stages = [list(x), list(x)]
+    for _ in range(sweeps):
+        rises = [[part * k for k in rates(y, t)] for y, t in zip(stages, times, strict=True)]
+        last, stages = (
+            stages,
+            [
+                [
+                    a + number(Fraction(own[0])) * one + number(Fraction(own[1])) * other
+                    for a, one, other in zip(x, *rises, strict=True)
+                ]
+                for own in shares
+            ],
+        )
+        if all(map(_has_settled, last, stages)):
+            break
+    rises = [[part * k for k in rates(y, t)] for y, t in zip(stages, times, strict=True)]
+    end = [a + (one + other) for a, one, other in zip(x, *rises, strict=True)]
+    return _draw_cubic(rates, (x, end), h, after, number), end
+
+
+def coadjoint_mean(
+    motion: Motion, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """The coadjoint mean by so many sweeps, its series summed as it stands; a line with noise.
+
+    ``exp(h A) x`` with ``A`` that of the gradient at ``phi(h A) x``, ``phi(z) = (exp(z) - 1)/z``:
+    N. Bou-Rabee and J. E. Marsden, Foundations of Computational Mathematics 9 (2009) 197.
+    """
+    half, middle, end = h * number(Fraction(1, 2)), list(x), list(x)
+    for _ in range(sweeps):
+        xi, last = motion.find_gradient(middle, half), middle
+        term, mean, end = list(x), list(x), list(x)
+        for k in range(1, min(sweeps, MEAN_TERMS) + 1):
+            turned = motion.turn(term, xi, last, half)
+            share = h * number(Fraction(1, k))
+            term = [share * each for each in turned]  # (h A)^k x / k!
+            end = [a + each for a, each in zip(end, term, strict=True)]
+            share = number(Fraction(1, k + 1))
+            mean = [a + share * each for a, each in zip(mean, term, strict=True)]
+        middle = mean
+        if _has_settled(last, middle):
+            break
+    if motion.is_noisy:
+        return _draw_line(x, end, h, after), end
+    return _draw_cubic(motion, (x, end), h, after, number), end
+
+
+def discrete_gradient(
+    motion: Motion, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """The discrete gradient by so many sweeps: its mean along the chord, corrected along it.
+
+    ``y - x = h (J(m) g + f(m))`` with ``g = mean + c (y - x)`` and ``g.(y - x) = H(y) - H(x)``; the
+    mean by Gauss's formula of four nodes (Abramowitz and Stegun, table 25.4).
+    """
+    half = h * number(Fraction(1, 2))
+    energy = motion.find_energy(x, half)
+    rise = [h * k for k in motion(x, half)]
+    for _ in range(sweeps):
+        chord, last = rise, rise
+        middle = [a + each * number(Fraction(1, 2)) for a, each in zip(x, chord, strict=True)]
+        slope = motion.find_gradient(middle, half)
+        excess = [number(Fraction(0))] * len(x)
+        for node, weight in NODES:
+            for part in (node, 1.0 - node):
+                at = [a + number(Fraction(part)) * b for a, b in zip(x, chord, strict=True)]
+                other = motion.find_gradient(at, half)
+                excess = [
+                    total + number(Fraction(weight)) * minus(a, b)
+                    for total, a, b in zip(excess, other, slope, strict=True)
+                ]
+        given = [each.settled() for each in chord]  # the number c moves with it in a higher order
+        end = [a + each for a, each in zip(x, given, strict=True)]
+        missing = minus(motion.find_energy(end, half), energy)
+        square = number(Fraction(0))
+        for a, b, step in zip(slope, excess, given, strict=True):
+            missing = minus(missing, (a.settled() + b.settled()) * step)
+            square = square + step * step
+        factor = missing / square
+        added = [a + factor * step for a, step in zip(excess, chord, strict=True)]
+        turned = motion.turn(middle, added, middle, half)
+        rates = motion(middle, half)
+        rise = [h * (a + b) for a, b in zip(rates, turned, strict=True)]
+        if _has_settled(last, rise):
+            break
+    end = [a + each for a, each in zip(x, rise, strict=True)]
+    return _draw_cubic(motion, (x, end), h, after, number), end
+
+
+def _has_settled(last: Row, following: Row) -> bool:
+    """Whether a sweep changed next to nothing; never where values are counts."""
+    pairs = [
+        (a.value, b.value) for a, b in zip(last, following, strict=True) if hasattr(a, "value")
+    ]
+    top = max((abs(b) for _, b in pairs), default=0)
+    return bool(pairs) and all(abs(a - b) <= top * SETTLED for a, b in pairs)
+
+
+#: The part of the largest component by which the last sweep of an exact step may change it.
+SETTLED: Final = Decimal("1e-32")
+#: Terms of the series of a coadjoint action.
+MEAN_TERMS: Final = 30
+#: Gauss's formula with four nodes on (0, 1): nodes below 1/2, and their weights.
+NODES: Final = (
+    (0.5 - 0.861136311594052575224 / 2, 0.347854845137453857373 / 2),
+    (0.5 - 0.339981043584856264803 / 2, 0.652145154862546142627 / 2),
+)
 
 
 def _find_middle(rates: Rates, x: Row, h: Any, number: Number, sweeps: int) -> Row:

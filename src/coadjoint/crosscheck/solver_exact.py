@@ -34,7 +34,8 @@ from coadjoint.crosscheck.recurrences import (
     split,
 )
 from coadjoint.crosscheck.series import solve
-from coadjoint.crosscheck.solver_objects import MAPS, MIDPOINTS, NOISY, ORDER, STRUCTURED, Advance
+from coadjoint.crosscheck.solver_motion import Motion
+from coadjoint.crosscheck.solver_objects import IMPLICIT, MAPS, NOISY, ORDER, Advance
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.compositions import list_schedules
@@ -90,10 +91,13 @@ class Solvers:
         """Whether Wiener processes move the state."""
         return "noise" in self.subject.programs
 
-    def begin(self, batch: Batch, samples: Array, *, size: float, steps: int) -> Ensemble:
-        """Members at the start of a run."""
+    def begin(
+        self, batch: Batch, samples: Array, *, size: float, steps: int, method: str = ""
+    ) -> Ensemble:
+        """Members at the start of a run by a method; without one, by any that is explicit."""
         rows, members = len(self.subject.programs["rhs"].state), batch.size
         structured = bool(list_structured(self.functions))
+        own = IMPLICIT.get(method, IMPLICIT["midpoint"])
         inputs = batch.arrays.get("inputs", np.zeros((0, members)))
         slopes = np.resize(np.array(SLOPES), len(inputs))[:, np.newaxis] * np.ones(members)
         ensemble = Ensemble(
@@ -109,7 +113,7 @@ class Solvers:
             max_steps=steps,
             seed=SEED,
             bound=BOUND,
-            remembered=STRUCTURED["midpoint"].count_memory(rows) if structured else 0,
+            remembered=own.count_memory(rows) if structured else 0,
             is_implicit=structured,
             sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
@@ -149,7 +153,7 @@ def find_steps(
 
     The step is made shorter where none has one: its stages are outside of where rates have values.
     """
-    size = size * IMPLICIT_PART if method in (*NOISY, *MIDPOINTS) else size
+    size = size * IMPLICIT_PART if method in (*NOISY, *IMPLICIT) else size
     samples = np.array([START + PART * size, START + size])
     known = dict(list_exact_steps(solvers, method, batch, samples))
     if not known and size > SHORTEST:
@@ -205,33 +209,20 @@ def _exact_step(
         return _exact_taylor(solvers, point, after, length)
     program, h, part = solvers.subject.programs["rhs"], exact(length), exact(after)
     reference, programs = solvers.subject.reference.evaluate, solvers.subject.programs
-    step: Any = methods.composed if method in MAPS else getattr(methods, method, None)
+    name = method.removesuffix("_newton")
+    step: Any = methods.composed if method in MAPS else getattr(methods, name, None)
     bounding = step
-    if method in MIDPOINTS and not solvers.is_noisy:
+    if name == "midpoint" and not solvers.is_noisy:
         step = bounding = methods.structured_midpoint
-    if method in MIDPOINTS:
+    if method in IMPLICIT or name in ("midpoint", "coadjoint_mean"):
         step, bounding = (partial(step, sweeps=n) for n in (SWEEPS, BOUNDING_SWEEPS))
 
     def by_printed(function: str, known: Any, number: Any, apply: Any) -> Any:
         return run(programs[function], known, number, apply)
 
-    def rates(evaluate: Any, number: Any, apply: Any, given: Any) -> methods.Rates:
-        signs = _Signs(apply)
-        apply = apply if solvers.text.kinks is None else signs.call
-
-        def at(x: methods.Row, after: Any) -> methods.Row:
-            known = dict(zip(program.state, x, strict=True))
-            for name, first in given.items():
-                known[name] = first[0] if len(first) == 1 else first[0] + after * first[1]
-            rows = list(evaluate("rhs", known, number, apply))
-            fields = list(evaluate("noise", known, number, apply)) if noise else []
-            for place, each in enumerate(fields):
-                increment = number(Fraction(noise[place % len(noise)]))
-                rows[place // len(noise)] = rows[place // len(noise)] + each * increment
-            signs.end_stage()
-            return rows
-
-        return at
+    def motion(evaluate: Any, number: Any, apply: Any, given: Any) -> Motion:
+        has_kinks = solvers.text.kinks is not None
+        return Motion(programs, evaluate, number, apply, given, noise, has_kinks=has_kinks)
 
     def maps(number: Any, apply: Any, parameters: Any) -> list[tuple[Any, Any]]:
         """The maps of the method; that they are those of the equations was proved by elements."""
@@ -250,8 +241,8 @@ def _exact_step(
     state, given = split(program, point)
     begin = [exact(value) for value in state.values()]
     bounded = {name: tuple(map(exact, values)) for name, values in given.items()}
-    by_equations = rates(reference, exact, call, bounded)
-    by_program = rates(by_printed, exact, call, bounded)
+    by_equations = motion(reference, exact, call, bounded)
+    by_program = motion(by_printed, exact, call, bounded)
     if method in MAPS:
         step = bounding = partial(
             step, maps(exact, call, {name: each[0] for name, each in bounded.items()})
@@ -264,42 +255,13 @@ def _exact_step(
     )
     if method not in solvers.depths:
         zeros = {name: (Levels(0),) * len(values) for name, values in given.items()}
-        counted = rates(by_printed, level_of, _raise_level, zeros)
+        counted = motion(by_printed, level_of, _raise_level, zeros)
         if method in MAPS:
             levels = {name: each[0] for name, each in zeros.items()}
             bounding = partial(methods.composed, maps(level_of, _raise_level, levels))
         depth, _ = bounding(counted, [Levels(0)] * len(begin), Levels(0), Levels(0), level_of)
         solvers.depths[method] = max(each.count for each in depth)
     return ExactStep(within, end, solvers.depths[method])
-
-
-class _Signs:
-    """Functions of which signs have to stay those of the first stage, as solvers hold sides.
-
-    Args:
-        apply: The functions.
-    """
-
-    def __init__(self, apply: Any) -> None:
-        self._apply, self._first, self._now = apply, list[Any](), list[Any]()
-
-    def call(self, function: str, *of: Any) -> Any:
-        """The value of a function."""
-        value = self._apply(function, *of)
-        if function == "sign" and isinstance(value, Bounded):
-            self._now.append(value.value)
-        return value
-
-    def end_stage(self) -> None:
-        """The stage is done.
-
-        Raises:
-            OutsideDomain: It is beyond a kink.
-        """
-        self._first = self._first or self._now
-        if self._now != self._first:
-            raise OutsideDomain
-        self._now = []
 
 
 def _raise_level(_: str, *of: Levels) -> Levels:

@@ -26,7 +26,9 @@ from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.mapped import list_maps
+from coadjoint.lower.program import Program
 from coadjoint.methods import JACOBIAN, MAPPED, list_structured
+from coadjoint.render.solvers import describe_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Record
@@ -35,7 +37,7 @@ from coadjoint.solve.methods.sequence import Maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Lanes, Method, Taylor
-from coadjoint.solve.stochastic import METHODS
+from coadjoint.solve.stochastic import METHODS, Orbits
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The order of the Taylor method that is compared: odd, and so low that it is quickly computed.
@@ -47,28 +49,59 @@ CHOICES: Final = {
     "rk4": Choice(name="rk4", order=4),
 }
 #: Those of systems with noise, in addition.
-NOISY: Final = {name: Choice(name=name, order=2, is_noisy=True) for name in ("heun", "midpoint")}
+NOISY: Final = {
+    name: Choice(name=name, order=2, is_noisy=True)
+    for name in ("heun", "midpoint", "coadjoint_mean")
+}
 #: Those that keep structure and are compared for every system that has them; compositions of them
 #: take the same steps, of other lengths.
 STRUCTURED: Final = {"midpoint": Choice(name="midpoint", order=2)}
-#: The same solved by Newton's method, where the text has the Jacobian.
-NEWTON: Final = {"midpoint_newton": Choice(name="midpoint", order=2, newton=True)}
-#: The midpoint in both ways.
-MIDPOINTS: Final = STRUCTURED | NEWTON
+#: What Newton's method solves, where the text has the Jacobian: a method of each kind, so that both
+#: their equations and their slopes are compared.
+NEWTON: Final = {
+    f"{name}_newton": Choice(name=name, order=order, newton=True)
+    for name, order in (
+        ("midpoint", 2),
+        ("gauss4", 4),
+        ("coadjoint_mean", 2),
+        ("discrete_gradient", 2),
+    )
+}
+#: Those whose steps are implicit.
+IMPLICIT: Final = STRUCTURED | NEWTON
 #: Those that are a sequence of maps. Compilers make those that have all the maps.
 MAPS: Final = {name: Choice(name=name, order=each.order) for name, each in MAPPED.items()}
 COMPILED_MAPS: Final = ("splitting4", "kahan", "exact_body")
 
 
 def list_choices(functions: Collection[str]) -> dict[str, Choice]:
-    """The methods of a system that are compared, by the names of the functions of its solvers."""
+    """The methods that are compared, as far as the names of the functions of solvers allow them."""
     if "noise" in functions:
         return CHOICES | NOISY
-    own = {each.name for each in list_structured(functions)}
+    own = {each.name for each in list_structured([*functions, "orbits"])}
     own |= list_schedules(list_maps(functions)).keys()
-    others = STRUCTURED | MAPS
-    newton = NEWTON if JACOBIAN in functions and own & STRUCTURED.keys() else {}
-    return CHOICES | {name: each for name, each in others.items() if name in own} | newton
+    newton = NEWTON if JACOBIAN in functions else {}
+    return CHOICES | {
+        n: each for n, each in (STRUCTURED | MAPS | newton).items() if each.name in own
+    }
+
+
+def list_compared(programs: Mapping[str, Program]) -> dict[str, Choice]:
+    """The methods of a system that are compared: those that its solvers have.
+
+    Args:
+        programs: As `coadjoint.render.solvers.select_programs` has them, with kinks; none for those
+            of every system.
+    """
+    if not programs:
+        return dict(CHOICES)
+    own = describe_structured(programs)["structured"]
+    has_orbits = own["is_noisy"] or any(each.name == "coadjoint_mean" for each in own["methods"])
+    return {
+        name: each
+        for name, each in list_choices(programs).items()
+        if each.name != "coadjoint_mean" or has_orbits
+    }
 
 
 class Advance(Protocol):
@@ -97,7 +130,7 @@ def compile_solver(
         CompilerError: The compiler failed.
     """
     level = 0 if build == "exact" else 1  # sums and products are fused from there on
-    every = CHOICES | NOISY | MIDPOINTS | MAPS
+    every = CHOICES | NOISY | IMPLICIT | MAPS
     compiler, kind = find_compiler(), replace(every[method], kind=what).source
     kind = replace(kind, level=level)
     work = folder / f"{what.stem}-{method}-{build}"
@@ -140,11 +173,13 @@ class NumpySolver:
         module: What names of ``solver.py`` stand for.
         functions: Functions of the NumPy kernel, by their names in ``solver.c``.
         strict: Whether each row of the domain may not be zero.
+        known: Rows of the state above what is reconstructed; None for all.
     """
 
     module: Mapping[str, Any]
     functions: Mapping[str, Function]
     strict: tuple[bool, ...] = ()
+    known: int | None = None
 
     @property
     def branches(self) -> bool:
@@ -174,9 +209,11 @@ class NumpySolver:
             maps = [(self.module[f"find_{each}"], part, moved[each]) for each, part in parts]
             compensated = MAPPED[name].parts > 0
             return Maps(maps, rates, size, is_compensated=compensated, branches=self.branches)
-        if name in MIDPOINTS and not self.is_noisy:
-            functions = {"rates": rates, JACOBIAN: self._find_slopes}
-            own = MIDPOINTS[name]
+        if name in IMPLICIT and not self.is_noisy:
+            functions: dict[str, Any] = {"rates": rates, JACOBIAN: self._find_slopes}
+            functions |= {"gradient": self._find_element, "bracket": self._turn}
+            functions["energy"] = partial(self._evaluate, "energy")
+            own, functions["known"] = IMPLICIT[name], self.known
             return Structured(own.name, size, functions, branches=self.branches, newton=own.newton)
         return METHODS[name](
             rates=rates,
@@ -185,6 +222,7 @@ class NumpySolver:
             seed=ensemble.seed,
             bound=ensemble.bound,
             branches=self.branches,
+            orbits=Orbits(self._find_element, self._find_noise_slopes, self._turn),
         )
 
     def advance(self, name: str) -> Advance:
@@ -227,6 +265,24 @@ class NumpySolver:
         rows = self._evaluate(JACOBIAN, lanes, after, state)
         size = math.isqrt(len(rows))
         return rows.reshape(size, size, -1)
+
+    def _find_element(self, lanes: Lanes, after: Array, middle: Array) -> Array:
+        found = self._evaluate("energy_gradient", lanes, after, middle)
+        known = len(found)
+        return found if known == len(middle) else np.concatenate([found, middle[:known]])
+
+    def _turn(self, lanes: Lanes, after: Array, state: Array, element: Array) -> Array:
+        n = len(element) if len(element) == len(state) else len(element) // 2
+        both = np.concatenate([state[:n], element[:n]])
+        turned = self._evaluate("bracket_vector", lanes, after, both)
+        if n == len(state):
+            return turned
+        rates = self._evaluate("rates", lanes, after, np.concatenate([element[n:], state[n:]]))
+        return np.concatenate([turned, rates[n:]])
+
+    def _find_noise_slopes(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        rows = self._evaluate("noise_gradient", lanes, after, state)
+        return rows.reshape(len(state), -1, state.shape[1])
 
     def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise", lanes, after, state)

@@ -22,7 +22,6 @@ from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.mapped import list_maps, list_moved
 from coadjoint.lower.program import Node, Program, Symbol
 from coadjoint.lower.tableau import Tableau, dop853
-from coadjoint.methods import Sphere
 from coadjoint.render.environment import render_templates
 from coadjoint.render.kernels import (
     TEMPLATES,
@@ -61,7 +60,6 @@ class SolverTexts:
         files: The printed files by name.
         system: Name of the system.
         kind: What they integrate.
-        noisy_spheres: Spheres on which noise moves the state.
     """
 
     programs: Mapping[str, Program]
@@ -70,7 +68,6 @@ class SolverTexts:
     files: Mapping[str, str]
     system: str
     kind: SolverKind = SOLVER
-    noisy_spheres: tuple[Sphere, ...] = ()
 
 
 def check_solver_texts(texts: SolverTexts) -> int:
@@ -293,7 +290,7 @@ def _render_without_lines(texts: SolverTexts) -> dict[str, str]:
             "held": dict.fromkeys(kinks["held"], nothing),
             "driving": {name: rows for name, rows in driving.items() if rows},
             **describe_noise(texts.programs),
-            **describe_structured(texts.programs, texts.noisy_spheres),
+            **describe_structured(texts.programs),
             "solver": bare,
             "loops": solver.loops and tell_loops(solver.loops, is_empty=True),
             "solved": dict.fromkeys(texts.programs, nothing),

@@ -13,9 +13,10 @@ Read next: `coadjoint.crosscheck.recurrences`, then `coadjoint.crosscheck.solver
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -33,7 +34,7 @@ from coadjoint.crosscheck.solver_objects import (
     Function,
     NumpySolver,
     compile_solver,
-    list_choices,
+    list_compared,
     load_numpy,
     load_solver,
 )
@@ -49,11 +50,11 @@ from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import Program
-from coadjoint.methods import JACOBIAN
+from coadjoint.methods import BALANCE, JACOBIAN
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -92,11 +93,20 @@ def start_compiling(
     folder: Path,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
-    functions: Collection[str] = (),
+    programs: Mapping[str, Program] | None = None,
 ) -> Compiling:
-    """Have the objects of some targets compiled in a private folder."""
+    """Have the objects of some targets compiled in a private folder.
+
+    Args:
+        pool: Who compiles.
+        texts: The files of the system by name.
+        folder: Where.
+        targets: What is compared.
+        kind: What the solvers integrate.
+        programs: As `select_programs` has them, with kinks; None for what all systems have alone.
+    """
     spared = {*CHOICES, *MAPS}.difference(COMPILED_MAPS)
-    others = (name for name in list_choices(functions) if name not in spared)
+    others = (name for name in list_compared(programs or {}) if name not in spared)
     objects = (*OBJECTS, *((method, "c", "exact") for method in others))
     return {
         (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
@@ -120,8 +130,7 @@ def check_solvers(
         CompilerError: An object cannot be compiled.
         CrossCheckError: A rung failed.
     """
-    functions = _list_functions(subject, kind)
-    spheres = find_noisy_spheres(subject.programs)
+    functions, base = _list_functions(subject, kind), subject
     programs = select_programs(subject.programs.values(), kind, subject.maps)
     subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
     text = arrange(programs)
@@ -132,13 +141,13 @@ def check_solvers(
         files={file: texts[file] for file in kind.files},
         system=subject.system.name,
         kind=kind,
-        noisy_spheres=spheres,
     )
     coefficients = check_recurrences(text, subject)
     lines = check_solver_texts(printed)
     module = load_numpy(texts[kind.files[2]])
-    numpy = NumpySolver(module, functions, _list_strict(subject))
-    advance = _load(subject.system.name, numpy, list_choices(programs), compiling, kind)
+    known = len(base.programs["rhs"].state)
+    numpy = NumpySolver(module, functions, _list_strict(subject), known)
+    advance = _load(subject.system.name, numpy, list_compared(programs), compiling, kind)
     solvers = Solvers(subject, text, advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
@@ -195,7 +204,7 @@ def _load(
 
 def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
     """The functions of the NumPy kernel by their names in the texts of solvers."""
-    others = ("domain", "projection", "noise", JACOBIAN)
+    others = ("domain", "projection", "noise", "noise_gradient", JACOBIAN, *BALANCE)
     bounds = [name for name in others if name in subject.programs]
     found = {name: _numpy_function(subject, (name,)) for name in bounds}
     found["rates"] = _numpy_function(subject, kind.rates)
@@ -218,7 +227,10 @@ def _numpy_function(subject: Subject, names: Sequence[str]) -> Function:
             each = subject.programs[name]
             own = np.ascontiguousarray(state[: len(each.state)])
             block = np.empty((*each.shape, state.shape[1]))
-            getattr(subject.system, name)(own, *shared, **named, target="numpy", out=block)
+            call = getattr(subject.system, name)
+            if KERNEL_FUNCTIONS[name].below == "vector":  # which stands below the state already
+                call = partial(subject.system.evaluate, name)
+            call(own, *shared, **named, target="numpy", out=block)
             rows.append(block.reshape(-1, state.shape[1]))
         return np.concatenate(rows)
 

@@ -181,6 +181,21 @@ def noise(equations: Equations) -> Rows | None:
     return _rows(equations, entries, (len(state), len(fields)))
 
 
+def noise_gradient(equations: Equations) -> Rows | None:
+    """Derivatives of the Hamiltonian of each Wiener process by the state, row by row."""
+    state, fields = equations.setting.state, noise_fields(equations.setting)
+    if not fields or energy_gradient(equations) is None:
+        return None
+    ring = equations.setting.field
+    slopes = [ring.gradient(equations.close(each.hamiltonian), state) for each in fields]
+    entries = (
+        (f"d {each.name}/d {name}", slopes[column][row])
+        for row, name in enumerate(state)
+        for column, each in enumerate(fields)
+    )
+    return replace(_rows(equations, entries, (len(state), len(fields))), may_hide_zeros=True)
+
+
 def noise_vector(equations: Equations) -> None:
     """Of equal members alone, whose noise is read off from `noise` of a few of them."""
 

@@ -60,8 +60,27 @@ def stays_on_orbits(programs: Mapping[str, Program]) -> bool:
 
 def _is_linear(programs: Mapping[str, Program]) -> bool:
     """Whether the bracket with a vector is homogeneous of degree 1 in the state."""
-    program, state = programs["bracket_vector"], {*programs["rhs"].state}
-    inputs = {name: _Degree(int(name in state)) for name in program.names}
+    return _is_homogeneous(programs["bracket_vector"], programs["rhs"].state)
+
+
+def is_carried(programs: Mapping[str, Program]) -> bool:
+    """Whether a motion is a coadjoint action, and what it carries along moves linearly.
+
+    Then a step moves both by one element: with the state held, rates that are homogeneous of degree
+    1 in what is reconstructed are those of a group that acts on it.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    rates = programs.get("reconstruction")
+    if rates is None or not stays_on_orbits(programs):
+        return False
+    return _is_homogeneous(rates, rates.state[len(programs["rhs"].state) :])
+
+
+def _is_homogeneous(program: Program, by: Sequence[str]) -> bool:
+    """Whether all rows have the degree 1 in some names."""
+    inputs = {name: _Degree(int(name in by)) for name in program.names}
     try:
         rows = run(program, inputs, _constant, _call_degree)
     except NotLinearError:
@@ -97,6 +116,32 @@ def is_bracket(programs: Mapping[str, Program]) -> bool:
         yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
 
     return vanish(find, bracket.names)
+
+
+def is_noisy_action(programs: Mapping[str, Program]) -> bool:
+    """Whether a motion with noise is the coadjoint action of the gradients of its Hamiltonians.
+
+    Those of noise are asked at points modulo primes, as that of the energy.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    still = {name: each for name, each in programs.items() if name != "noise"}
+    if not {"noise", "noise_gradient"} <= programs.keys() or not stays_on_orbits(still):
+        return False
+    fields, slopes = programs["noise"], programs["noise_gradient"]
+    bracket, n = programs["bracket_vector"], len(programs["rhs"].state)
+    vector = bracket.state[n:]
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        rows, columns = (run(each, at, number, call_modulo) for each in (fields, slopes))
+        count = len(rows) // n
+        for k in range(count):
+            along = at | dict(zip(vector, columns[k::count], strict=True))
+            turned = run(bracket, along, number, call_modulo)
+            yield from (a + -b for a, b in zip(rows[k::count], turned, strict=True))
+
+    return vanish(find, {*bracket.names, *fields.names, *slopes.names})
 
 
 def is_product(programs: Mapping[str, Program]) -> bool:
@@ -215,17 +260,6 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
                 return ()
             place += 1
     return tuple(found)
-
-
-def find_noisy_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
-    """The same of a motion with noise, whose processes have Hamiltonians of their own.
-
-    What a process does is the bracket with its Hamiltonian, as it was derived.
-    """
-    still = {name: each for name, each in programs.items() if name != "noise"}
-    if "noise" not in programs or not stays_on_orbits(still):
-        return ()
-    return find_spheres(still)
 
 
 def _refuse(function: str, *_: Fraction) -> Fraction:

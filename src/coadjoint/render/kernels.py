@@ -21,7 +21,6 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps, list_moved
-from coadjoint.lower.orbits import find_noisy_spheres
 from coadjoint.lower.program import (
     FUNCTIONS,
     ZERO,
@@ -236,7 +235,7 @@ def describe_solver(context: KernelContext, kind: SolverKind) -> dict[str, Any]:
     solver = arrange(solved, is_written_out=False)
     return name_solver(context.name, kind) | {
         **describe_noise(solved),
-        **describe_structured(solved, find_noisy_spheres({p.name: p for p in context.programs})),
+        **describe_structured(solved),
         "solver": replace(solver, loops=None),
         "loops": solver.loops and tell_loops(solver.loops),
         **arrange_sides(solved),

@@ -20,7 +20,13 @@ from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
-from coadjoint.lower.orbits import find_spheres, is_nambu, stays_on_orbits
+from coadjoint.lower.orbits import (
+    find_spheres,
+    is_carried,
+    is_nambu,
+    is_noisy_action,
+    stays_on_orbits,
+)
 from coadjoint.lower.program import (
     Call,
     Factors,
@@ -31,7 +37,7 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, JACOBIAN, TERMS, Sphere, list_structured
+from coadjoint.methods import ACTION, ASKED, JACOBIAN, TERMS, list_structured
 from coadjoint.render.recurrences import (
     Line,
     Stage,
@@ -249,11 +255,13 @@ def select_programs(
     """
     known = {program.name: program for program in programs}
     rates = reduce(join, (known[name] for name in kind.rates))
-    others = ("domain", "projection", "noise")
+    others = ("domain", "projection", "noise", "noise_gradient")
     bounds = {name: known[name] for name in others if name in known}
     slopes = {JACOBIAN: known[JACOBIAN]} if JACOBIAN in known and "noise" not in known else {}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
     action = [name for name in ASKED if name in known] if has_action else []
+    if is_carried(known) if kind != SOLVER else is_noisy_action(known):
+        action = [*ACTION]
     return {
         "rates": rates,
         **{
@@ -303,25 +311,26 @@ def list_normals() -> dict[str, Any]:
     return {name: getattr(normals, name) for name in names}
 
 
-def describe_structured(
-    programs: Mapping[str, Program], noisy_spheres: Sequence[Sphere] = ()
-) -> dict[str, Any]:
+def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     """What templates read of methods that keep structure, under one name.
 
     Args:
         programs: As `select_programs` has them, with kinks.
-        noisy_spheres: Spheres on which noise moves the state.
     """
     bracket = programs.get("bracket_vector")
-    on_orbits = bracket is not None and stays_on_orbits({**programs, "rhs": programs["rates"]})
-    spheres = find_spheres(programs) if on_orbits else ()
+    state = () if bracket is None else bracket.state
+    # of noise, and of what is reconstructed below the state, `select_programs` has asked
+    is_noisy = bracket is not None and "noise" in programs
+    is_followed = bracket is not None and len(programs["rates"].state) > len(state) // 2
+    still = {**programs, "rhs": programs["rates"]}
+    on_orbits = is_followed or (bracket is not None and not is_noisy and stays_on_orbits(still))
+    spheres = find_spheres(programs) if (on_orbits or is_noisy) and not is_followed else ()
     marks = {
         "orbits": on_orbits,
-        "spheres": bool(spheres),
-        "nambu": is_nambu({**programs, "rhs": programs["rates"]}),
+        "spheres": bool(spheres) and not is_noisy,
+        "nambu": is_nambu(still),
     }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
-    state = () if bracket is None else bracket.state
     has_newton = bool(methods) and JACOBIAN in programs
     composed = [each for each in methods if each.file != "gauss"]
     orders = sorted({each.order for each in composed})
@@ -331,9 +340,10 @@ def describe_structured(
             "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,
+            "known": len(state) // 2 if is_followed else 0,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
-            "noisy_spheres": noisy_spheres,
+            "is_noisy": is_noisy,
             "near": spherical_midpoint.NEAR,
             "roundings": spherical_midpoint.ROUNDINGS,
             # names of a vector below the state, with their rows

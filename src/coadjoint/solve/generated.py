@@ -185,10 +185,11 @@ def find_noisy_obstacle(system: System, name: str) -> str:
         system: The System.
         name: One of `coadjoint.methods.NOISY`.
     """
-    if name != "spherical_midpoint":
+    marks = {"spherical_midpoint": "SPHERES", "coadjoint_mean": "ORBITS"}
+    if name not in marks:
         return ""
-    has_spheres = KernelModule(system, SOLVER.files[2]).has("SPHERES")
-    return "" if has_spheres else f"it expects {STRUCTURED[name].expects}, and noise by brackets"
+    has_it = KernelModule(system, SOLVER.files[2]).has(marks[name])
+    return "" if has_it else f"it expects {STRUCTURED[name].expects}, and noise by brackets"
 
 
 def _tell_keeps(choice: Choice) -> str:

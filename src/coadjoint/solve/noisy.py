@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 KEEPS: Final = {
     "heun": "nothing exactly",
     "spherical_midpoint": "Casimirs, to the rounding of each step, and the Poisson bracket",
+    "coadjoint_mean": "Casimirs, to the rounding of each step, and the Poisson bracket",
     "midpoint": "linear and quadratic integrals, to the rounding of each step",
 }
 #: Seeds are below this, members of a batch below the other.

@@ -4,8 +4,9 @@ Over a step the noise is taken as constant: its increments over the length of th
 method and the implicit midpoint follow ``rhs + noise (dW/h)``, which gives the motion in the sense
 of Stratonovich. They are the functions of the generated ``solver.c``, operation by operation.
 Heun's keeps nothing exactly; the midpoint keeps what is linear or quadratic and kept on each path,
-as far as the equation of a step is solved, which is to rounding. On spheres the spherical midpoint
-keeps Casimirs and the Poisson bracket.
+as far as the equation of a step is solved, which is to rounding. The coadjoint mean, and on spheres
+the spherical midpoint, keep Casimirs and the Poisson bracket: the Hamiltonians of noise times the
+increments are a part of the energy of a step.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.normals`.
 """
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
@@ -21,6 +23,8 @@ import numpy as np
 
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import Sphere
+from coadjoint.solve.methods import coadjoint_mean
+from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Sweep
 from coadjoint.solve.methods.spherical_midpoint import Scale
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.runge_kutta import end_where_rates_end
@@ -46,6 +50,21 @@ def find_bound(name: str, step: float) -> float:
     return math.inf if name == "heun" else math.sqrt(4.0 * max(1.0, -math.log(step)))
 
 
+@dataclass(frozen=True)
+class Orbits:
+    """What a motion with noise on coadjoint orbits is made of, for `CoadjointMean`.
+
+    Attributes:
+        gradient: The derivative of the energy by the state, ``(n, N)``.
+        slopes: Those of the Hamiltonians of noise, ``(n, w, N)``.
+        bracket: The Poisson tensor at a state times a vector.
+    """
+
+    gradient: Function
+    slopes: Function
+    bracket: Bracket
+
+
 class _Noisy:
     """What both methods have in common.
 
@@ -59,6 +78,7 @@ class _Noisy:
         bound: The largest size of a normal number.
         branches: Whether the drift has branch points: it has to be finite after each step.
         spheres: Rows of vectors on spheres, and of their tangents.
+        orbits: Of a motion on coadjoint orbits, what it is made of.
     """
 
     tries_again = halves = False
@@ -75,8 +95,9 @@ class _Noisy:
         bound: float,
         branches: bool = False,
         spheres: Sequence[Sphere] = (),
+        orbits: Orbits | None = None,
     ) -> None:
-        self.spheres = spheres
+        self.spheres, self.orbits = spheres, orbits
         self.rates, self.fields, self.along, self.size = rates, fields, along, size
         self.processes = np.arange(processes, dtype=np.uint64)[:, np.newaxis]
         self.seed, self.bound, self.branches = seed, bound, branches
@@ -143,36 +164,56 @@ class Midpoint(_Noisy):
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""
         h = find_fixed_step(lanes, self.size)
-        rates, half, middle = self.move(lanes, h), h * 0.5, lanes.state
+        middle, rise, own = lanes.state, np.zeros(lanes.state.shape), self.prepare(lanes, h)
         done, solved = np.zeros(h.shape, bool), np.zeros(h.shape, bool)
-        last, kept = np.full(h.shape, np.inf), self.prepare(lanes.state)
-        rows = np.zeros(middle.shape)
+        last = np.full(h.shape, np.inf)
         for _ in range(SWEEPS):
             if done.all():
                 break
-            found = rates(half, middle)
-            following = lanes.state + half * found
-            rows = np.where(done, rows, found)
-            for each in kept:
-                each.apply(lanes.state, half * found, following)
+            found = own.sweep(middle)
+            ends, following = ~np.asarray(found.goes_on), found.middle
+            rise = np.where(done, rise, found.rise)
             change, size = np.zeros(h.shape), np.zeros(h.shape)
             for one, other in zip(following, middle, strict=True):
                 change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
             middle = np.where(done, middle, following)
-            small = change <= SOLVED * size
+            small = (change <= SOLVED * size) & ends
             solved = np.where(done, solved, small)
-            fresh = (change == 0.0) | (small & (change >= last))
+            fresh = ((change == 0.0) & ends) | (small & (change >= last))
             last = np.where(done, last, change)
             done |= fresh
-        if not kept:
-            return self.make_attempt(lanes, h, 2.0 * middle - lanes.state, solved)
-        for each in kept:
-            solved &= each.is_root()
-        return self.make_attempt(lanes, h, lanes.state + h * rows, solved)
+        return self.make_attempt(lanes, h, own.finish(middle, rise), solved & own.confirm())
 
-    def prepare(self, state: Array) -> list[Scale]:
-        """What moves vectors to spheres: nothing."""
-        return []
+    def prepare(self, lanes: Lanes, h: Array) -> _Chord:
+        """What finds a better middle of a step."""
+        return _Chord(self, lanes, h)
+
+
+class _Chord:
+    """The middle of the chord of a step.
+
+    Args:
+        method: Whose step it is.
+        lanes: Where it begins.
+        h: How long it is.
+    """
+
+    def __init__(self, method: _Noisy, lanes: Lanes, h: Array) -> None:
+        self.rates, self.start, self.length = method.move(lanes, h), lanes.state, h
+        self.half = h * 0.5
+
+    def sweep(self, middle: Array) -> Sweep:
+        """A better middle, and what the step adds with the rates at the one before."""
+        rates = self.rates(self.half, middle)
+        return Sweep(self.start + self.half * rates, self.length * rates)
+
+    def confirm(self) -> NDArray[np.bool_] | bool:
+        """Where what sweeps share is that of a solution."""
+        return True
+
+    def finish(self, middle: Array, rise: Array) -> Array:
+        """The end of a step from what was found last."""
+        return 2.0 * middle - self.start
 
 
 class SphericalMidpoint(Midpoint):
@@ -181,12 +222,89 @@ class SphericalMidpoint(Midpoint):
     It keeps what the spherical midpoint keeps, path by path: Casimirs and the Poisson bracket.
     """
 
-    def prepare(self, state: Array) -> list[Scale]:
-        """As of `Midpoint`: of each sphere the quotient of lengths."""
-        return [Scale(state, 0.0 * state, each) for each in self.spheres]
+    def prepare(self, lanes: Lanes, h: Array) -> _Chord:
+        """As of `Midpoint`: its middle is on the spheres."""
+        return _OnSpheres(self, lanes, h)
+
+
+class _OnSpheres(_Chord):
+    """The same, moved to the spheres of the state."""
+
+    def __init__(self, method: _Noisy, lanes: Lanes, h: Array) -> None:
+        super().__init__(method, lanes, h)
+        state = lanes.state
+        self.kept = [Scale(state, 0.0 * state, each) for each in method.spheres]
+
+    def sweep(self, middle: Array) -> Sweep:
+        """As of `_Chord`."""
+        rates = self.rates(self.half, middle)
+        chord = self.half * rates
+        following = self.start + chord
+        for each in self.kept:
+            each.apply(self.start, chord, following)
+        return Sweep(following, self.length * rates)
+
+    def confirm(self) -> NDArray[np.bool_] | bool:
+        """Quotients of lengths are solved."""
+        return np.asarray(np.all([each.is_root() for each in self.kept], axis=0))
+
+    def finish(self, middle: Array, rise: Array) -> Array:
+        """What the step adds is what the last sweep found."""
+        return self.start + rise
+
+
+class CoadjointMean(Midpoint):
+    """The coadjoint mean, with the noise of a step as part of its energy.
+
+    Its element is ``xi = dH + sum_k dH_k dW_k/h`` at the mean of the arc, so that a path keeps
+    Casimirs and the Poisson bracket as without noise.
+    """
+
+    def prepare(self, lanes: Lanes, h: Array) -> _Chord:
+        """As of `Midpoint`: its middle is the mean of an arc."""
+        return _AlongOrbits(self, lanes, h)
+
+
+class _AlongOrbits(_Chord):
+    """The mean of the arc of a coadjoint action."""
+
+    def __init__(self, method: _Noisy, lanes: Lanes, h: Array) -> None:
+        super().__init__(method, lanes, h)
+        orbits = method.orbits
+        assert orbits is not None, "asked for of motions on orbits alone"
+        noise: list[Array] = []
+
+        def element(lanes: Lanes, after: Array, middle: Array) -> Array:
+            xi = orbits.gradient(lanes, after, middle)
+            slopes = orbits.slopes(lanes, after, middle)
+            while len(noise) < slopes.shape[1]:
+                noise.append(method.find_noise(lanes, h, len(noise)))
+            for process, each in enumerate(noise):
+                xi = xi + slopes[:, process] * each
+            return xi
+
+        self.method = coadjoint_mean.CoadjointMean(
+            gradient=element, bracket=orbits.bracket, size=method.size
+        )
+        low = np.zeros(lanes.state.shape)
+        self.arc = Arc(lanes=lanes, middle=self.half, length=h, state=lanes.state, low=low)
+        self.kept = self.method.prepare(self.arc, lanes.state)
+
+    def sweep(self, middle: Array) -> Sweep:
+        """As of `_Chord`."""
+        return self.method.sweep(self.arc, middle, self.kept)
+
+    def finish(self, middle: Array, rise: Array) -> Array:
+        """What the step adds is what the last sweep found."""
+        return self.start + rise
 
 
 #: The methods by name.
 METHODS: Final[Mapping[str, type[Heun] | type[Midpoint]]] = MappingProxyType(
-    {"heun": Heun, "midpoint": Midpoint, "spherical_midpoint": SphericalMidpoint}
+    {
+        "heun": Heun,
+        "midpoint": Midpoint,
+        "spherical_midpoint": SphericalMidpoint,
+        "coadjoint_mean": CoadjointMean,
+    }
 )

@@ -23,7 +23,7 @@ from coadjoint.solve.methods.sequence import Maps, make_maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
-from coadjoint.solve.stochastic import METHODS
+from coadjoint.solve.stochastic import METHODS, Orbits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,6 +60,7 @@ class NumpyStepper:
             "domain",
             "projection",
             "noise",
+            "noise_gradient",
             "noise_vector",
             JACOBIAN,
             "jacobian_vector",
@@ -127,15 +128,15 @@ class NumpyStepper:
                 branches=self._branches,
             )
         if self._choice.is_structured:
-            gradient = partial(self._evaluate, ("energy_gradient",))
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
             energy = partial(self._evaluate, ("energy",))
-            functions |= {"gradient": gradient, "bracket": self._bracket, "energy": energy}
+            functions |= {"gradient": self._element, "bracket": self._bracket, "energy": energy}
             functions |= {"sandwich": self._sandwich, "field": self._field}
             functions["values"] = partial(self._evaluate, ("energy", "distinguished"))
             slopes = ("energy_gradient", "distinguished_gradient")
             functions["gradients"] = partial(self._evaluate, slopes)
             functions["jacobian"] = self._slopes
+            functions["known"] = self._system.STATE.size
             return Structured(
                 self._choice.name,
                 run.size,
@@ -166,9 +167,21 @@ class NumpyStepper:
             return rates
         return self._evaluate(self._choice.kind.rates, lanes, after, state)
 
-    def _bracket(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
-        """The Poisson tensor at a state times a vector."""
-        return self._evaluate(("bracket_vector",), lanes, after, np.concatenate([state, vector]))
+    def _element(self, lanes: Lanes, after: Array, middle: Array) -> Array:
+        """The gradient of the energy, below it the middle where something is reconstructed."""
+        found = self._evaluate(("energy_gradient",), lanes, after, middle)
+        known = self._system.STATE.size
+        return found if len(middle) == known else np.concatenate([found, middle[:known]])
+
+    def _bracket(self, lanes: Lanes, after: Array, state: Array, element: Array) -> Array:
+        """The Poisson tensor times a vector; an element moves what is reconstructed, too."""
+        n = self._system.STATE.size
+        both = np.concatenate([state[:n], element[:n]])
+        turned = self._evaluate(("bracket_vector",), lanes, after, both)
+        if len(state) == n:
+            return turned
+        rates = self._rates(lanes, after, np.concatenate([element[n:], state[n:]]))
+        return np.concatenate([turned, rates[n:]])
 
     def _field(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The bracket with the energy."""
@@ -193,11 +206,9 @@ class NumpyStepper:
     @property
     def _noise(self) -> dict[str, Any]:
         """What moves the state with noise, as methods for it take it."""
-        return {"fields": self._fields}
-
-    def _fields(self, lanes: Lanes, after: Array, state: Array) -> Array:
-        """What each Wiener process does to the state."""
-        return self._evaluate(("noise",), lanes, after, state)
+        slopes = partial(self._evaluate, ("noise_gradient",))
+        orbits = Orbits(gradient=self._element, slopes=slopes, bracket=self._bracket)
+        return {"fields": partial(self._evaluate, ("noise",)), "orbits": orbits}
 
     def _project(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The nearest states on the constraints; what is reconstructed stays."""

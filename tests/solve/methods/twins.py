@@ -210,6 +210,8 @@ def render(written: Written) -> str:
                 "sweeps": SWEEPS,
                 "terms": TERMS,
                 "has_bracket": True,
+                "known": 0,
+                "is_noisy": False,
                 "has_newton": False,
                 "near": spherical_midpoint.NEAR,
                 "roundings": spherical_midpoint.ROUNDINGS,

@@ -5,12 +5,14 @@ With ``A(xi) mu = J(mu) xi``, the coadjoint action, a step of length h is ``exp(
 mu along the arc of the step. For quadratic and other energies with a Lagrangian this is the
 reduced discrete Hamilton-Pontryagin integrator of N. Bou-Rabee and J. E. Marsden, Foundations of
 Computational Mathematics 9 (2009) 197, with tau = exp, written on the dual of the algebra alone.
+What is reconstructed moves by ``g' = g xi``: where its rates are linear in it, the exponential of
+those at the mean of mu moves it by the same xi, and a momentum in space stays.
 Read next: `coadjoint.solve.methods.spherical_midpoint`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -18,7 +20,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 from coadjoint.solve.steps import add_low, larger
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
@@ -33,14 +35,22 @@ LEAST: Final = 2.0**-58
 PARTS: Final = 16.0
 
 
-def make(functions: Mapping[str, Callable[..., Array]], size: float, order: int) -> CoadjointMean:
+def make(functions: Mapping[str, Any], size: float, order: int) -> CoadjointMean:
     """The method of an order, from functions of the kernel."""
     gradient, bracket = functions["gradient"], functions["bracket"]
-    return CoadjointMean(gradient=gradient, bracket=bracket, size=size, order=order)
+    method = CoadjointMean(gradient=gradient, bracket=bracket, size=size, order=order)
+    method.known = functions.get("known")
+    return method
 
 
 class CoadjointMean(LiePoisson):
-    """A step by the exponential of one element of the algebra."""
+    """A step by the exponential of one element of the algebra.
+
+    Attributes:
+        known: Rows above what is reconstructed, which the same element moves; None for all.
+    """
+
+    known: int | None = None
 
     def prepare(self, arc: Arc, middle: Array) -> list[Array]:
         """As `LiePoisson.prepare`: in how many parts the arc of a step is followed."""
@@ -63,7 +73,7 @@ class CoadjointMean(LiePoisson):
         half = 0.5 * arc.length
         slopes = self.find_slopes(arc, arc.middle, half, middle)
         xi = self.gradient(arc.lanes, arc.middle, middle)
-        for k, unit in enumerate(np.eye(len(middle))):
+        for k, unit in enumerate(np.eye(len(middle))[: self.known]):
             every = np.repeat(unit[:, np.newaxis], middle.shape[1], axis=1)
             slopes[:, k] -= half * self.bracket(arc.lanes, arc.middle, every, xi)
         return slopes

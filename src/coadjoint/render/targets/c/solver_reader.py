@@ -25,7 +25,7 @@ _FUNCTIONS = {
         for name, kind in {
             "rates": "LINKAGE",
             **dict.fromkeys(("domain", "projection", "noise", "kinks", JACOBIAN), "static"),
-            **dict.fromkeys(ASKED, "SPARED"),
+            **dict.fromkeys((*ASKED, "noise_gradient"), "SPARED"),
             **dict.fromkeys((*(f"flow{n}" for n in range(1, 7)), "kahan", "exact_body"), "INLINE"),
         }.items()
     },

@@ -159,6 +159,7 @@ def _is_allowed(item: ast.stmt) -> bool:
                 "MEMBERS",
                 "EXACT",
                 "NEWTON",
+                "ORBITS",
             )
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
             return name in ("REFUSALS", "SCHEDULES", "MOVED")
