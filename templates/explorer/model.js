@@ -3,6 +3,16 @@ const scene = JSON.parse(document.getElementById("scene-data").textContent);
 const size = (table) => scene.tables[table].reduce((sum, each) => sum + each.components.length, 0) *
   (scene.members && table === "state" ? scene.members : 1);
 
+/* A name as books write it; of those that the page gives itself, as it stands. */
+const WRITTEN = new Map(Object.values(scene.tables).flat().flatMap((each) => [[each.name, each.written], ...each.components.map((name, k) => [name, each.letters[k]])]));
+function nameOn(element, name) {
+  const [letters, below] = WRITTEN.get(name) || [name, ""];
+  element.replaceChildren(letters);
+  element.classList.toggle("word", letters.length > 1);
+  if (below) { const sub = document.createElement("sub"); sub.textContent = below; element.append(sub); }
+}
+const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
+
 class Model {
   constructor() {
     this.n = size("state");

@@ -114,6 +114,68 @@ def test_nothing_is_wider_than_a_phone(page, pages, name):
     ) == "play"  # fmt: skip
 
 
+@pytest.mark.parametrize("name", ["rigid_body", "kirchhoff", "snakeboard"])
+def test_labels_stand_within_and_cover_nothing(page, pages, name):
+    """Each label is as wide as its text, inside its box, and over no other one nor the title."""
+    show(page, pages(name), width=390, height=844)
+    page.wait("explorer.model.clock[0] > 0.3")
+    page.run("explorer.run(false)")
+    page.run("new Promise(requestAnimationFrame)")
+    boxes = page.run(
+        "[...document.querySelectorAll('.labels')].map(box => [box, ...box.children, "
+        "...(box.id === 'scene-labels' ? document.querySelectorAll('h1') : [])]"
+        ".filter(each => !each.hidden).map(each => { const b = each.getBoundingClientRect(); "
+        "return [b.left, b.top, b.right, b.bottom] }))"
+    )
+    count = 0
+    for frame, *labels in boxes:
+        for k, one in enumerate(labels):
+            assert one[0] >= frame[0]
+            assert one[2] <= frame[2]
+            for other in labels[:k]:
+                count += 1
+                apart = one[0] >= other[2] or other[0] >= one[2]
+                assert apart or one[1] >= other[3] or other[1] >= one[3], (one, other)
+    assert count >= 1
+
+
+def test_a_free_body_rolls_on_its_plane_and_shows_components(page, pages):
+    """Poinsot: the plane keeps its distance to the centre, and the body does not slip on it."""
+    show(page, pages("rigid_body"), calm=True)
+    assert page.run("explorer.view.rolls")
+    found = page.run("""(() => {
+      const { model, view } = explorer, deep = [], slip = [];
+      for (let k = 0; k < 400; k++) {
+        const at = view.contact(), q = multiply(view.flip, model.pose());
+        deep.push(rotate(q, at)[2]);
+        slip.push(norm(cross(model.read(scene.turning), at)));
+        model.step(model.h); model.observe(); view.draw(THEMES.light);
+      }
+      return [Math.min(...deep), Math.max(...deep), Math.max(...slip)];
+    })()""")
+    assert found[0] == pytest.approx(found[1], rel=1e-12)
+    assert found[0] < -0.1
+    assert found[2] < 1e-12
+    page.run("document.getElementById('cut').click(); explorer.run(true)")
+    page.wait("explorer.panel.past.length > 20")
+    assert "one closed level curve" in page.run(
+        "document.getElementById('section-told').textContent"
+    )
+    show(page, pages("heavy_top"), calm=True)
+    assert not page.run("explorer.view.rolls")
+
+
+def test_a_frame_takes_less_than_a_sixtieth_of_a_second(page, pages):
+    """Over five seconds of the heavy top, the script is done with a frame in the time of one."""
+    show(page, pages("heavy_top"))
+    page.run("explorer.costs.length = 0")
+    began = page.run("performance.now()")
+    page.wait(f"performance.now() - {began} > 5000")
+    costs = np.array(page.run("explorer.costs"))
+    assert costs.size > 20
+    assert np.median(costs) < 16
+
+
 def test_a_slider_moves_the_state_and_the_address(page, pages):
     """A component of the state follows its slider, and the fragment of the address has it."""
     show(page, pages("heavy_top"), calm=True)

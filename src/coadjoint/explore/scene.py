@@ -16,6 +16,7 @@ from coadjoint.declared import KernelContext, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
+from coadjoint.notation.names import GREEK, spell
 from coadjoint.pipeline import Rendered
 from coadjoint.render.families import FamilyContext
 from coadjoint.resources import derivations_folder
@@ -94,7 +95,9 @@ def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
     return [
         {
             "name": each.name,
+            "written": _write(each.name),
             "components": list(each.components),
+            "letters": [_write(name) for name in each.components],
             "units": [each.unit_of(name) for name in each.components],
             "doc": docs.get(each.name, ""),
             "default": None if each.default is None else list(each.default),
@@ -105,6 +108,17 @@ def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
         }
         for each in quantities
     ]
+
+
+def _write(name: str) -> tuple[str, str]:
+    """How a page writes a name: that of the rate of a coordinate is v with the coordinate below.
+
+    >>> _write("vphi"), _write("Omega2")
+    (('v', 'φ'), ('Ω', '2'))
+    """
+    if name.startswith("v") and name[1:] in GREEK:
+        return "v", spell(name[1:])[0]
+    return spell(name)
 
 
 def _describe_methods(
