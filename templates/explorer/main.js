@@ -48,6 +48,7 @@ function rangeOf(table, value, positive, big) {
 function addSliders(table, array, box) {
   let row = 0;
   for (const each of scene.tables[table]) {
+    if (each.hidden) { row += each.components.length; continue; } // of very many members
     const group = document.createElement("div"), values = each.components.map((_, k) => array[row + k]);
     group.className = "group";
     if (each.doc) { const doc = document.createElement("p"); doc.textContent = raise(each.doc); group.append(doc); }

@@ -68,13 +68,16 @@ class Model {
     for (const each of scene.tables.state) {
       const members = scene.members || 1;
       for (let k = 0; k < each.components.length * members; k++, row++) {
-        const given = each.default && (each.default.length > each.components.length ? k : Math.floor(k / members));
-        this.x[row] = each.default ? each.default[given] : 0;
+        this.x[row] = each.default ? each.default[k] : 0;
         if (!each.default) missing.push(row);
       }
     }
     if (missing.length && scene.kind === "particles") this.beginParticles(new Set(missing));
     else if (missing.length && scene.turning) this.beginBody(new Set(missing));
+    else if (scene.shape === "frames") missing.forEach((place) => { // frames that stand alike
+      const at = scene.place.indexOf(Math.floor(place / scene.members)), wide = scene.place.length / 3;
+      this.x[place] = at >= 0 && Math.floor(at / wide) === at % wide ? 1 : 0;
+    });
     else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
       const block = Math.floor(place / scene.members), s = 2 * Math.PI * (place % scene.members) / scene.members;
       this.x[place] = 0.5 + 0.4 * Math.cos(s + 2 * block);
@@ -193,7 +196,7 @@ class Model {
   }
 
   drift({ rows, first }) {
-    const big = Math.max(...first.map(Math.abs), 1e-12);
+    const most = Math.max(...first.map(Math.abs)), big = most > 1e-9 ? most : 1; // of what is zero, the drift itself
     return Math.max(...rows.map((row, k) => Math.abs(this.y[row] - first[k]))) / big;
   }
 

@@ -2,7 +2,7 @@
 
 /* The vector whose sphere is shown, and what its energy is the least over. */
 function chooseVector() {
-  if (scene.kind === "strand") return null;
+  if (scene.members) return null;
   const [rows, partner] = scene.spheres[0] || [null, []], names = scene.tables.state;
   const found = (places) => { let at = 0; for (const each of names) { if (at === places[0]) return each.name; at += each.components.length; } return ""; };
   if (rows) return { rows, partner, tied: true, name: found(rows), round: true };
@@ -291,7 +291,7 @@ class DriftStrip {
     });
   }
 }
-const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replace("-", "\u2212");
+const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replaceAll("-", "\u2212");
 const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${d.toExponential(0).replace("-", "\u2212")}`);
 const HIGH = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
 const LOW = ["\u2080", "\u2081", "\u2082", "\u2083", "\u2084", "\u2085", "\u2086", "\u2087", "\u2088", "\u2089"];

@@ -24,6 +24,11 @@ class Scene {
   clear() { this.trails = {}; }
   follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
   label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
+  /* Where a ray meets the plane through a point that faces the eye; of particles in a plane, that plane. */
+  meet(at, x, y, flat) {
+    const { drawing } = this, facing = flat ? E[2] : unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
+    return plus(drawing.eye, scaled(dot(minus(at, drawing.eye), facing) / dot(d, facing), d));
+  }
   turnable() { return false; }
   moving() {}
   sample() {}
@@ -320,11 +325,6 @@ class ParticleScene extends Scene {
     if (tip >= 0) return { move: (a, b) => this.aim(tip, a, b) };
     const found = this.positions().findIndex((p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 26; });
     return found < 0 ? null : { move: (a, b) => this.carry(found, a, b) };
-  }
-  /* Where a ray meets the plane through a point that faces the eye; of particles in a plane, that plane. */
-  meet(at, x, y, flat) {
-    const { drawing } = this, facing = flat ? E[2] : unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
-    return plus(drawing.eye, scaled(dot(minus(at, drawing.eye), facing) / dot(d, facing), d));
   }
   carry(k, x, y) {
     this.put(scene.places[k], this.meet(this.positions()[k], x, y, scene.places[k].rows.length === 2));

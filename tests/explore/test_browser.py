@@ -37,6 +37,12 @@ SHOWN = (
     "spin_chain",
     "kdv",
     "double_spherical_pendulum",
+    "point_vortices",
+    "sphere_vortices",
+    "n_body",
+    "peakons",
+    "toda_lattice",
+    "heisenberg_lattice",
 )
 #: Colours on the canvas of the scene, where something is drawn, in steps of 16.
 COLOURS = """(() => {
@@ -222,6 +228,13 @@ def test_a_hand_turns_the_body_and_moves_a_particle(page, pages):
     assert after[:3] == before[:3]
     assert np.linalg.norm(after[3:]) == pytest.approx(1)
     assert np.linalg.norm(np.subtract(after[3:], before[3:])) > 0.05
+    show(page, pages("point_vortices"), calm=True)
+    place = "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.places()[2]))"
+    at, before = page.run(place), page.run("[...explorer.model.x]")
+    page.drag(at, [at[0] - 30, at[1] + 20])
+    after = page.run("[...explorer.model.x]")
+    assert page.run(place) == pytest.approx([at[0] - 30, at[1] + 20], abs=2)
+    assert [k for k in range(12) if after[k] != before[k]] == [2, 8]
     show(page, pages("kepler"), calm=True)
     at = page.run("(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))")
     page.drag(at, [at[0] + 40, at[1] - 25])
