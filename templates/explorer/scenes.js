@@ -204,7 +204,7 @@ class BodyScene extends Scene {
 class RollingScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag the body to turn it, the floor to look around";
+    this.hint = scene.slipping ? "It slides on the plane: orange is the path of the contact. Drag the body to turn it" : "Drag the body to turn it, the floor to look around";
     this.surface();
   }
   surface() {
@@ -233,8 +233,7 @@ class RollingScene extends Scene {
   moving() { const { distance, pitch } = this.camera; this.surface(); Object.assign(this.camera, { distance, pitch }); }
   draw(theme) {
     const { model, drawing, size } = this, q = model.pose(), up = model.read(scene.vertical);
-    const rows = model.quaternionRows(), free = [...model.rest.keys()].filter((row) => !rows.includes(row));
-    const contact = [model.rest[free[0]], model.rest[free[1]], 0], arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
+    const contact = this.contact(), arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
     this.centre = at;
     this.radius = size;
     this.follow(at);
@@ -261,8 +260,14 @@ class RollingScene extends Scene {
   }
   /* The trace of the contact, at every step. */
   sample() {
-    const rows = (this.free ||= [...this.model.rest.keys()].filter((row) => !this.model.quaternionRows().includes(row)));
-    this.trail("contact").add([this.model.rest[rows[0]], this.model.rest[rows[1]], 0.004 * this.size], 0.02 * this.size);
+    this.trail("contact").add(plus(this.contact(), [0, 0, 0.004 * this.size]), 0.02 * this.size);
+  }
+  /* Where it touches the plane: reconstructed, or below a centre that slides along. */
+  contact() {
+    const { model } = this;
+    if (scene.slipping) { const arm = rotate(model.pose(), model.arm(unit(model.read(scene.vertical)))); return [model.position[0] - arm[0], model.position[1] - arm[1], 0]; }
+    const rows = (this.free ||= [...model.rest.keys()].filter((row) => !model.quaternionRows().includes(row)));
+    return [model.rest[rows[0]], model.rest[rows[1]], 0];
   }
   rim(q, at, theme) {
     const ring = Array.from({ length: 65 }, (_, k) => plus(at, rotate(q, scaled(this.size, [Math.cos(k * Math.PI / 32), Math.sin(k * Math.PI / 32), 0]))));

@@ -120,6 +120,24 @@ def test_nothing_is_wider_than_a_phone(page, pages, name):
     ) == "play"  # fmt: skip
 
 
+def test_a_top_that_slides_is_a_ball_whose_contact_slips(page, pages):
+    """The surface of the tippe top is the sphere of radius r about a point e from its centre."""
+    show(page, pages("tippe_top"), calm=True)
+    assert page.run("scene.slipping.name") == "slip"
+    points = np.array(
+        page.run(
+            "[[0, 0, 1], [0.6, 0, 0.8], [0, 1, 0], [0.48, 0.6, -0.64]]"
+            ".map(up => explorer.model.arm(up))"
+        )
+    )
+    # from the contact to the centre of mass: r Gamma - e e3, with r = 1 and e = 0.2
+    ups = np.array([[0, 0, 1], [0.6, 0, 0.8], [0, 1, 0], [0.48, 0.6, -0.64]])
+    np.testing.assert_allclose(points, ups - [0, 0, 0.2], atol=1e-12)
+    before = page.run("explorer.view.contact()")
+    page.run("for (let k = 0; k < 300; k++) explorer.model.step(explorer.model.h)")
+    assert np.linalg.norm(np.subtract(page.run("explorer.view.contact()"), before)) > 1e-4
+
+
 @pytest.mark.parametrize("name", ["rigid_body", "kirchhoff", "snakeboard"])
 def test_labels_stand_within_and_cover_nothing(page, pages, name):
     """Each label is as wide as its text, inside its box, and over no other one nor the title."""

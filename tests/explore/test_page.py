@@ -116,6 +116,7 @@ def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):
         ("rigid_body", "body", {"turning": "observables", "vertical": None}),
         ("kirchhoff", "body", {"moving": "observables", "vertical": None}),
         ("euler_disk", "rolling", {"turning": "state", "vertical": "state"}),
+        ("tippe_top", "rolling", {"moving": "state", "vertical": "state"}),
         ("quadrotor", "body", {"vertical": "state", "stick": "M"}),
         ("spacecraft_wheels", "body", {"attitude": "state", "moving": None, "stick": ""}),
         ("three_wave", "portrait", {}),

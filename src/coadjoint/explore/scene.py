@@ -220,6 +220,9 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
     }
     if spec.rolling and spec.rolling.normal and attitude and drawn["turning"]:
         return {"kind": "rolling", **drawn}
+    slips = _find_slips(spec, context, finder, drawn)
+    if slips:
+        return {"kind": "rolling", **drawn, "slips": slips}
     if drawn["turning"] and spec.invariance == "left":
         return {"kind": "body", **drawn}
     if spec.algebra and spec.algebra.name == "se(2)" and len(context.reconstructed) == 3:
@@ -249,6 +252,32 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
             f"one of these, or from 2 to {PORTRAIT} rows",
         )
     return {"kind": "portrait"}
+
+
+def _find_slips(
+    spec: Spec, context: KernelContext, finder: _Finder, drawn: Mapping[str, Any]
+) -> list[Rows]:
+    """Vectors that may be the velocity of a body's point at a contact that slides.
+
+    Where one condition alone binds turning and moving, a body may slide on a plane. The page takes
+    the first of these that depends on the velocities as ``Y - Omega x s``, and whose part along the
+    vertical is that condition; without one it shows a body.
+    """
+    names = ("turning", "moving", "vertical")
+    residual = next((each for each in context.programs if each.name == "constraint_residual"), None)
+    alone = residual is not None and len(residual.outputs) == 1
+    if not alone or not all(drawn[name] and drawn[name]["table"] == "state" for name in names):
+        return []
+    declared = {each.name for each in spec.observables}
+    vectors = [q for q in context.observables if q.name in declared and q.shape == (3,)]
+    return [
+        {
+            "name": each.name,
+            "table": "observables",
+            "rows": [finder.rows[c][1] for c in each.components],
+        }
+        for each in vectors
+    ]
 
 
 def _find_blocks(spec: Spec) -> dict[str, tuple[int, ...]]:
