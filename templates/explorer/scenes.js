@@ -350,11 +350,12 @@ class ParticleScene extends Scene {
 class PlanarScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
+    this.camera.pitch = 0.75;
+    if (scene.kind !== "planar") return;
     const wheels = this.wheels();
     this.hint = wheels.length ? "Drag to look around; wheels stand where the constraints put them" : "Drag to look around";
     this.size = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.1) * 1.25;
     this.camera.distance = 9 * this.size;
-    this.camera.pitch = 0.75;
   }
   /* Rows of constraints are linear in the velocities of the frame: n . (v + omega x p). */
   wheels() {

@@ -138,6 +138,22 @@ def test_a_top_that_slides_is_a_ball_whose_contact_slips(page, pages):
     assert np.linalg.norm(np.subtract(page.run("explorer.view.contact()"), before)) > 1e-4
 
 
+def test_carriages_have_the_lengths_of_their_specs(page, pages):
+    """The racer's joint is d1 = 1 before its axle, its second axle d2 = 0.2 behind that."""
+    show(page, pages("roller_racer"), calm=True)
+    (link,) = page.run("explorer.view.findLinks()")
+    assert link["joint"] == pytest.approx(1.0, rel=1e-12)
+    assert link["length"] == pytest.approx(0.2, rel=1e-12)
+    (wheel,) = page.run("explorer.view.wheels()")
+    assert (wheel["at"], wheel["angle"]) == (0, 0)
+    page.run("explorer.model.p[explorer.model.p.length - 2] = 1.5")  # d1
+    assert page.run("explorer.view.findLinks()[0].joint") == pytest.approx(1.5, rel=1e-12)
+    show(page, pages("appell_machine"), calm=True)  # its wheel is rho = 0.3 before the weight
+    assert page.run("explorer.view.links") == []
+    (wheel,) = page.run("explorer.view.wheels()")
+    assert wheel["at"] == pytest.approx(0.3, rel=1e-12)
+
+
 @pytest.mark.parametrize("name", ["rigid_body", "kirchhoff", "snakeboard"])
 def test_labels_stand_within_and_cover_nothing(page, pages, name):
     """Each label is as wide as its text, inside its box, and over no other one nor the title."""

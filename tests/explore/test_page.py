@@ -121,6 +121,8 @@ def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):
         ("spacecraft_wheels", "body", {"attitude": "state", "moving": None, "stick": ""}),
         ("three_wave", "portrait", {}),
         ("snakeboard", "planar", {}),
+        ("roller_racer", "carriage", {}),
+        ("appell_machine", "carriage", {}),
         ("monopole_kepler", "particles", {}),
         ("spin_chain", "strand", {}),
         ("kdv", "profile", {}),

@@ -30,6 +30,7 @@ SCRIPTS: Final = (
     "drawing.js",
     "model.js",
     "scenes.js",
+    "carriages.js",
     "members.js",
     "panels.js",
     "main.js",

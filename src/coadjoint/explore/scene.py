@@ -231,6 +231,8 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
         angles = [finder.find(v) for v in spec.having_role("coordinate")]
         if len(along) == 3 and all(each and each["table"] == "state" for each in along):
             return {"kind": "planar", "frame": along, "angles": [each for each in angles if each]}
+        if len(along) == 3 and all(along):
+            return _describe_carriage(spec, finder, named)
     places = [v for v in spec.having_role("coordinate") if v.shape in ((2,), (3,))]
     partners = [
         spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
@@ -252,6 +254,27 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
             f"one of these, or from 2 to {PORTRAIT} rows",
         )
     return {"kind": "portrait"}
+
+
+def _describe_carriage(
+    spec: Spec, finder: _Finder, blocks: list[tuple[int, ...]]
+) -> dict[str, Any]:
+    """A vehicle some of whose velocities follow from others: its frame, and angles with rates."""
+    turning, first, second = blocks
+    own = {v.block: finder.find(v) for v in spec.having_role("velocity")}
+    free = [finder.find(v) for v in spec.having_role("velocity")]
+    angles = [(v, spec.partner("velocity", v.name)) for v in spec.having_role("coordinate")]
+    found = [(finder.find(v), finder.find(rate)) for v, rate in angles]
+    return {
+        "kind": "carriage",
+        "frame": [own[first], own[second], own[turning]],
+        "free": [each["rows"][0] for each in free if each and each["table"] == "state"],
+        "turns": [
+            {"angle": angle, "rate": rate}
+            for angle, rate in found
+            if angle and rate and angle["table"] == "state" and rate["table"] == "observables"
+        ],
+    }
 
 
 def _find_slips(
