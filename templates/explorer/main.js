@@ -28,7 +28,7 @@ function run(on) {
   if (!on) save();
   tell(on ? "Running" : `Paused at ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime)}`);
 }
-function refresh() { view.clear(); panel.trail = new Trail(); panel.last = null; panel.run += 1; strip.clear(); model.observe(); showSliders(true); }
+function refresh() { view.clear(); panel.clear(); strip.clear(); model.observe(); showSliders(true); }
 function reset() {
   model.x.set(start.x);
   model.settle();
@@ -334,7 +334,7 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
-id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.join(", ")}` : ""}.`;
+id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.map(plainName).join(", ")}` : ""}.`;
 id("kept").hidden = !model.integrals.length;
 load();
 addEventListener("hashchange", load);

@@ -133,10 +133,10 @@ class SpherePanel {
     labels.unshift({ text: this.name, at, kind: this.tint === RED ? "red" : this.tint === GREEN ? "green" : "blue", behind: this.hides(at) });
   }
   names() { return this.vector ? scene.tables.state.flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components; }
-  /* The time in which the vector goes as far as its length. */
+  /* The least time so far in which the vector goes as far as its length. */
   pace() {
     const w = this.value(), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
-    return (this.stride ||= (norm(w) || 1) / (norm(this.vector.rows.map((row) => rates[row])) || 1));
+    return (this.stride = Math.min(this.stride ?? Infinity, (norm(w) || 1) / (norm(this.vector.rows.map((row) => rates[row])) || 1)));
   }
   axes(theme, labels) {
     const names = this.names();
@@ -166,10 +166,11 @@ class SpherePanel {
       model.ended = "";
       model.measure();
     }
-    this.trail = new Trail();
-    this.run += 1;
-    this.last = null;
+    this.clear();
   }
+
+  /* What was drawn of the motion until now is not of this one. */
+  clear() { this.trail = new Trail(); this.last = null; this.run += 1; this.past = []; this.stride = undefined; }
 
   /* A half plane through the axis and a direction; the motion leaves a dot where it crosses it. */
   cut(direction) {
@@ -231,7 +232,7 @@ function drawSection(canvas, panel, theme) {
 /* The rows of the vector over the last while, named where they end. */
 function drawComponents(canvas, panel, theme) {
   const [pen, wide, high] = fitCanvas(canvas), past = panel.past, now = past.length ? past[past.length - 1][0] : 0;
-  const span = 16 * panel.pace(), right = wide - 26, most = norm(panel.value()) || 1, y = (v) => high / 2 - v / most * (high / 2 - 8);
+  const span = 12 * panel.pace(), right = wide - 26, most = norm(panel.value()) || 1, y = (v) => high / 2 - v / most * (high / 2 - 8);
   pen.strokeStyle = pen.fillStyle = theme.pen;
   pen.globalAlpha = 0.35;
   pen.strokeRect(0.5, high / 2, right, 0);

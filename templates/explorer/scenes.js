@@ -170,7 +170,7 @@ class BodyScene extends Scene {
       this.label(scene.turning.name, tip, "green");
     }
     if (scene.vertical && !model.u.length) { // the point on the sphere is this direction, seen from the body
-      const along = rotate(q, unit(model.read(scene.vertical))), tip = plus(at, scaled(1.2 * far, along));
+      const along = rotate(q, unit(model.read(scene.vertical))), tip = plus(at, scaled(far, along));
       drawing.arrow(at, tip, BLUE, 0.014);
       this.label(scene.vertical.name, tip, "blue");
     }
