@@ -276,6 +276,13 @@ def test_a_hand_turns_the_body_and_moves_a_particle(page, pages):
         "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))"
     )
     assert found == pytest.approx([at[0] + 40, at[1] - 25], abs=2)
+    page.run("explorer.paint()")
+    tip = "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.tip(0)))"
+    at, before = page.run(tip), page.run("[...explorer.model.x]")
+    page.drag(at, [at[0] + 25, at[1] - 20])
+    after = page.run("[...explorer.model.x]")
+    assert page.run(tip) == pytest.approx([at[0] + 25, at[1] - 20], abs=2)
+    assert sum(a != b for a, b in zip(after, before, strict=True)) == 3  # the velocity alone
 
 
 def test_a_click_cuts_and_crossings_become_dots(page, pages):
