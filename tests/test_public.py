@@ -97,6 +97,23 @@ def test_loading_reports_progress(own):
     assert {step[0] for step in seen} == {"my_body"}
 
 
+def test_loading_tells_a_terminal_and_leaves_it_clean(own, capsys, monkeypatch):
+    """Stages stand on one line of a terminal, which is empty at the end; a pipe is told nothing."""
+    coadjoint.load(own)
+    assert capsys.readouterr() == ("", "")
+    own.write_text(own.read_text().replace("[1, 2, 3]", "[2, 3, 5]"))
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    coadjoint.load(own)
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "\n" not in told.err
+    *stages, empty, end = told.err.split("\r")[1:]
+    assert stages
+    assert all(each.startswith("my_body: ") for each in stages)
+    assert max(map(len, stages)) <= len(empty)
+    assert (empty.strip(), end) == ("", "")
+
+
 def test_one_setting_raises_the_limit_of_time(own, monkeypatch):
     """The environment bounds a derivation, the message says how to raise it, an argument does."""
     monkeypatch.setenv("COADJOINT_SECONDS", "1")

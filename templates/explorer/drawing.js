@@ -186,6 +186,16 @@ class Drawing {
     this.draw("floor", [1, 0, 0, 0], at, [radius, radius, 1], colour, { second: line, paint: cell, program: this.floorProgram, shadow });
   }
 
+  /* Small crosses that rest in space, around a place. */
+  lattice(middle, cell, reach, colour) {
+    const data = [], steps = Math.ceil(reach / cell), base = middle.map((v) => Math.round(v / cell));
+    for (let i = -steps; i <= steps; i++) for (let j = -steps; j <= steps; j++) for (let k = -steps; k <= steps; k++) {
+      const at = [base[0] + i, base[1] + j, base[2] + k].map((v) => cell * v), tint = [...colour, 0.9 * clamp(1.2 - norm(minus(at, middle)) / reach, 0, 1)];
+      if (tint[3] > 0) for (const axis of E) data.push(...minus(at, scaled(0.045, axis)), ...plus(at, scaled(0.045, axis)), ...tint, ...tint);
+    }
+    this.pairs(new Float32Array(data), data.length / 14, 1.5);
+  }
+
   arrow(from, to, colour, thick) {
     const along = minus(to, from), length = norm(along);
     if (!(length > 4 * thick)) return;
@@ -214,6 +224,13 @@ class Drawing {
     gl.depthMask(false);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     gl.depthMask(true);
+  }
+
+  /* Draw without regard to what stands before. */
+  through(drawn) {
+    this.gl.disable(this.gl.DEPTH_TEST);
+    drawn();
+    this.gl.enable(this.gl.DEPTH_TEST);
   }
 
   /* Where a point is on the canvas, in CSS pixels, and whether it is in front of the eye. */

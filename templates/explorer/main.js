@@ -3,23 +3,14 @@ const id = (name) => document.getElementById(name);
 const model = new Model();
 const dark = matchMedia("(prefers-color-scheme: dark)"), calm = matchMedia("(prefers-reduced-motion: reduce)");
 const THEMES = {
-  light: { dark: 0, floor: [0.93, 0.915, 0.88], line: [0.66, 0.64, 0.60], steel: [0.45, 0.48, 0.52], body: [0.24, 0.50, 0.78], body2: [0.88, 0.90, 0.92], ball: [0.90, 0.92, 0.94], ambient: 0.5, pen: "#222" },
-  dark: { dark: 1, floor: [0.13, 0.15, 0.18], line: [0.42, 0.47, 0.53], steel: [0.60, 0.64, 0.69], body: [0.27, 0.53, 0.82], body2: [0.80, 0.83, 0.87], ball: [0.20, 0.24, 0.29], ambient: 0.38, pen: "#ddd" },
+  light: { dark: 0, floor: [0.93, 0.915, 0.88], line: [0.66, 0.64, 0.60], steel: [0.45, 0.48, 0.52], body: [0.24, 0.50, 0.78], body2: [0.88, 0.90, 0.92], ball: [0.90, 0.92, 0.94], ambient: 0.5, pen: "#222", inks: ["#1a5a9e", "#9a4b00", "#0b6650", "#9c2f26", "#6a3d9a"] },
+  dark: { dark: 1, floor: [0.13, 0.15, 0.18], line: [0.42, 0.47, 0.53], steel: [0.60, 0.64, 0.69], body: [0.27, 0.53, 0.82], body2: [0.80, 0.83, 0.87], ball: [0.20, 0.24, 0.29], ambient: 0.38, pen: "#ddd", inks: ["#8cc2f5", "#f0b070", "#6fd3b4", "#f0988e", "#c4a6f0"] },
 };
-let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0;
+let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0, kept = [];
 
 const drawing = new Drawing(id("scene")), view = new SCENES[scene.kind](model, drawing), panel = new SpherePanel(model, id("sphere"));
 const strip = new DriftStrip(model, id("drift"));
 const start = { x: Float64Array.from(model.x), p: Float64Array.from(model.p), u: Float64Array.from(model.u) };
-
-/* A name with its digits below, as books write it. */
-const GREEK = { Omega: "\u03a9", omega: "\u03c9", Pi: "\u03a0", Gamma: "\u0393", Xi: "\u039e", psi: "\u03c8", phi: "\u03c6", theta: "\u03b8", chi: "\u03c7", mu: "\u03bc", lam: "\u03bb", alpha: "\u03b1", beta: "\u03b2", gamma: "\u03b3", kappa: "\u03ba", rho: "\u03c1", sigma: "\u03c3" };
-function nameOn(element, name) {
-  const parts = /^([A-Za-z]+?)_?(\d*)$/.exec(name), letters = parts ? parts[1] : name;
-  element.replaceChildren(GREEK[letters] || (letters.startsWith("v") && GREEK[letters.slice(1)] ? `v${GREEK[letters.slice(1)]}` : letters));
-  if (parts && parts[2]) { const sub = document.createElement("sub"); sub.textContent = parts[2]; element.append(sub); }
-}
-const plainName = (name) => GREEK[name] || name;
 
 let quiet = 0;
 function tell(text, seen = false) {
@@ -37,7 +28,7 @@ function run(on) {
   if (!on) save();
   tell(on ? "Running" : `Paused at ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime)}`);
 }
-function refresh() { view.clear(); panel.trail = new Trail(); panel.last = null; panel.run += 1; strip.clear(); model.observe(); showSliders(true); }
+function refresh() { view.clear(); panel.clear(); strip.clear(); model.observe(); showSliders(true); }
 function reset() {
   model.x.set(start.x);
   model.settle();
@@ -57,6 +48,7 @@ function rangeOf(table, value, positive, big) {
 function addSliders(table, array, box) {
   let row = 0;
   for (const each of scene.tables[table]) {
+    if (each.hidden) { row += each.components.length; continue; } // of very many members
     const group = document.createElement("div"), values = each.components.map((_, k) => array[row + k]);
     group.className = "group";
     if (each.doc) { const doc = document.createElement("p"); doc.textContent = raise(each.doc); group.append(doc); }
@@ -190,7 +182,19 @@ function press() {
   id("cut").setAttribute("aria-pressed", String(cutting));
   id("sphere-hint").textContent = cutting ? "Click the sphere: crossings of the half plane through that point become dots." : HINT;
 }
-id("cut").addEventListener("click", () => { cutting = !cutting; press(); });
+if (panel.shown && panel.closed) id("cut").textContent = "Components";
+id("cut").addEventListener("click", () => {
+  if (panel.closed) {
+    panel.plotted = !panel.plotted;
+    id("section-box").hidden = !panel.plotted;
+    id("cut").setAttribute("aria-pressed", String(panel.plotted));
+    id("section").setAttribute("aria-label", "Components against time");
+    id("section-told").textContent = panel.tellClosed();
+    return;
+  }
+  cutting = !cutting;
+  press();
+});
 for (const [canvas, own] of [["scene", view], ["sphere", panel]]) id(canvas).addEventListener("wheel", (event) => {
   event.preventDefault();
   own.camera.distance *= Math.exp(0.001 * event.deltaY);
@@ -245,21 +249,40 @@ function steer() {
 
 // -- frames ---------------------------------------------------------------------------------------
 
-function showLabels(box, labels, pen) {
+/* Where a label stands by its point: the first place where it covers nothing else. */
+const SIDES = [[0.5, -1], [-0.5, -1], [0.5, 1], [-0.5, 1], [0, -1.3], [0, 1.3]];
+const touch = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+function showLabels(box, labels, pen, kept = []) {
   while (box.children.length < labels.length) box.append(document.createElement("span"));
-  const taken = [];
+  const taken = [...kept], wide = box.clientWidth, high = box.clientHeight;
   [...box.children].forEach((span, k) => {
-    const own = labels[k];
+    const own = labels[k], key = own && `${own.text} ${own.kind}`;
     span.hidden = !own || !own.text;
     if (span.hidden) return;
-    if (span.dataset.name !== own.text) { nameOn(span, own.text); span.dataset.name = own.text; }
-    span.className = own.kind;
-    const at = pen.project(own.at), x = clamp(at.x + 8, 4, box.clientWidth - 60), y = clamp(at.y - 18, 4, box.clientHeight - 20);
-    const clash = taken.some(([a, b]) => Math.abs(a - x) < 34 && Math.abs(b - y) < 17);
-    span.hidden = !at.front || clash;
-    if (!clash) taken.push([x, y]);
-    span.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    if (span.dataset.key !== key) {
+      span.dataset.key = key;
+      span.className = own.kind;
+      nameOn(span, own.text);
+      span.extent = [span.offsetWidth + 2, span.offsetHeight + 2];
+    }
+    span.classList.toggle("behind", Boolean(own.behind));
+    const [w, h] = span.extent, at = pen.project(own.at);
+    const near = at.front && at.x > -30 && at.x < wide + 30 && at.y > -30 && at.y < high + 30;
+    const put = (side) => { const x = clamp(at.x + side[0] * (w + 16) - w / 2, 2, Math.max(wide - w - 2, 2)), y = clamp(at.y + 0.5 * side[1] * (h + 8) - h / 2, 2, Math.max(high - h - 2, 2)); return [x, y, x + w, y + h]; };
+    const free = (place) => !taken.some((each) => touch(each, place));
+    const sides = span.side ? [span.side, ...SIDES] : SIDES, side = near && sides.find((each) => free(put(each)));
+    span.hidden = !side;
+    if (!side) return;
+    span.side = side;
+    const place = put(side);
+    taken.push(place);
+    span.style.transform = `translate(${place[0].toFixed(1)}px, ${place[1].toFixed(1)}px)`;
   });
+}
+/* What labels of the scene leave free: the title, the hint and the buttons. */
+function keepFree() {
+  const stage = id("scene").getBoundingClientRect();
+  return [...document.querySelectorAll("h1, #about, #hint, #controls > *, #pad")].filter((each) => !each.hidden).map((each) => { const b = each.getBoundingClientRect(); return [b.left - stage.left, b.top - stage.top, b.right - stage.left, b.bottom - stage.top]; });
 }
 function advance(seconds) {
   const until = performance.now() + 11;
@@ -279,12 +302,14 @@ function paint() {
   view.labels = [];
   drawing.begin(view.camera, theme.ambient);
   view.draw(theme);
-  showLabels(id("scene-labels"), view.labels, drawing);
+  if (frames % 30 === 0) kept = keepFree();
+  showLabels(id("scene-labels"), view.labels, drawing, kept);
   if (panel.shown) {
     const labels = [];
     panel.draw(theme, labels);
     showLabels(id("sphere-labels"), labels, panel.drawing);
-    if (panel.plane) {
+    if (panel.plotted) drawComponents(id("section"), panel, theme);
+    else if (panel.plane) {
       drawSection(id("section"), panel, theme);
       id("section-told").textContent = `${panel.dots.length} crossings: up, the third component by the length; across, its rate.`;
     }
@@ -298,18 +323,21 @@ function paint() {
   frames += 1;
 }
 let before = 0;
+const costs = [];
 function frame(now) {
-  const passed = clamp((now - before) / 1000, 0, 0.05);
+  const passed = clamp((now - before) / 1000, 0, 0.05), began = performance.now();
   before = now;
   if (running) advance(passed);
   paint();
+  costs.push(performance.now() - began);
+  if (costs.length > 600) costs.shift();
   requestAnimationFrame(frame);
 }
 const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
-id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.join(", ")}` : ""}.`;
+id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.map(plainName).join(", ")}` : ""}.`;
 id("kept").hidden = !model.integrals.length;
 load();
 addEventListener("hashchange", load);
-globalThis.explorer = { model, view, panel, run, reset, paint, frames: () => frames, isRunning: () => running };
+globalThis.explorer = { model, view, panel, run, reset, paint, frames: () => frames, costs, isRunning: () => running };
 run(!calm.matches);
 requestAnimationFrame((now) => { before = now; frame(now); });

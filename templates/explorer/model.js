@@ -3,6 +3,16 @@ const scene = JSON.parse(document.getElementById("scene-data").textContent);
 const size = (table) => scene.tables[table].reduce((sum, each) => sum + each.components.length, 0) *
   (scene.members && table === "state" ? scene.members : 1);
 
+/* A name as books write it; of those that the page gives itself, as it stands. */
+const WRITTEN = new Map(Object.values(scene.tables).flat().flatMap((each) => [[each.name, each.written], ...each.components.map((name, k) => [name, each.letters[k]])]));
+function nameOn(element, name) {
+  const [letters, below] = WRITTEN.get(name) || [name, ""];
+  element.replaceChildren(letters);
+  element.classList.toggle("word", letters.length > 1);
+  if (below) { const sub = document.createElement("sub"); sub.textContent = below; element.append(sub); }
+}
+const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
+
 class Model {
   constructor() {
     this.n = size("state");
@@ -23,6 +33,8 @@ class Model {
     this.position = [0, 0, 0];
     this.attitude = [1, 0, 0, 0];
     this.begin();
+    scene.slipping = this.findSlip();
+    if (scene.slips && !scene.slipping) scene.kind = "body";
   }
 
   fill(table, array) {
@@ -58,13 +70,16 @@ class Model {
     for (const each of scene.tables.state) {
       const members = scene.members || 1;
       for (let k = 0; k < each.components.length * members; k++, row++) {
-        const given = each.default && (each.default.length > each.components.length ? k : Math.floor(k / members));
-        this.x[row] = each.default ? each.default[given] : 0;
+        this.x[row] = each.default ? each.default[k] : 0;
         if (!each.default) missing.push(row);
       }
     }
     if (missing.length && scene.kind === "particles") this.beginParticles(new Set(missing));
     else if (missing.length && scene.turning) this.beginBody(new Set(missing));
+    else if (scene.shape === "frames") missing.forEach((place) => { // frames that stand alike
+      const at = scene.place.indexOf(Math.floor(place / scene.members)), wide = scene.place.length / 3;
+      this.x[place] = at >= 0 && Math.floor(at / wide) === at % wide ? 1 : 0;
+    });
     else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
       const block = Math.floor(place / scene.members), s = 2 * Math.PI * (place % scene.members) / scene.members;
       this.x[place] = 0.5 + 0.4 * Math.cos(s + 2 * block);
@@ -143,15 +158,28 @@ class Model {
     });
   }
 
+  /* The velocity of the body's point at a contact that slides, among vectors that may be it. */
+  findSlip() {
+    const x = Float64Array.from(this.x), { turning, moving, vertical } = scene, up = [0.48, 0.6, 0.64];
+    const at = (each, w, v) => { this.write(vertical, up, x); this.write(turning, w, x); this.write(moving, v, x); return this.read(each, x); };
+    const near = (a, b) => norm(minus(a, b)) < 1e-9;
+    return (scene.slips || []).find((each) => {
+      const [a, b, c] = E.map((axis) => at(each, axis, [0, 0, 0])), arm = [b[2], c[0], a[1]].map((v) => -v);
+      const w = [0.3, -0.7, 0.5], v = [0.2, 0.9, -0.4], found = at(each, w, v), bound = this.call("constraint_residual", x, new Float64Array(1))[0];
+      return near(found, minus(v, cross(w, scaled(-1, arm)))) && Math.abs(bound - dot(up, found)) < 1e-9;
+    });
+  }
+
   /* The arm from the point of contact to the centre: Y = Omega x s is linear in Omega. */
   arm(up) {
     this.half.set(this.x);
     this.write(scene.vertical, up, this.half);
     this.write(scene.turning, E[0], this.half);
-    const first = this.read(scene.moving, this.half);
+    if (scene.slipping) this.write(scene.moving, [0, 0, 0], this.half); // the slip is Y - Omega x s
+    const of = scene.slipping || scene.moving, sign = scene.slipping ? -1 : 1, first = this.read(of, this.half);
     this.write(scene.turning, E[1], this.half);
-    const second = this.read(scene.moving, this.half);
-    return [-second[2], first[2], second[0]];
+    const second = this.read(of, this.half);
+    return scaled(sign, [-second[2], first[2], second[0]]);
   }
 
   /* What goes with a state: the attitude, step, and integrals that its drift is measured from. */
@@ -183,7 +211,7 @@ class Model {
   }
 
   drift({ rows, first }) {
-    const big = Math.max(...first.map(Math.abs), 1e-12);
+    const most = Math.max(...first.map(Math.abs)), big = most > 1e-9 ? most : 1; // of what is zero, the drift itself
     return Math.max(...rows.map((row, k) => Math.abs(this.y[row] - first[k]))) / big;
   }
 
@@ -220,7 +248,7 @@ class Model {
       const q = this.attitude, w = this.read(scene.turning, this.half);
       this.attitude = normal(multiply(q, turnBy(scaled(h, w))));
     }
-    if (scene.moving && scene.kind === "body")
+    if (scene.moving && (scene.kind === "body" || scene.slipping))
       this.position = plus(this.position, scaled(h, rotate(this.pose(), this.read(scene.moving, this.half))));
     this.clock[0] += h;
     return true;

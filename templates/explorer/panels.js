@@ -2,7 +2,7 @@
 
 /* The vector whose sphere is shown, and what its energy is the least over. */
 function chooseVector() {
-  if (scene.kind === "strand") return null;
+  if (scene.members) return null;
   const [rows, partner] = scene.spheres[0] || [null, []], names = scene.tables.state;
   const found = (places) => { let at = 0; for (const each of names) { if (at === places[0]) return each.name; at += each.components.length; } return ""; };
   if (rows) return { rows, partner, tied: true, name: found(rows), round: true };
@@ -26,6 +26,10 @@ class SpherePanel {
     this.name = this.vector ? this.vector.name : scene.tables.state[0].name;
     this.scale = 1;
     this.last = null;
+    this.plotted = false;
+    this.past = [];
+    this.closed = Boolean(this.vector) && this.vector.round && !this.vector.partner.length && model.n === 3;
+    if (this.vector) this.tint = { [scene.spinning?.name]: RED, [scene.turning?.name]: GREEN, [scene.speeds?.[0]?.name]: GREEN }[this.name] || BLUE;
     if (this.vector) this.face();
   }
   /* Look from the side on which the point is, not straight at it. */
@@ -115,21 +119,40 @@ class SpherePanel {
     }
     const at = scaled(this.scale, w);
     this.trail.add(at, 0.01);
-    drawing.line(this.trail.points, fade(BLUE), 3);
+    if (this.vector.round) drawing.through(() => { // what is behind the ball, faintly
+      drawing.line(this.trail.points, fade(this.tint, 0.25), 2);
+      drawing.draw("sphere", [1, 0, 0, 0], at, [0.05, 0.05, 0.05], [...this.tint, 0.35]);
+    });
+    drawing.line(this.trail.points, fade(this.tint), 3);
     this.axes(theme, labels);
     if (this.plane) {
       const ring = Array.from({ length: 49 }, (_, k) => { const a = Math.PI * (k / 48 - 0.5); return plus(scaled(1.006 * Math.cos(a), this.plane.out), [0, 0, 1.006 * Math.sin(a)]); });
       drawing.line(ring, () => [...GREEN, 1], 3);
     }
-    drawing.draw("sphere", [1, 0, 0, 0], at, [0.062, 0.062, 0.062], BLUE);
-    labels.push({ text: this.name, at, kind: "blue" });
+    drawing.draw("sphere", [1, 0, 0, 0], at, [0.062, 0.062, 0.062], this.tint);
+    labels.unshift({ text: this.name, at, kind: this.tint === RED ? "red" : this.tint === GREEN ? "green" : "blue", behind: this.hides(at) });
+  }
+  names() { return this.vector ? scene.tables.state.flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components; }
+  /* The least time so far in which the vector goes as far as its length. */
+  pace() {
+    const w = this.value(), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
+    return (this.stride = Math.min(this.stride ?? Infinity, (norm(w) || 1) / (norm(this.vector.rows.map((row) => rates[row])) || 1)));
   }
   axes(theme, labels) {
-    const names = this.vector ? scene.tables.state.flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components;
+    const names = this.names();
     E.forEach((axis, k) => {
-      this.drawing.line([scaled(1.0, axis), scaled(1.3, axis)], () => [...theme.steel, 0.9], 2);
-      labels.push({ text: names[k] || "", at: scaled(1.42, axis), kind: "axis" });
+      this.drawing.line([scaled(this.vector && !this.vector.round ? 0 : 1, axis), scaled(1.3, axis)], () => [...theme.steel, 0.9], 2);
+      labels.push({ text: names[k] || "", at: scaled(1.34, axis), kind: "axis", behind: this.hides(scaled(1.34, axis)) });
     });
+  }
+  /* Whether the ball stands before a point. */
+  hides(at) {
+    if (this.vector && !this.vector.round) return false;
+    const { eye } = this.drawing, along = minus(at, eye), s = -dot(eye, along) / dot(along, along);
+    return dot(at, eye) < 1 && s > 0 && s < 1 && norm(plus(eye, scaled(s, along))) < 1;
+  }
+  tellClosed() {
+    return `Components against time. ${model.integrals.length ? "This motion is one closed level curve: a section of it would be one dot." : "The state has no more rows than these, so that a section would be dots on one curve."}`;
   }
 
   /* Put the point in a direction: a vertical by turning the body, anything else by itself. */
@@ -143,10 +166,11 @@ class SpherePanel {
       model.ended = "";
       model.measure();
     }
-    this.trail = new Trail();
-    this.run += 1;
-    this.last = null;
+    this.clear();
   }
+
+  /* What was drawn of the motion until now is not of this one. */
+  clear() { this.trail = new Trail(); this.last = null; this.run += 1; this.past = []; this.stride = undefined; }
 
   /* A half plane through the axis and a direction; the motion leaves a dot where it crosses it. */
   cut(direction) {
@@ -157,6 +181,10 @@ class SpherePanel {
     this.last = null;
   }
   watch() {
+    if (this.closed) {
+      this.past.push([this.model.clock[0], ...this.value()]);
+      if (this.past.length > 4000) this.past.shift();
+    }
     if (!this.plane || !this.vector) return;
     const w = this.value(), side = dot(w, this.plane.across), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
     const now = { side, height: w[2] / (norm(w) || 1), rate: rates[this.vector.rows[2]], front: dot(w, this.plane.out) };
@@ -174,8 +202,6 @@ function solveThree(rows, right) {
   const [a, b, c] = rows, d = dot(a, cross(b, c));
   return scaled(1 / d, plus(plus(scaled(right[0], cross(b, c)), scaled(right[1], cross(c, a))), scaled(right[2], cross(a, b))));
 }
-
-const INK = ["#2f74c0", "#c96a12", "#14876a", "#a8456f", "#6b5bb5"];
 
 function fitCanvas(canvas) {
   const ratio = Math.min(devicePixelRatio || 1, 2), box = canvas.getBoundingClientRect();
@@ -196,10 +222,31 @@ function drawSection(canvas, panel, theme) {
   pen.stroke();
   pen.globalAlpha = 1;
   for (const [height, rate, run] of panel.dots) {
-    pen.fillStyle = INK[run % INK.length];
+    pen.fillStyle = theme.inks[run % theme.inks.length];
     pen.beginPath();
     pen.arc(wide / 2 + rate / most * (wide / 2 - 10), high / 2 - height * (high / 2 - 10), 2.2, 0, 7);
     pen.fill();
+  }
+}
+
+/* The rows of the vector over the last while, named where they end. */
+function drawComponents(canvas, panel, theme) {
+  const [pen, wide, high] = fitCanvas(canvas), past = panel.past, now = past.length ? past[past.length - 1][0] : 0;
+  const span = 12 * panel.pace(), right = wide - 26, most = norm(panel.value()) || 1, y = (v) => high / 2 - v / most * (high / 2 - 8);
+  pen.strokeStyle = pen.fillStyle = theme.pen;
+  pen.globalAlpha = 0.35;
+  pen.strokeRect(0.5, high / 2, right, 0);
+  pen.globalAlpha = 1;
+  pen.font = "italic 14px STIX Two Text, Times New Roman, serif";
+  const ends = [0, 1, 2].map((k) => [k, past.length ? y(past[past.length - 1][k + 1]) : high / 2]).sort((a, b) => a[1] - b[1]);
+  ends.forEach((each, k) => { each[1] = clamp(each[1], k ? ends[k - 1][1] + 14 : 8, high - 8 - 14 * (2 - k)); });
+  for (const [k, place] of ends) {
+    pen.strokeStyle = pen.fillStyle = theme.inks[k];
+    pen.lineWidth = 1.8;
+    pen.beginPath();
+    for (const each of past) { const x = right * (1 - (now - each[0]) / span); if (x >= 0) pen.lineTo(x, y(each[k + 1])); }
+    pen.stroke();
+    pen.fillText(plainName(panel.names()[k]).replace(/\d/g, (c) => LOW[c]), right + 3, place + 4);
   }
 }
 
@@ -215,8 +262,9 @@ class DriftStrip {
     this.rows = this.model.integrals.map((each) => {
       const row = document.createElement("div"), name = document.createElement("span"), value = document.createElement("span"), error = document.createElement("span"), canvas = document.createElement("canvas");
       row.className = "drift";
-      name.textContent = each.rows.length === 1 ? each.name : `|${each.name}|`;
-      name.className = "name";
+      nameOn(name, each.name);
+      if (each.rows.length > 1) { name.prepend("|"); name.append("|"); }
+      name.classList.add("name");
       value.className = error.className = "value";
       canvas.setAttribute("aria-hidden", "true");
       row.append(name, value, error, canvas);
@@ -236,7 +284,7 @@ class DriftStrip {
       row.value.textContent = `${shorten(now)}${unitText(each.unit)}`;
       row.error.textContent = tellDrift(drift);
       const [pen, wide, high] = fitCanvas(row.canvas);
-      pen.strokeStyle = INK[k % INK.length];
+      pen.strokeStyle = theme.inks[k % theme.inks.length];
       pen.lineWidth = 1.6;
       pen.beginPath();
       row.past.forEach((d, i) => pen.lineTo(i / 239 * wide, high - 1.5 - clamp((Math.log10(Math.max(d, 1e-16)) + 16) / 16, 0, 1) * (high - 3)));
@@ -244,8 +292,9 @@ class DriftStrip {
     });
   }
 }
-const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replace("-", "\u2212");
+const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replaceAll("-", "\u2212");
 const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${d.toExponential(0).replace("-", "\u2212")}`);
 const HIGH = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
+const LOW = ["\u2080", "\u2081", "\u2082", "\u2083", "\u2084", "\u2085", "\u2086", "\u2087", "\u2088", "\u2089"];
 const raise = (text) => text.replace(/\^(-?\d+)/g, (_, digits) => [...digits].map((c) => HIGH[c]).join(""));
 const unitText = (unit) => (!unit || unit === "1" ? "" : `\u00a0${raise(unit).replace(/^1\/(\w+)$/, "$1\u207b\u00b9").replace(/ /g, "\u00a0")}`);

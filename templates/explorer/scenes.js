@@ -1,15 +1,15 @@
 // Scenes: the thing itself, drawn from what the records of a system say of it.
-const BLUE = [0.16, 0.45, 0.78], ORANGE = [0.90, 0.52, 0.12], GOLD = [0.93, 0.72, 0.20], GREEN = [0.10, 0.58, 0.46], RED = [0.80, 0.30, 0.25];
+const BLUE = [0.16, 0.45, 0.78], ORANGE = [0.90, 0.52, 0.12], GOLD = [0.93, 0.72, 0.20], GREEN = [0.10, 0.58, 0.46], RED = [0.80, 0.30, 0.25], VIOLET = [0.50, 0.32, 0.68];
 const fade = (colour, most = 0.95) => (part) => [...colour, most * part * part];
 const TRAIL = 700;
 
 class Trail {
-  constructor() { this.points = []; }
+  constructor(most = TRAIL) { this.points = []; this.most = most; }
   add(p, least) {
     const last = this.points[this.points.length - 1];
     if (last && norm(minus(p, last)) < least) return;
     this.points.push(p);
-    if (this.points.length > TRAIL) this.points.shift();
+    if (this.points.length > this.most) this.points.shift();
   }
 }
 
@@ -20,10 +20,15 @@ class Scene {
     this.camera = { yaw: -0.9, pitch: 0.32, distance: 6, target: [0, 0, 0] };
     this.hint = "Drag to look around";
   }
-  trail(name) { return (this.trails[name] ||= new Trail()); }
+  trail(name, most) { return (this.trails[name] ||= new Trail(most)); }
   clear() { this.trails = {}; }
   follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
   label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
+  /* Where a ray meets the plane through a point that faces the eye; of particles in a plane, that plane. */
+  meet(at, x, y, flat) {
+    const { drawing } = this, facing = flat ? E[2] : unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
+    return plus(drawing.eye, scaled(dot(minus(at, drawing.eye), facing) / dot(d, facing), d));
+  }
   turnable() { return false; }
   moving() {}
   sample() {}
@@ -41,7 +46,27 @@ class BodyScene extends Scene {
       x[row] += 1;
       if (model.energyAt(x) < before) this.flip = [0, 1, 0, 0]; // the normal of the plane points down
     }
+    this.rolls = this.isFree();
+    if (this.rolls) this.hint = "The ellipsoid of inertia rolls on the plane normal to the momentum; drag the body to turn it";
     this.shape();
+  }
+  /* Whether it turns by its inertia alone: the momentum rests in space, and the energy is half its product with the angular velocity. */
+  isFree() {
+    const { model } = this, { spinning, turning } = scene;
+    if (!spinning || spinning.table !== "state" || scene.vertical || scene.moving || model.u.length || !model.has("energy")) return false;
+    const m = model.read(spinning), w = model.read(turning), rates = model.call("rhs", model.x, new Float64Array(model.n));
+    const own = spinning.rows.map((row) => rates[row]), size = norm(m) * norm(w);
+    return norm(minus(own, cross(m, w))) < 1e-9 * size && Math.abs(2 * model.energyAt(model.x) - dot(m, w)) < 1e-9 * size;
+  }
+  /* The ellipsoid of inertia: angular velocities of one energy, by their momenta, to which it is normal. */
+  ellipsoid() {
+    const { model } = this, x = Float64Array.from(model.x);
+    const columns = E.map((axis) => { model.write(scene.spinning, axis, x); return model.read(scene.turning, x); });
+    const of = (m) => { const w = columns.reduce((sum, c, k) => plus(sum, scaled(m[k], c)), [0, 0, 0]); return scaled(1 / Math.sqrt(dot(w, m)), w); };
+    const made = grid(40, 80, (u, v) => { const m = onSphere(u, v); return [of(m), m]; });
+    this.unit = 1 / Math.max(...made.points.map((_, k) => (k % 3 ? 0 : norm(made.points.slice(k, k + 3)))));
+    made.points = made.points.map((v) => this.unit * v);
+    this.own = this.drawing.mesh(made);
   }
   shape() {
     const model = this.model, inertia = model.inertia(), total = Math.max(...inertia);
@@ -54,32 +79,68 @@ class BodyScene extends Scene {
     this.arm = norm(weight) > 1e-12 && !scene.moving ? scaled(1.15, unit(weight)) : [0, 0, 0];
     this.weighs = norm(this.arm) > 0;
     if (this.weighs) this.sizes = scaled(0.62, this.sizes);
-    this.camera.distance = this.weighs ? 6.4 : scene.moving ? 7.5 : 5;
+    if (this.rolls) {
+      this.ellipsoid();
+      const out = Math.hypot(...this.sizes.map((s, k) => s * this.unit * Math.sqrt(inertia[k]) / this.unit ** 2));
+      this.sizes = scaled(0.94 / out, this.sizes); // corners within the ellipsoid
+    }
+    this.below = this.weighs ? -Math.max(1.5, norm(this.arm) + 1.05 * Math.hypot(...this.sizes)) : -1.5;
+    this.camera.distance = this.weighs ? 7 : scene.moving ? 7.5 : 5;
+    this.camera.target = [0, 0, this.weighs ? -0.35 : 0];
   }
   moving() { if (this.model.u.length) return; this.shape(); }
   place() { return rotate(this.flip, scene.moving ? this.model.position : [0, 0, 0]); }
   draw(theme) {
-    const { model, drawing } = this, q = multiply(this.flip, model.pose()), at = this.place(), middle = plus(at, rotate(q, this.arm));
+    const { model, drawing } = this;
+    if (this.rolls) this.flip = turnOnto(rotate(model.pose(), model.read(scene.spinning)), [0, 0, -1]); // the plane that the momentum is normal to is the floor
+    const q = multiply(this.flip, model.pose()), at = this.place(), middle = plus(at, rotate(q, this.arm));
     this.centre = this.weighs ? at : middle;
     this.radius = this.weighs ? 1.5 : 1;
     if (this.weighs) {
-      drawing.floor(-1.5, 5, 0.5, theme.floor, theme.line, [middle[0], middle[1], 0.8], [0, 0]);
-      drawing.draw("cone", [1, 0, 0, 0], [0, 0, -1.5], [0.22, 0.22, 1.48], theme.steel);
+      drawing.floor(this.below, 5, 0.5, theme.floor, theme.line, [middle[0], middle[1], 0.8], [0, 0]);
+      drawing.draw("tube", [1, 0, 0, 0], [0, 0, this.below], [0.3, 0.3, 0.04], theme.steel);
+      drawing.draw("tube", [1, 0, 0, 0], [0, 0, this.below], [0.03, 0.03, -0.06 - this.below], theme.steel);
+      drawing.draw("cone", [1, 0, 0, 0], [0, 0, -0.12], [0.03, 0.03, 0.11], theme.steel);
       drawing.draw("tube", multiply(q, turnOnto(E[2], this.arm)), at, [0.035, 0.035, norm(this.arm)], theme.steel);
       drawing.draw("sphere", q, middle, [0.1, 0.1, 0.1], GOLD);
     } else if (scene.moving) {
       this.follow(at);
       const cell = 0.5;
       if (model.u.length) drawing.floor(Math.min(0, Math.floor(at[2])) - 1.6, 14, cell, theme.floor, theme.line, [at[0], at[1], 0.9], at);
+      else drawing.lattice(at, 1.5, 4.5, theme.line); // what does not move
     }
     const rotors = scene.stick && scene.moving;
     if (rotors) this.frame(q, at, theme);
     else this.solid(q, middle, theme);
-    const trail = this.trail("tip"), tip = this.weighs ? scaled(1.06, middle) : scene.moving ? at : plus(at, rotate(q, scaled(this.sizes[2] + 0.25, E[2])));
-    trail.add(tip, 0.02);
-    drawing.line(trail.points, fade(ORANGE), 2.5);
+    if (this.rolls) { this.roll(q, theme); this.arrows(q, at); return; }
+    const tip = this.sample();
+    drawing.line(this.trail("tip").points, fade(ORANGE), 2.5);
     if (!scene.moving && !this.weighs) drawing.arrow(plus(at, rotate(q, scaled(this.sizes[2] * 0.9, E[2]))), tip, ORANGE, 0.022);
     this.arrows(q, at);
+  }
+  /* The ellipsoid on its plane, with the curves of the contact on both. */
+  roll(q, theme) {
+    const { model, drawing } = this, at = this.contact(), deep = rotate(q, at)[2];
+    drawing.floor(deep, 5, 0.5, theme.floor, theme.line, [0, 0, 0.9], [0, 0]);
+    this.sample();
+    const lifted = this.trail("herpolhode", 3000).points.map((p) => [p[0], p[1], deep + 0.004]);
+    drawing.line(lifted, fade(ORANGE), 2.5);
+    drawing.line(this.trail("polhode", 900).points.map((p) => rotate(q, scaled(1.003, p))), fade(GREEN), 2.5);
+    drawing.draw(this.own, q, [0, 0, 0], [1, 1, 1], [...(theme.dark ? theme.steel : theme.body), 0.55], { glass: 1 });
+    drawing.draw("sphere", [1, 0, 0, 0], rotate(q, at), Array(3).fill(0.035), ORANGE);
+  }
+  contact() { const w = this.model.read(scene.turning); return scaled(this.unit / Math.sqrt(dot(w, this.model.read(scene.spinning))), w); }
+  sample() {
+    const q = multiply(this.flip, this.model.pose());
+    if (!this.rolls) {
+      const tip = scene.moving ? this.place() : rotate(q, this.weighs ? scaled(1.06, this.arm) : scaled(this.sizes[2] + 0.25, E[2]));
+      this.trail("tip").add(tip, 0.02);
+      return tip;
+    }
+    const at = this.contact();
+    this.trail("herpolhode", 3000).add(rotate(q, at), 0.012);
+    this.trail("polhode", 900).add(at, 0.012);
+    return at;
   }
   solid(q, middle, theme) {
     const { drawing } = this;
@@ -102,33 +163,48 @@ class BodyScene extends Scene {
   }
   arrows(q, at) {
     const { model, drawing } = this, w = model.read(scene.turning), size = norm(w);
-    const far = this.weighs ? 1.5 : 1.35;
+    const far = this.rolls ? norm(this.contact()) : this.weighs ? 1.5 : 1.35; // to the contact, where it has one
     if (size > 1e-9) {
       const tip = plus(at, rotate(q, scaled(far / size, w)));
       drawing.arrow(at, tip, GREEN, 0.022);
       this.label(scene.turning.name, tip, "green");
     }
+    if (scene.vertical && !model.u.length) { // the point on the sphere is this direction, seen from the body
+      const along = rotate(q, unit(model.read(scene.vertical))), tip = plus(at, scaled(far, along));
+      drawing.arrow(at, tip, BLUE, 0.014);
+      this.label(scene.vertical.name, tip, "blue");
+    }
     const momentum = scene.spinning && scene.spinning.table === "state" ? model.read(scene.spinning) : [0, 0, 0];
     if (norm(momentum) > 1e-9) {
-      const tip = plus(at, rotate(q, scaled(1.15 * far / norm(momentum), momentum)));
+      const m = unit(momentum), long = this.rolls ? dot(m, this.contact()) : 1.15 * far, tip = plus(at, rotate(q, scaled(long, m)));
       drawing.arrow(at, tip, RED, 0.022);
       this.label(scene.spinning.name, tip, "red");
     }
     if (scene.moving && !model.u.length && norm(model.read(scene.moving)) > 1e-9) {
       const tip = plus(at, rotate(q, scaled(1.5, unit(model.read(scene.moving)))));
+      drawing.arrow(at, tip, VIOLET, 0.022);
+      this.label(scene.moving.name, tip, "violet");
+    }
+    if (scene.pushing && scene.pushing.table === "state" && !scene.vertical && !model.u.length && norm(model.read(scene.pushing)) > 1e-9) {
+      const tip = plus(at, rotate(q, scaled(1.7, unit(model.read(scene.pushing)))));
       drawing.arrow(at, tip, BLUE, 0.022);
-      this.label(scene.moving.name, tip, "blue");
+      this.label(scene.pushing.name, tip, "blue");
     }
   }
   turnable() { return true; }
-  turn(rotation) { this.model.turn(multiply(multiply(conjugate(this.flip), rotation), this.flip)); }
+  /* A free body is turned below its momentum, which rests in space. */
+  turn(rotation) {
+    const { model } = this, held = this.rolls && rotate(model.pose(), model.read(scene.spinning));
+    model.turn(multiply(multiply(conjugate(this.flip), rotation), this.flip));
+    if (held) { model.write(scene.spinning, rotate(conjugate(model.pose()), held)); model.measure(); }
+  }
 }
 
 /* A body that rolls: its surface is where the arms to its centre of mass begin. */
 class RollingScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag the body to turn it, the floor to look around";
+    this.hint = scene.slipping ? "It slides on the plane: orange is the path of the contact. Drag the body to turn it" : "Drag the body to turn it, the floor to look around";
     this.surface();
   }
   surface() {
@@ -157,8 +233,7 @@ class RollingScene extends Scene {
   moving() { const { distance, pitch } = this.camera; this.surface(); Object.assign(this.camera, { distance, pitch }); }
   draw(theme) {
     const { model, drawing, size } = this, q = model.pose(), up = model.read(scene.vertical);
-    const rows = model.quaternionRows(), free = [...model.rest.keys()].filter((row) => !rows.includes(row));
-    const contact = [model.rest[free[0]], model.rest[free[1]], 0], arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
+    const contact = this.contact(), arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
     this.centre = at;
     this.radius = size;
     this.follow(at);
@@ -170,6 +245,11 @@ class RollingScene extends Scene {
     if (this.spread < 0.05) this.rim(q, at, theme);
     drawing.draw("sphere", q, plus(contact, [0, 0, 0.01 * size]), Array(3).fill(0.035 * size), ORANGE);
     if (this.spread < 0.05) this.label("contact", contact, "orange");
+    if (scene.vertical) {
+      const tip = plus(at, [0, 0, 1.35 * size]);
+      drawing.arrow(at, tip, BLUE, 0.012 * size);
+      this.label(scene.vertical.name, tip, "blue");
+    }
     const w = model.read(scene.turning);
     if (norm(w) > 1e-9) {
       const along = rotate(q, scaled(1.5 * size / norm(w), w)), under = at[2] + along[2] < 0; // else it would end below the floor
@@ -180,8 +260,14 @@ class RollingScene extends Scene {
   }
   /* The trace of the contact, at every step. */
   sample() {
-    const rows = (this.free ||= [...this.model.rest.keys()].filter((row) => !this.model.quaternionRows().includes(row)));
-    this.trail("contact").add([this.model.rest[rows[0]], this.model.rest[rows[1]], 0.004 * this.size], 0.02 * this.size);
+    this.trail("contact").add(plus(this.contact(), [0, 0, 0.004 * this.size]), 0.02 * this.size);
+  }
+  /* Where it touches the plane: reconstructed, or below a centre that slides along. */
+  contact() {
+    const { model } = this;
+    if (scene.slipping) { const arm = rotate(model.pose(), model.arm(unit(model.read(scene.vertical)))); return [model.position[0] - arm[0], model.position[1] - arm[1], 0]; }
+    const rows = (this.free ||= [...model.rest.keys()].filter((row) => !model.quaternionRows().includes(row)));
+    return [model.rest[rows[0]], model.rest[rows[1]], 0];
   }
   rim(q, at, theme) {
     const ring = Array.from({ length: 65 }, (_, k) => plus(at, rotate(q, scaled(this.size, [Math.cos(k * Math.PI / 32), Math.sin(k * Math.PI / 32), 0]))));
@@ -195,7 +281,7 @@ class RollingScene extends Scene {
 class ParticleScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag a particle to move it, the space around it to look";
+    this.hint = "Drag a particle or the tip of its velocity, the space around them to look";
     this.camera.pitch = 0.5;
     this.extent = Math.max(...this.positions().map(norm), 0.5);
     this.camera.distance = 6.5 * this.extent;
@@ -233,17 +319,30 @@ class ParticleScene extends Scene {
       }
     });
   }
+  /* The tip of the arrow of a velocity. */
+  tip(k) {
+    const v = this.model.read(scene.speeds[k]);
+    return plus(this.positions()[k], scaled(0.5 * this.extent / this.fast, v.length === 2 ? [...v, 0] : v));
+  }
   grab(x, y) {
+    const near = (p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 22; };
+    const tip = this.fast ? scene.speeds.findIndex((each, k) => each && each.table === "state" && near(this.tip(k)) && !near(this.positions()[k])) : -1;
+    if (tip >= 0) return { move: (a, b) => this.aim(tip, a, b) };
     const found = this.positions().findIndex((p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 26; });
     return found < 0 ? null : { move: (a, b) => this.carry(found, a, b) };
   }
-  /* In the plane through the particle that faces the eye. */
   carry(k, x, y) {
-    const { drawing, model } = this, at = this.positions()[k], facing = unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
-    const s = dot(minus(at, drawing.eye), facing) / dot(d, facing), to = plus(drawing.eye, scaled(s, d));
-    model.write(scene.places[k], to);
+    this.put(scene.places[k], this.meet(this.positions()[k], x, y, scene.places[k].rows.length === 2));
+  }
+  aim(k, x, y) {
+    const from = this.positions()[k], to = this.meet(this.tip(k), x, y, scene.places[k].rows.length === 2);
+    this.put(scene.speeds[k], scaled(this.fast / (0.5 * this.extent), minus(to, from)));
+  }
+  put(variable, value) {
+    this.model.write(variable, value);
+    this.model.ended = "";
     this.clear();
-    model.measure();
+    this.model.measure();
   }
 }
 
@@ -251,11 +350,12 @@ class ParticleScene extends Scene {
 class PlanarScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
+    this.camera.pitch = 0.75;
+    if (scene.kind !== "planar") return;
     const wheels = this.wheels();
     this.hint = wheels.length ? "Drag to look around; wheels stand where the constraints put them" : "Drag to look around";
     this.size = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.1) * 1.25;
     this.camera.distance = 9 * this.size;
-    this.camera.pitch = 0.75;
   }
   /* Rows of constraints are linear in the velocities of the frame: n . (v + omega x p). */
   wheels() {

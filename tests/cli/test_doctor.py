@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import resource
 import shutil
 from importlib.metadata import PackageNotFoundError
+
+import pytest
 
 from coadjoint.cli import doctor
 
@@ -144,3 +147,24 @@ def test_a_missing_extra_names_its_command(run, monkeypatch):
     monkeypatch.setattr(doctor, "version", version)
     found, status = findings(run)
     assert (status, found["numpy"]["remedy"]) == (1, "pip install numpy")
+
+
+@pytest.mark.parametrize("columns", [40, 60, 100])
+def test_the_report_is_as_wide_as_the_terminal(columns, capsys, monkeypatch):
+    """Long paths and remedies go on below, and nothing of them is lost."""
+    path = "/" + "/".join(f"folder{k}" for k in range(12))
+    findings = [
+        doctor.Finding("compiler", "failed", f"cc in {path}", "install one: apt-get install gcc"),
+        doctor.Finding("cache", "ok", path),
+    ]
+    monkeypatch.setattr(doctor, "examine", lambda: iter(findings))
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", str(columns))
+    assert doctor.command.callback(as_json=False) == 1
+    printed = capsys.readouterr().out
+    assert max(map(len, printed.splitlines())) <= columns
+    letters = re.sub(r"[^\w/]", "", printed)
+    for each in findings:
+        for word in (each.what, each.status, *each.remedy.split()):
+            assert re.sub(r"[^\w/]", "", word) in letters
+    assert letters.count("folder11") >= 1

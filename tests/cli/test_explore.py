@@ -20,12 +20,14 @@ def test_a_page_is_written_whole(run, folder, rigid_body):
 
 def test_what_cannot_be_shown_is_told(run, folder):
     """Exit status 2: the reason with a command that works, a neighbour, a place."""
-    refused = run("explore", "toda_lattice", "--size", "i=5", "--output", "toda.html")
+    refused = run("explore", "toda_lattice", "--size", "i=5000", "--output", "toda.html")
     assert refused.exit_code == 2
-    assert "it counts equal members; expected a body, particles or a field" in refused.stderr
+    assert "10000 rows of its state are too many; expected at most 4096" in refused.stderr
     advice = refused.stderr.partition("Simulate it: coadjoint ")[2].split(" says how")[0]
     assert run(*advice.split()).exit_code == 0
     assert not (folder / "toda.html").exists()
+    assert run("explore", "toda_lattice", "--size", "i=5", "--output", "five.html").exit_code == 0
+    assert '"members": 5' in (folder / "five.html").read_text()
     unknown = run("explore", "heavy_tip")
     assert (unknown.exit_code, "Did you mean 'heavy_top'?" in unknown.stderr) == (2, True)
     missing = run("explore", "rigid_body", "--output", "missing/body.html")

@@ -37,6 +37,12 @@ SHOWN = (
     "spin_chain",
     "kdv",
     "double_spherical_pendulum",
+    "point_vortices",
+    "sphere_vortices",
+    "n_body",
+    "peakons",
+    "toda_lattice",
+    "heisenberg_lattice",
 )
 #: Colours on the canvas of the scene, where something is drawn, in steps of 16.
 COLOURS = """(() => {
@@ -114,6 +120,102 @@ def test_nothing_is_wider_than_a_phone(page, pages, name):
     ) == "play"  # fmt: skip
 
 
+def test_a_top_that_slides_is_a_ball_whose_contact_slips(page, pages):
+    """The surface of the tippe top is the sphere of radius r about a point e from its centre."""
+    show(page, pages("tippe_top"), calm=True)
+    assert page.run("scene.slipping.name") == "slip"
+    points = np.array(
+        page.run(
+            "[[0, 0, 1], [0.6, 0, 0.8], [0, 1, 0], [0.48, 0.6, -0.64]]"
+            ".map(up => explorer.model.arm(up))"
+        )
+    )
+    # from the contact to the centre of mass: r Gamma - e e3, with r = 1 and e = 0.2
+    ups = np.array([[0, 0, 1], [0.6, 0, 0.8], [0, 1, 0], [0.48, 0.6, -0.64]])
+    np.testing.assert_allclose(points, ups - [0, 0, 0.2], atol=1e-12)
+    before = page.run("explorer.view.contact()")
+    page.run("for (let k = 0; k < 300; k++) explorer.model.step(explorer.model.h)")
+    assert np.linalg.norm(np.subtract(page.run("explorer.view.contact()"), before)) > 1e-4
+
+
+def test_carriages_have_the_lengths_of_their_specs(page, pages):
+    """The racer's joint is d1 = 1 before its axle, its second axle d2 = 0.2 behind that."""
+    show(page, pages("roller_racer"), calm=True)
+    (link,) = page.run("explorer.view.findLinks()")
+    assert link["joint"] == pytest.approx(1.0, rel=1e-12)
+    assert link["length"] == pytest.approx(0.2, rel=1e-12)
+    (wheel,) = page.run("explorer.view.wheels()")
+    assert (wheel["at"], wheel["angle"]) == (0, 0)
+    page.run("explorer.model.p[explorer.model.p.length - 2] = 1.5")  # d1
+    assert page.run("explorer.view.findLinks()[0].joint") == pytest.approx(1.5, rel=1e-12)
+    show(page, pages("appell_machine"), calm=True)  # its wheel is rho = 0.3 before the weight
+    assert page.run("explorer.view.links") == []
+    (wheel,) = page.run("explorer.view.wheels()")
+    assert wheel["at"] == pytest.approx(0.3, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["rigid_body", "kirchhoff", "snakeboard"])
+def test_labels_stand_within_and_cover_nothing(page, pages, name):
+    """Each label is as wide as its text, inside its box, and over no other one nor the title."""
+    show(page, pages(name), width=390, height=844)
+    page.wait("explorer.model.clock[0] > 0.3")
+    page.run("explorer.run(false)")
+    page.run("new Promise(requestAnimationFrame)")
+    boxes = page.run(
+        "[...document.querySelectorAll('.labels')].map(box => [box, ...box.children, "
+        "...(box.id === 'scene-labels' ? document.querySelectorAll('h1') : [])]"
+        ".filter(each => !each.hidden).map(each => { const b = each.getBoundingClientRect(); "
+        "return [b.left, b.top, b.right, b.bottom] }))"
+    )
+    count = 0
+    for frame, *labels in boxes:
+        for k, one in enumerate(labels):
+            assert one[0] >= frame[0]
+            assert one[2] <= frame[2]
+            for other in labels[:k]:
+                count += 1
+                apart = one[0] >= other[2] or other[0] >= one[2]
+                assert apart or one[1] >= other[3] or other[1] >= one[3], (one, other)
+    assert count >= 1
+
+
+def test_a_free_body_rolls_on_its_plane_and_shows_components(page, pages):
+    """Poinsot: the plane keeps its distance to the centre, and the body does not slip on it."""
+    show(page, pages("rigid_body"), calm=True)
+    assert page.run("explorer.view.rolls")
+    found = page.run("""(() => {
+      const { model, view } = explorer, deep = [], slip = [];
+      for (let k = 0; k < 400; k++) {
+        const at = view.contact(), q = multiply(view.flip, model.pose());
+        deep.push(rotate(q, at)[2]);
+        slip.push(norm(cross(model.read(scene.turning), at)));
+        model.step(model.h); model.observe(); view.draw(THEMES.light);
+      }
+      return [Math.min(...deep), Math.max(...deep), Math.max(...slip)];
+    })()""")
+    assert found[0] == pytest.approx(found[1], rel=1e-12)
+    assert found[0] < -0.1
+    assert found[2] < 1e-12
+    page.run("document.getElementById('cut').click(); explorer.run(true)")
+    page.wait("explorer.panel.past.length > 20")
+    assert "one closed level curve" in page.run(
+        "document.getElementById('section-told').textContent"
+    )
+    show(page, pages("heavy_top"), calm=True)
+    assert not page.run("explorer.view.rolls")
+
+
+def test_a_frame_takes_less_than_a_sixtieth_of_a_second(page, pages):
+    """Over five seconds of the heavy top, the script is done with a frame in the time of one."""
+    show(page, pages("heavy_top"))
+    page.run("explorer.costs.length = 0")
+    began = page.run("performance.now()")
+    page.wait(f"performance.now() - {began} > 5000")
+    costs = np.array(page.run("explorer.costs"))
+    assert costs.size > 20
+    assert np.median(costs) < 16
+
+
 def test_a_slider_moves_the_state_and_the_address(page, pages):
     """A component of the state follows its slider, and the fragment of the address has it."""
     show(page, pages("heavy_top"), calm=True)
@@ -160,6 +262,13 @@ def test_a_hand_turns_the_body_and_moves_a_particle(page, pages):
     assert after[:3] == before[:3]
     assert np.linalg.norm(after[3:]) == pytest.approx(1)
     assert np.linalg.norm(np.subtract(after[3:], before[3:])) > 0.05
+    show(page, pages("point_vortices"), calm=True)
+    place = "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.places()[2]))"
+    at, before = page.run(place), page.run("[...explorer.model.x]")
+    page.drag(at, [at[0] - 30, at[1] + 20])
+    after = page.run("[...explorer.model.x]")
+    assert page.run(place) == pytest.approx([at[0] - 30, at[1] + 20], abs=2)
+    assert [k for k in range(12) if after[k] != before[k]] == [2, 8]
     show(page, pages("kepler"), calm=True)
     at = page.run("(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))")
     page.drag(at, [at[0] + 40, at[1] - 25])
@@ -167,6 +276,13 @@ def test_a_hand_turns_the_body_and_moves_a_particle(page, pages):
         "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.positions()[0]))"
     )
     assert found == pytest.approx([at[0] + 40, at[1] - 25], abs=2)
+    page.run("explorer.paint()")
+    tip = "(p => [p.x, p.y])(explorer.view.drawing.project(explorer.view.tip(0)))"
+    at, before = page.run(tip), page.run("[...explorer.model.x]")
+    page.drag(at, [at[0] + 25, at[1] - 20])
+    after = page.run("[...explorer.model.x]")
+    assert page.run(tip) == pytest.approx([at[0] + 25, at[1] - 20], abs=2)
+    assert sum(a != b for a, b in zip(after, before, strict=True)) == 3  # the velocity alone
 
 
 def test_a_click_cuts_and_crossings_become_dots(page, pages):

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -115,14 +116,23 @@ def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):
         ("rigid_body", "body", {"turning": "observables", "vertical": None}),
         ("kirchhoff", "body", {"moving": "observables", "vertical": None}),
         ("euler_disk", "rolling", {"turning": "state", "vertical": "state"}),
+        ("tippe_top", "rolling", {"moving": "state", "vertical": "state"}),
         ("quadrotor", "body", {"vertical": "state", "stick": "M"}),
         ("spacecraft_wheels", "body", {"attitude": "state", "moving": None, "stick": ""}),
         ("three_wave", "portrait", {}),
         ("snakeboard", "planar", {}),
+        ("roller_racer", "carriage", {}),
+        ("appell_machine", "carriage", {}),
         ("monopole_kepler", "particles", {}),
         ("spin_chain", "strand", {}),
         ("kdv", "profile", {}),
-        ("toda_lattice", "", {}),
+        ("point_vortices", "members", {"shape": "plane"}),
+        ("sphere_vortices", "members", {"shape": "globe"}),
+        ("peakons", "members", {"shape": "stems"}),
+        ("toda_lattice", "members", {"shape": "stems"}),
+        ("heisenberg_lattice", "members", {"shape": "arrows"}),
+        ("spin_chain_lattice", "members", {"shape": "frames"}),
+        ("n_body", "members", {"shape": "space"}),
     ],
 )
 def test_what_is_drawn_follows_from_the_records(tmp_path, name, kind, known):
@@ -134,15 +144,41 @@ def test_what_is_drawn_follows_from_the_records(tmp_path, name, kind, known):
     )
     spec = read_spec(path)
     rendered = render(spec)
-    if not kind:
-        with pytest.raises(KernelArgumentError, match="it counts equal members; expected"):
-            describe_scene(spec, rendered)
-        return
     scene = describe_scene(spec, rendered)
     assert scene["kind"] == kind
     for key, table in known.items():
         found = scene[key]
         assert (found["table"] if isinstance(found, dict) else found) == table, key
+
+
+def test_members_begin_at_the_defaults_of_the_spec_and_at_none_of_another_number():
+    """Blocks of components, member after member; of another number there are no defaults."""
+    spec = read_spec(derivations_folder() / "point_vortices.toml")
+    scene = describe_scene(spec, render(spec))
+    x, y = (each["default"] for each in scene["tables"]["state"])
+    np.testing.assert_allclose(np.array(x) ** 2 + np.array(y) ** 2, 1.0)
+    assert scene["members"] == len(x) == 6
+    (strength,) = scene["tables"]["parameters"]
+    assert strength["components"] == [f"Gamma_{k}" for k in range(6)]
+    assert strength["default"] == [1.0] * 6
+    rendered = render(spec)
+    context = rendered.family.context
+    larger = replace(context, index=replace(context.index, size=7))
+    other = describe_scene(spec, replace(rendered, family=replace(rendered.family, context=larger)))
+    assert other["tables"]["state"][0]["default"] is None
+    many = replace(context, index=replace(context.index, size=5000))
+    with pytest.raises(KernelArgumentError, match="10000 rows of its state are too many"):
+        describe_scene(spec, replace(rendered, family=replace(rendered.family, context=many)))
+
+
+def test_spins_repeat():
+    """Eight declared spins are those of a thousand members, component after component."""
+    spec = read_spec(derivations_folder() / "heisenberg_lattice.toml")
+    (spins,) = describe_scene(spec, render(spec))["tables"]["state"]
+    found = np.array(spins["default"]).reshape(3, 1000)
+    np.testing.assert_allclose((found**2).sum(axis=0), 1.0)
+    np.testing.assert_array_equal(found[:, 3], found[:, 803])
+    assert np.abs(found[:, 3] - found[:, 4]).max() > 0.1
 
 
 def test_noise_is_refused_with_a_way_on():

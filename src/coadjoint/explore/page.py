@@ -25,7 +25,16 @@ from coadjoint.resources import templates_folder
 from coadjoint.spec import Spec
 
 #: The parts of the script, in order; the kernel stands before them.
-SCRIPTS: Final = ("numerics.js", "drawing.js", "model.js", "scenes.js", "panels.js", "main.js")
+SCRIPTS: Final = (
+    "numerics.js",
+    "drawing.js",
+    "model.js",
+    "scenes.js",
+    "carriages.js",
+    "members.js",
+    "panels.js",
+    "main.js",
+)
 
 
 def render_page(spec: Spec, rendered: Rendered) -> str:

@@ -9,6 +9,7 @@ Read next: `coadjoint.explore.page`.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
@@ -16,6 +17,7 @@ from coadjoint.declared import KernelContext, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
+from coadjoint.notation.names import GREEK, spell
 from coadjoint.pipeline import Rendered
 from coadjoint.render.families import FamilyContext
 from coadjoint.resources import derivations_folder
@@ -26,6 +28,8 @@ from coadjoint.spec.model import Variable
 MOST_ROWS: Final = 4096
 #: Rows of a state at the most that a page shows by its first three where it knows nothing better.
 PORTRAIT: Final = 40
+#: Members at the most of which each has sliders for its parameters.
+MOST_SLIDERS: Final = 12
 
 Rows = dict[str, Any]
 
@@ -87,14 +91,26 @@ def _describe(spec: Spec, rendered: Rendered, unit: str) -> dict[str, Any]:
     }
 
 
+def _drop_member(name: str) -> str:
+    """The name of a variable of members, without the number of one.
+
+    >>> _drop_member("p_12")
+    'p'
+    """
+    return re.sub(r"_[0-9]+$", "", name)
+
+
 def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
     """Quantities with their units, explanations and defaults."""
     declared: list[Any] = [*spec.variables, *spec.parameters, *spec.observables, *spec.inputs]
     docs = {each.name: each.doc for each in [*declared, *spec.reconstruction]}
+    docs = {_drop_member(name): doc for name, doc in docs.items()} | docs
     return [
         {
             "name": each.name,
+            "written": _write(each.name),
             "components": list(each.components),
+            "letters": [_write(name) for name in each.components],
             "units": [each.unit_of(name) for name in each.components],
             "doc": docs.get(each.name, ""),
             "default": None if each.default is None else list(each.default),
@@ -105,6 +121,17 @@ def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
         }
         for each in quantities
     ]
+
+
+def _write(name: str) -> tuple[str, str]:
+    """How a page writes a name: that of the rate of a coordinate is v with the coordinate below.
+
+    >>> _write("vphi"), _write("Omega2")
+    (('v', 'φ'), ('Ω', '2'))
+    """
+    if name.startswith("v") and name[1:] in GREEK:
+        return "v", spell(name[1:])[0]
+    return spell(name)
 
 
 def _describe_methods(
@@ -193,6 +220,9 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
     }
     if spec.rolling and spec.rolling.normal and attitude and drawn["turning"]:
         return {"kind": "rolling", **drawn}
+    slips = _find_slips(spec, context, finder, drawn)
+    if slips:
+        return {"kind": "rolling", **drawn, "slips": slips}
     if drawn["turning"] and spec.invariance == "left":
         return {"kind": "body", **drawn}
     if spec.algebra and spec.algebra.name == "se(2)" and len(context.reconstructed) == 3:
@@ -201,6 +231,8 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
         angles = [finder.find(v) for v in spec.having_role("coordinate")]
         if len(along) == 3 and all(each and each["table"] == "state" for each in along):
             return {"kind": "planar", "frame": along, "angles": [each for each in angles if each]}
+        if len(along) == 3 and all(along):
+            return _describe_carriage(spec, finder, named)
     places = [v for v in spec.having_role("coordinate") if v.shape in ((2,), (3,))]
     partners = [
         spec.partner("velocity", v.name) or spec.partner("momentum", v.name) for v in places
@@ -222,6 +254,53 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
             f"one of these, or from 2 to {PORTRAIT} rows",
         )
     return {"kind": "portrait"}
+
+
+def _describe_carriage(
+    spec: Spec, finder: _Finder, blocks: list[tuple[int, ...]]
+) -> dict[str, Any]:
+    """A vehicle some of whose velocities follow from others: its frame, and angles with rates."""
+    turning, first, second = blocks
+    own = {v.block: finder.find(v) for v in spec.having_role("velocity")}
+    free = [finder.find(v) for v in spec.having_role("velocity")]
+    angles = [(v, spec.partner("velocity", v.name)) for v in spec.having_role("coordinate")]
+    found = [(finder.find(v), finder.find(rate)) for v, rate in angles]
+    return {
+        "kind": "carriage",
+        "frame": [own[first], own[second], own[turning]],
+        "free": [each["rows"][0] for each in free if each and each["table"] == "state"],
+        "turns": [
+            {"angle": angle, "rate": rate}
+            for angle, rate in found
+            if angle and rate and angle["table"] == "state" and rate["table"] == "observables"
+        ],
+    }
+
+
+def _find_slips(
+    spec: Spec, context: KernelContext, finder: _Finder, drawn: Mapping[str, Any]
+) -> list[Rows]:
+    """Vectors that may be the velocity of a body's point at a contact that slides.
+
+    Where one condition alone binds turning and moving, a body may slide on a plane. The page takes
+    the first of these that depends on the velocities as ``Y - Omega x s``, and whose part along the
+    vertical is that condition; without one it shows a body.
+    """
+    names = ("turning", "moving", "vertical")
+    residual = next((each for each in context.programs if each.name == "constraint_residual"), None)
+    alone = residual is not None and len(residual.outputs) == 1
+    if not alone or not all(drawn[name] and drawn[name]["table"] == "state" for name in names):
+        return []
+    declared = {each.name for each in spec.observables}
+    vectors = [q for q in context.observables if q.name in declared and q.shape == (3,)]
+    return [
+        {
+            "name": each.name,
+            "table": "observables",
+            "rows": [finder.rows[c][1] for c in each.components],
+        }
+        for each in vectors
+    ]
 
 
 def _find_blocks(spec: Spec) -> dict[str, tuple[int, ...]]:
@@ -246,33 +325,34 @@ def _find_vertical(spec: Spec, finder: _Finder) -> Rows | None:
 
 
 def _describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> dict[str, Any]:
-    """The same of a field at the points of its grid.
+    """The same of equal members, or of a field at the points of its grid.
 
     Raises:
-        KernelArgumentError: It is no field, or has too many points.
+        KernelArgumentError: Something drives it, it has too many rows, or nothing in it is shown.
     """
     size = context.index.size or context.small
     names = [name for each in context.state for name in each.components]
-    if spec.space is None:
-        raise _refuse(spec, "it counts equal members", "a body, particles or a field")
-    if context.torus is not None:
-        raise _refuse(spec, "it is a field in a plane", "a body, particles or a field along a line")
+    for is_other, what in (
+        (context.torus is not None, "it is a field in a plane"),
+        (context.index.of_rows, "its members are entries of matrices"),
+    ):
+        if is_other:
+            raise _refuse(spec, what, "a body, particles or a field along a line")
     if size * len(names) > MOST_ROWS:
         raise _refuse(
             spec, f"{size * len(names)} rows of its state are too many", f"at most {MOST_ROWS}"
         )
-    if context.shared_noise or context.indexed_noise or context.time or context.shared_inputs:
+    driven = (context.shared_noise, context.indexed_noise, context.time)
+    if any((*driven, context.shared_inputs, context.indexed_inputs)):
         raise _refuse(spec, "something drives it from outside", "a motion that its start decides")
     state = _list(context.state, spec)
     for each in state:
-        each["default"] = list(context.defaults.get(each["name"], ())) or each["default"]
-    vectors = [each for each in context.state if len(each.components) == 3]
-    first = [] if not vectors else [names.index(name) for name in vectors[0].components]
+        each["default"] = _spread(each, context, size)
     return {
         **_describe(spec, rendered, context.unit_of_time),
         "tables": {
             "state": state,
-            "parameters": _list(context.shared, spec),
+            "parameters": [*_list(context.shared, spec), *_list_indexed(spec, context, size)],
             "inputs": [],
             "observables": _list(context.observables, spec),
             "reconstructed": [],
@@ -287,6 +367,78 @@ def _describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> 
             for each in sorted(context.methods, key=_by_rank)
             if each.name == "midpoint" and each.rank
         ],
-        "kind": "strand" if first else "profile",
-        "curve": first or [0],
+        **(_choose_field if spec.space else _choose_member)(spec, context),
+    }
+
+
+def _spread(each: dict[str, Any], context: FamilyContext, size: int) -> list[float] | None:
+    """Defaults of a quantity of members, component after component, each for all members."""
+    name, count = each["name"], len(each["components"])
+    own = list(context.defaults.get(name, ()))
+    if not own:
+        return each["default"] and [value for value in each["default"] for _ in range(size)]
+    known = len(own) // count
+    if known != size and name not in context.repeating:
+        return None
+    return [own[known * k + i % known] for k in range(count) for i in range(size)]
+
+
+def _list_indexed(spec: Spec, context: FamilyContext, size: int) -> list[dict[str, Any]]:
+    """Parameters of each member: of few members, each component has a slider."""
+    found = _list(context.indexed, spec)
+    for each in found:
+        first, own = context.index.first, each["components"]
+        each["default"] = _spread(each, context, size)
+        each["components"] = [f"{name}_{first + i}" for name in own for i in range(size)]
+        each["letters"] = [_write(name) for name in each["components"]]
+        each["units"] = [unit for unit in each["units"] for _ in range(size)]
+        each["hidden"] = size > MOST_SLIDERS
+    return found
+
+
+def _choose_field(spec: Spec, context: FamilyContext) -> dict[str, Any]:
+    """A field is a curve: of its first vector, or of its first component."""
+    names = [name for each in context.state for name in each.components]
+    vectors = [each for each in context.state if len(each.components) == 3]
+    first = [names.index(name) for name in vectors[0].components] if vectors else []
+    return {"kind": "strand" if first else "profile", "curve": first or [0]}
+
+
+def _choose_member(spec: Spec, context: FamilyContext) -> dict[str, Any]:
+    """What is drawn of a member, by the roles and shapes of its variables, and their components.
+
+    Raises:
+        KernelArgumentError: None of them is a frame, a place, a vector or a number with its rate.
+    """
+    names = [name for each in context.state for name in each.components]
+    declared = {_drop_member(each.name): each for each in spec.variables}
+    own = [(declared[each.name], each.components) for each in context.state]
+    frames = [parts for each, parts in own if each.turning]
+    places = [parts for each, parts in own if each.role == "coordinate"]
+    momenta = [parts for each, parts in own if each.role in ("momentum", "velocity")]
+    widths = [len(each) for each in places]
+    shape = ""
+    place: tuple[str, ...] = ()
+    if frames and len(frames[0]) in (9, 12):
+        shape, place = "frames", frames[0]
+    elif widths[:1] == [3]:
+        shape, place = "globe" if context.spheres else "space", places[0]
+    elif widths[:1] == [2] or (widths == [1, 1] and not momenta):
+        shape, place = "plane", tuple(each for parts in places for each in parts)[:2]
+    elif widths == [] and momenta and len(momenta[0]) == 3:
+        shape, place = "arrows", momenta[0]
+    elif widths[:1] == [1]:
+        shape, place = "stems", (*places[0], *(momenta[0][:1] if momenta else ()))
+    if not shape:
+        raise _refuse(
+            spec,
+            "its equal members have none of what is drawn",
+            "a frame, a place, a vector or a number",
+        )
+    return {
+        "kind": "members",
+        "shape": shape,
+        "place": [names.index(name) for name in place],
+        "ring": context.index.periodic,
+        "first": context.index.first,
     }

@@ -95,6 +95,17 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     return replace(attach(symbol, below=below, dot=dot), text=shown)
 
 
+def spell(text: str) -> tuple[str, str]:
+    """The letter or word of a name, and what stands below it, as plain text.
+
+    >>> spell("Pi1"), spell("Pi_spatial"), spell("M_1_10"), spell("casimir1")
+    (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('casimir', '1'))
+    """
+    symbol, below = _split_name(text.removeprefix("_"), bold=False)
+    plain = [re.sub("<[^>]+>", "", each.mathml) for each in (symbol, *below)]
+    return plain[0], ",".join(plain[1:])
+
+
 def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Written:
     """What a member has: ``r2`` of the member ``i+1`` is a letter with the subscripts i+1 and 2."""
     index, shift = re.fullmatch(r"(\w*?)([+-]\d+)?", place).groups()  # type: ignore[union-attr]
