@@ -181,6 +181,17 @@ def test_spins_repeat():
     assert np.abs(found[:, 3] - found[:, 4]).max() > 0.1
 
 
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("euler_2d", "it is a field in a plane"), ("zeitlin_su_n", "entries of matrices")],
+)
+def test_what_is_no_line_of_members_is_refused(name, reason):
+    """A plane and matrices would be drawn as members that they are not."""
+    spec = read_spec(derivations_folder() / f"{name}.toml")
+    with pytest.raises(KernelArgumentError, match=f"has no page to explore: .*{reason}"):
+        describe_scene(spec, render(spec))
+
+
 def test_noise_is_refused_with_a_way_on():
     """The message names the system, the reason and another command."""
     spec = read_spec(derivations_folder() / "stochastic_rigid_body.toml")
