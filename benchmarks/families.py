@@ -40,6 +40,7 @@ SYSTEMS: Mapping[str, tuple[int, int]] = {
 WAYS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "heisenberg_lattice": {"hand": ()},
     "point_vortices": {"hand": (), "each pair once": ("-DONCE",)},
+    "spin_chain": {"hand": (), "hand, two loops": ("-DAPART",)},
 }
 HEADS = ("system", "members", "us a call", "best C by hand", "exact build", "each pair once")
 
@@ -47,9 +48,9 @@ HEADS = ("system", "members", "us a call", "best C by hand", "exact build", "eac
 class Contest:
     """The competitors of one system; all write into the same result."""
 
-    def __init__(self, name: str, size: int, folder: Path) -> None:
+    def __init__(self, name: str, size: int, folder: Path, index: str = "i") -> None:
         self.name, self.size, self.folder = name, size, folder
-        self.system = load_folder(systems_folder() / name).resize({"i": size})  # type: ignore[attr-defined]
+        self.system = load_folder(systems_folder() / name).resize({index: size})  # type: ignore[attr-defined]
         source = np.random.default_rng(0)
         self.state = aligned(source.normal(size=self.system.STATE.size))
         self.parameters = aligned(source.uniform(0.5, 2.0, self.system.PARAMETERS.size))

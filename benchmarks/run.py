@@ -34,6 +34,7 @@ BENCHMARKS = (
     "numpy_kernels",
     "call_overhead",
     "families",
+    "fields",
     "ensembles",
     "ensembles_jax",
     "trajectories",

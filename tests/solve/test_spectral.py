@@ -16,6 +16,7 @@ from coadjoint.systems import (
     kdv,
     rigid_body,
     spin_chain,
+    spin_chain_chiral,
 )
 from tests.fields import (
     WAVES,
@@ -185,3 +186,32 @@ def test_a_system_goes_back_and_is_pickled():
     assert isinstance(again, SpectralSystem)
     assert again.size == 40
     assert "Fourier" in repr(again)
+
+
+def test_the_chiral_model_keeps_a_trace_for_each_spectral_parameter():
+    """To 1e-9 over t = 10, of ``U = (Xi + lam Omega)/(1 - lam^2)``; without the divisor it is not.
+
+    By differences of order 4 those of the same field change by more than 1e-8.
+    """
+    N, L = 128, 10.0
+    w = 2 * np.pi * np.arange(N) / N
+    Pi = [0.3 * np.cos(w), 0.15 * np.sin(w), 0.5 + 0 * w]
+    Xi = [0.3 + 0 * w, np.sin(w) / 4, np.cos(w) / 5]
+    own = fourier(spin_chain_chiral.system, N)
+    state = np.concatenate([*Pi, *Xi])
+    options = {"method": "scipy:DOP853", "rtol": 1e-11, "atol": 1e-12, "samples": 6}
+
+    def change(found, lam, divisor):
+        """By how much the trace changes at most."""
+        a, b, c = (found["Xi"] + lam * found["Pi"]) / divisor
+        U = np.array([[0 * a, -c, b], [c, 0 * a, -a], [-b, a, 0 * a]])
+        traces = np.trace(transport(U, L)[:, :, -1])
+        return np.abs(traces - traces[0]).max()
+
+    found = own.simulate(state, (0, 10), **options)
+    others = own.differences.simulate(state, (0, 10), **options)
+    for lam in (-0.3, 0.0, 0.5, 2.0):
+        assert change(found, lam, 1 - lam**2) < 1e-9
+        assert change(others, lam, 1 - lam**2) > 1e-8
+        if lam:
+            assert change(found, lam, 1.0) > 1e-3
