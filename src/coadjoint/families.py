@@ -69,22 +69,23 @@ class Index:
         return size
 
 
-class Strand:
-    """The strain of a strand, as an element of an algebra of matrices.
+class Connection:
+    """A connection without curvature along a circle, of which there are transports and a holonomy.
 
     Args:
-        name: The field, with a component for each matrix.
-        side: ``left``: it is g^-1 dg/ds; ``right``: it is (dg/ds) g^-1.
+        name: The strain of a strand; of a Lax pair L and a number in the place of its spectral
+            parameter, as ``L(1/2)``.
+        side: ``left``: it is psi^-1 dpsi/ds; ``right``: it is (dpsi/ds) psi^-1.
         length: The parameter that is the length of the circle.
-        size: Rows of the matrices.
-        matrices: Their entries that are not 0: row, column and value.
+        size: Rows of its matrix.
+        entries: Those that are not 0, by row and column: texts in fields and parameters.
     """
 
     def __init__(
-        self, name: str, side: str, length: str, size: int, *matrices: tuple[Any, ...]
+        self, name: str, side: str, length: str, size: int, entries: Mapping[tuple[int, int], str]
     ) -> None:
         self.name, self.side, self.length = name, side, length
-        self.size, self.matrices = size, matrices
+        self.size, self.entries = size, entries
 
 
 class PrincipalSymbol:

@@ -8,10 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.families import Strand
-from coadjoint.prove.declaration import find_strand
+from coadjoint.prove.declaration import find_connections
 from coadjoint.solve.strands import transport
-from tests.specs import shipped
+from tests.specs import emitted
 
 LENGTH = 10.0
 
@@ -148,15 +147,52 @@ def test_the_chiral_model_has_an_integral_for_each_spectral_parameter(name, is_k
 
 
 def test_the_strain_is_that_of_the_spec():
-    """Field, side, length, and the matrices of the algebra; sp2_strand's have a parameter."""
-    strand = find_strand(shipped("se3_strand"))
-    assert isinstance(strand, Strand)
+    """Field, side, length, and its matrix; sp2_strand's matrices have a parameter."""
+    (strand,) = find_connections(emitted("se3_strand"))
     assert (strand.name, strand.side, strand.length, strand.size) == ("X", "left", "L", 4)
-    assert strand.matrices[0] == ((1, 2, -1.0), (2, 1, 1.0))
-    assert strand.matrices[5] == ((2, 3, 1.0),)
-    assert system("two_time_body", 8).strand.name == "Xi"
-    assert find_strand(shipped("sp2_strand")) is None
-    assert find_strand(shipped("kdv")) is None
+    assert strand.entries[1, 2] == "-X1"
+    assert strand.entries[2, 1] == "X1"
+    assert strand.entries[2, 3] == "X6"
+    assert [each.name for each in system("two_time_body", 8).connections] == ["Xi"]
+    assert find_connections(emitted("sp2_strand")) == ()
+    assert find_connections(emitted("kdv")) == ()
+
+
+def test_traces_are_those_of_the_strain_and_of_the_pair_at_its_values():
+    """With lam = (mu - 1)/(mu + 1), mu = 1/2 and 3 are lam = -1/3 and 1/2."""
+    motion = system("spin_chain_chiral", 64).simulate(
+        start(64), (0.0, 2.0), samples=3, method="dop853", rtol=1e-9, atol=1e-10, target="numpy"
+    )
+    traces = motion.traces()
+    assert [*traces] == ["Xi", "L(1/2)", "L(3)"]
+    np.testing.assert_array_equal(traces["Xi"], np.trace(motion.frames()[:, :, -1]))
+    for name, lam in (("L(1/2)", -1 / 3), ("L(3)", 1 / 2)):
+        U = hat((motion["Xi"] + lam * motion["Pi"]) / (1 - lam**2))
+        expected = np.trace(transport(U, LENGTH)[:, :, -1])
+        np.testing.assert_allclose(traces[name], expected, atol=1e-12)
+        assert np.abs(traces[name] - traces[name][0]).max() < 1e-4
+        assert np.abs(traces[name] - traces["Xi"]).max() > 0.1
+
+
+def test_traces_of_a_batch_are_those_of_its_trajectories():
+    """With lengths of their own."""
+    chain, both = system("spin_chain_chiral", 16), np.stack([start(16), 0.7 * start(16)], axis=-1)
+    options = {"samples": 2, "method": "dop853", "rtol": 1e-8, "target": "numpy"}
+    lengths = np.array([[10.0, 12.0]])
+    together = chain.simulate(both, (0.0, 0.5), lengths, **options).traces()
+    for n in range(2):
+        alone = chain.simulate(both[:, n], (0.0, 0.5), lengths[:, n], **options).traces()
+        for name, trace in alone.items():
+            np.testing.assert_allclose(together[name][n], trace, atol=1e-12)
+
+
+def test_what_has_no_connection_has_no_traces():
+    """The advice: a strain on matrices, or values of a pair."""
+    motion = system("kdv", 32).simulate(
+        np.ones(32), (0.0, 0.02), samples=2, method="rk4", step=0.01, target="numpy"
+    )
+    with pytest.raises(KernelArgumentError, match=r"no connection.*values = \[0\.5\]"):
+        motion.traces()
 
 
 def test_what_is_no_strand_has_no_frames():
@@ -167,4 +203,4 @@ def test_what_is_no_strand_has_no_frames():
     with pytest.raises(KernelArgumentError, match=r'kdv has no strain.*role = "strain"') as caught:
         motion.frames()
     assert caught.value.parts["found"] == "kdv"
-    assert find_strand(shipped("spin_chain")) is not None
+    assert find_connections(emitted("spin_chain"))

@@ -824,6 +824,8 @@ ELSEWHERE = {
     "Remove the others.": "test_space.py",
     "Write x and y, so that w_xxy is a derivative.": "test_space.py",
     "Remove central.": "test_space.py",
+    'Write ["lie-poisson"].': "test_truncated.py",
+    "Remove values, or write [space] without ends.": "test_space.py",
     ", or write [diffeomorphisms].": "test_space.py",
     "Fourier derivatives around both circles": "what is expected there",
     "Remove where.": "test_space.py",

@@ -1,6 +1,8 @@
 # ruff: noqa: E501 - a row of the table of mistakes is one line
 """The tables [space], [profiles] and [diffeomorphisms], and the role strain."""
 
+from fractions import Fraction
+
 import pytest
 
 from coadjoint.errors import SpecError
@@ -81,6 +83,25 @@ def test_mistakes_are_shown_with_the_likely_fix(text, old, new, message, fix):
         read(text.replace(old, new))
     assert message in str(error.value)
     assert fix in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[0.5, 3]", "[0.5, 3, 0.5]", "the value 1/2 is there twice"),
+        ("[0.5, 3]", '["x"]', "an exact number"),
+        ("order = 4 }", 'order = 4, ends = "free" }', "there is no circle.*Remove values"),
+    ],
+)
+def test_values_of_a_spectral_parameter_that_are_none(old, new, message):
+    """Twice, no number, and without a circle; whether L is finite there is seen when derived."""
+    text = shipped("spin_chain_chiral").path.read_text(encoding="utf-8")
+    if "ends" in new:
+        text = text.replace('"energy", "P", "M"', '"energy"')
+    assert old in text
+    with pytest.raises(SpecError, match=f"(?s){message}"):
+        read(text.replace(old, new))
+    assert read(text.replace("[0.5, 3]", '["1/3"]')).lax.values == (Fraction(1, 3),)
 
 
 def test_a_plane_has_two_coordinates_and_mixed_derivatives():

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.interpret import Value, entries
@@ -77,6 +78,25 @@ def declared_pair(setting: Setting) -> LaxPair:
             hint = f"Choose another parameter than {lax.spectral}."
             raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
     return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
+
+
+def find_matrix_at(setting: Setting, value: Fraction) -> dict[tuple[int, int], Element]:
+    """The entries of L that are not 0 with a number in the place of the spectral parameter.
+
+    Raises:
+        DerivationError: L has a pole there.
+    """
+    pair, field, found = declared_pair(setting), setting.field, dict[tuple[int, int], Element]()
+    for i, row in enumerate(pair.L):
+        for j, entry in enumerate(row):
+            powers = field.coefficients(entry, pair.spectral)
+            if value == 0 and min(powers, default=0) < 0:
+                problem, expected = f"L has a pole at {pair.spectral} = 0", "a value without one"
+                raise refusal(setting, "lax", problem, "0", expected, "Remove 0 from values.")
+            terms = (x * value**power for power, x in powers.items())
+            if whole := field.sum(terms):
+                found[i, j] = whole
+    return found
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:

@@ -28,11 +28,12 @@ from coadjoint.derive.fields.jets import jets_of, solved
 from coadjoint.derive.fields.stencils import find_largest
 from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.fields.torus import TorusGrid
+from coadjoint.derive.pairs import find_matrix_at
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.truncated import tell_motion
-from coadjoint.exact import element_text
-from coadjoint.families import Family, PrincipalSymbol, Strand
+from coadjoint.exact import Element, element_text
+from coadjoint.families import Connection, Family, PrincipalSymbol
 from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.mapped import Maps
@@ -186,7 +187,11 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
     wave = tell_wave(first)
     told = replace(context, routes=tuple(routes), equations=tuple(lines))
     return replace(
-        told, strand=find_strand(spec), wave=wave, spectral=grid.spectral, symbol=tell_symbol(first)
+        told,
+        connections=find_connections(first),
+        wave=wave,
+        spectral=grid.spectral,
+        symbol=tell_symbol(first),
     )
 
 
@@ -244,21 +249,38 @@ def tell_wave(first: Equations) -> tuple[str, ...]:
     return (element_text(field, speed), space.length) if is_moving else ()
 
 
-def find_strand(spec: Spec) -> Strand | None:
-    """The strain of a strand and its matrices; None without, or where they have parameters."""
+def find_connections(first: Equations) -> tuple[Connection, ...]:
+    """The strain of a strand, then L of a declared pair for each of its values.
+
+    Not with ends, and not where matrices of the algebra have parameters or are not known.
+
+    Raises:
+        DerivationError: L has a pole at a value.
+    """
+    setting, spec = first.setting, first.spec
+    field, space = setting.field, spec.space
+    if space is None or space.has_ends:
+        return ()
+    found = list[Connection]()
     strains = [each for each in spec.variables if each.strain]
-    if not strains or spec.algebra is None or spec.space is None or not spec.algebra.matrices:
-        return None
-    matrices, (strain,) = spec.algebra.matrices, strains
-    if spec.space.has_ends or not all(
-        isinstance(x, int | Fraction) for each in matrices for x in each.values()
-    ):
-        return None
-    entries = (
-        tuple((row, column, float(x)) for (row, column), x in sorted(each.items()))
-        for each in matrices
-    )
-    return Strand(strain.name, spec.invariance, spec.space.length, size(matrices), *entries)
+    matrices = () if spec.algebra is None else spec.algebra.matrices
+    numbers = (x for each in matrices for x in each.values())
+    if strains and matrices and all(isinstance(x, int | Fraction) for x in numbers):
+        (strain,) = strains
+        sums: dict[tuple[int, int], list[Element]] = {}
+        for name, matrix in zip(strain.components, matrices, strict=True):
+            for place, value in matrix.items():
+                sums.setdefault(place, []).append(field[name] * value)
+        entries = {place: element_text(field, field.sum(own)) for place, own in sums.items()}
+        rows = size(matrices)
+        found.append(Connection(strain.name, spec.invariance, space.length, rows, entries))
+    if spec.lax is not None:
+        for value in spec.lax.values:
+            parts = find_matrix_at(setting, value)
+            entries = {place: element_text(field, x) for place, x in parts.items()}
+            rows = spec.lax.L.shape[0]
+            found.append(Connection(f"L({value})", "left", space.length, rows, entries))
+    return tuple(found)
 
 
 def _name_process(name: str) -> Quantity:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand, Torus
+from coadjoint.families import Connection, Index, PrincipalSymbol, Spectral, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -365,7 +365,7 @@ class FamilyContext:
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of those at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs.
-        strand: The strain of a strand and its matrices.
+        connections: What has transports and a holonomy around the circle.
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
         torus: Of a field in a plane, what is computed around its points.
@@ -399,7 +399,7 @@ class FamilyContext:
     positions: tuple[int, ...] = ()
     kinks: Mapping[int | None, tuple[str, ...]] = field(default_factory=dict)
     pair_kinks: tuple[str, ...] = ()
-    strand: Strand | None = None
+    connections: tuple[Connection, ...] = ()
     wave: tuple[str, ...] = ()
     spectral: Spectral | None = None
     symbol: PrincipalSymbol | None = None
@@ -519,7 +519,7 @@ def render_family_template(
             *([f"wave={tuple_text(map(quote, context.wave))}"] * bool(context.wave)),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
-            *(["strand=STRAND"] * bool(context.strand)),
+            *(["connections=CONNECTIONS"] * bool(context.connections)),
             *(["spectral=SPECTRAL"] * bool(context.spectral)),
             *(["symbol=SYMBOL"] * bool(context.symbol)),
             *(["torus=TORUS"] * bool(context.torus)),
@@ -528,7 +528,7 @@ def render_family_template(
         ],
         "methods": list(map(declaration, context.methods)),
         "kinks": {place: tuple_text(map(quote, own)) for place, own in context.kinks.items()},
-        "strand": _tell_strand(context.strand),
+        "connections": list(map(_tell_connection, context.connections)),
         "spectral": _tell_texts(context.spectral),
         "symbol": _tell_texts(context.symbol),
         "torus": _tell_texts(context.torus),
@@ -597,12 +597,11 @@ def _tell_spheres(context: FamilyContext) -> str:
     return "{" + ", ".join(entries) + "}"
 
 
-def _tell_strand(strand: Strand | None) -> list[str]:
-    """The strain of a strand, as a generated package declares it; empty without one."""
-    if strand is None:
-        return []
-    names = map(quote, (strand.name, strand.side, strand.length))
-    return [*names, str(strand.size), *(map(str, strand.matrices))]
+def _tell_connection(connection: Connection) -> list[str]:
+    """A connection, as a generated package declares it."""
+    names = map(quote, (connection.name, connection.side, connection.length))
+    entries = (f"{place}: {quote(text)}" for place, text in connection.entries.items())
+    return [*names, str(connection.size), "{" + ", ".join(entries) + "}"]
 
 
 def _tell_texts(record: Spectral | PrincipalSymbol | Torus | None) -> dict[str, Any]:

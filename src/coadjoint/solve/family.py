@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
-from coadjoint.families import Index, PrincipalSymbol, Spectral, Strand, Torus
+from coadjoint.families import Connection, Index, PrincipalSymbol, Spectral, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
@@ -59,7 +59,7 @@ class FamilySystem(System):
         positions: Those that are positions, where the energy is ``T(p) + V(q)``.
         kinks: What is zero at the kinks of member i, and of members at the ends by their places.
         pair_kinks: What is zero at the kinks of the terms of pairs, where no step ends.
-        strand: The strain of a strand and its matrices, if the members are points of one.
+        connections: What has transports and a holonomy, if the members are points of a circle.
         wave: Of a field that is carried by itself, the speed of waves and the name of the length.
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
@@ -95,7 +95,7 @@ class FamilySystem(System):
         positions: tuple[int, ...] = (),
         kinks: Mapping[int | None, tuple[str, ...]] = MappingProxyType({}),
         pair_kinks: tuple[str, ...] = (),
-        strand: Strand | None = None,
+        connections: tuple[Connection, ...] = (),
         wave: tuple[str, ...] = (),
         spectral: Spectral | None = None,
         symbol: PrincipalSymbol | None = None,
@@ -103,7 +103,7 @@ class FamilySystem(System):
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
         self.kinks, self.pair_kinks, self.wave = kinks, pair_kinks, wave
-        self.strand, self.spectral, self.symbol = strand, spectral, symbol
+        self.connections, self.spectral, self.symbol = connections, spectral, symbol
         self.own_state = [name for each in state.values() for name in each.components]
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
@@ -265,7 +265,7 @@ class FamilySystem(System):
             positions=self.positions,
             kinks=self.kinks,
             pair_kinks=self.pair_kinks,
-            strand=self.strand,
+            connections=self.connections,
             wave=self.wave,
             spectral=self.spectral,
             symbol=self.symbol,

@@ -381,7 +381,7 @@ def _tell_rows(solution: Solution) -> str:
     """What the rows of a quantity are numbers of."""
     if not isinstance(solution.system, FamilySystem):
         return "component"
-    is_field = solution.system.symbol is not None or solution.system.strand is not None
+    is_field = solution.system.symbol is not None or bool(solution.system.connections)
     return f"point {solution.system.index.name}" if is_field else "member"
 
 

@@ -366,6 +366,20 @@ class Solution:
 
         return find_frames(self)
 
+    def traces(self) -> dict[str, Array]:
+        """The traces of holonomies around a circle of fields, ``(*batch, T)`` each, by their names.
+
+        Of a strand that of its strain, ``dpsi/ds = psi Xi``; of a Lax pair that of L for each of
+        the declared values of its spectral parameter, ``L(1/2)``. They are conserved by the fields,
+        and by N points up to the order of the differences.
+
+        Raises:
+            KernelArgumentError: The system has no connection around a circle.
+        """
+        from coadjoint.solve.strands import find_traces
+
+        return find_traces(self)
+
     def summary(self) -> dict[str, Any]:
         """Final state and drift as plain JSON values, of one trajectory."""
         from coadjoint.solve.summary import summarize

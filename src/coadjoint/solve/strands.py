@@ -9,7 +9,8 @@ of their differences.
 
 Between two points the field is that of its Fourier series, and the step is Magnus's of order 6 at
 three points of Gauss. For the matrices of a group it is in the group but for rounding.
-Comes in: a Solution of a strand, or matrices at points. Goes out: matrices of the group.
+The same holds of L of a Lax pair of fields for each number in the place of its spectral parameter.
+Comes in: a Solution of fields around a circle, or matrices at points. Goes out: transports, traces.
 Read next: `coadjoint.solve.solution`.
 
 Source:
@@ -18,7 +19,7 @@ Source:
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
@@ -27,6 +28,8 @@ from coadjoint.errors import KernelArgumentError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.families import Connection
+    from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.solution import Solution
 
     Array = NDArray[np.float64]
@@ -45,8 +48,8 @@ def find_frames(solution: Solution) -> Array:
         KernelArgumentError: The system is no strand, or has no matrices.
     """
     system = solution.system
-    strand = system.strand
-    if strand is None:
+    strands = [each for each in system.connections if each.name in system.STATE]
+    if not strands:
         raise KernelArgumentError(
             f"{system.name} has no strain along an algebra of matrices of numbers; expected a "
             "strand, whose strain is turned into group elements. Declare the strain with [space], "
@@ -54,16 +57,49 @@ def find_frames(solution: Solution) -> Array:
             found=system.name,
             expected="a strand",
         )
-    strains = solution[strand.name]  # (k, N, *batch, T)
-    place = list(system.PARAMETERS.components).index(strand.length)
-    length = solution.parameters[place]
-    if solution.batch and np.ndim(length):
-        length = length[..., np.newaxis]
-    generators = np.zeros((len(strand.matrices), strand.size, strand.size))
-    for generator, entries in zip(generators, strand.matrices, strict=True):
-        for row, column, value in entries:
-            generator[row, column] = value
-    return transport(np.tensordot(generators, strains, axes=(0, 0)), length, strand.side)
+    return _find_transports(solution, strands[0])
+
+
+def find_traces(solution: Solution) -> dict[str, Array]:
+    """The traces of the holonomies of all connections, ``(*batch, T)`` each, by their names.
+
+    Raises:
+        KernelArgumentError: The system has none.
+    """
+    system = solution.system
+    if not system.connections:
+        raise KernelArgumentError(
+            f"{system.name} has no connection around a circle; expected a strand, or a Lax pair of "
+            "fields with values of its spectral parameter. Declare a strain on an algebra of "
+            "matrices, or write values = [0.5] in [lax].",
+            found=system.name,
+            expected="a connection",
+        )
+    return {
+        each.name: np.trace(_find_transports(solution, each)[:, :, -1])
+        for each in system.connections
+    }
+
+
+def _find_transports(solution: Solution, connection: Connection) -> Array:
+    """The transports of a connection, by the texts of its entries."""
+    from coadjoint.solve.formulas import Formula  # it reads specs, which few runs need
+
+    system, shape = cast("FamilySystem", solution.system), (*solution.batch, len(solution))
+    rows = [solution.parameters[n] for n in range(system.PARAMETERS.size)]
+    if solution.batch:
+        rows = [row[..., np.newaxis] if np.ndim(row) else row for row in rows]
+    known: dict[str, Any] = dict(zip(system.PARAMETERS.components, rows, strict=True))
+    length = known[connection.length]
+    own = system.size
+    known |= zip(system.own_state, solution.state.reshape(-1, own, *shape), strict=True)
+    matrix = np.zeros((connection.size, connection.size, own, *shape))
+    for place, text in connection.entries.items():
+        formula = Formula(text, dict.fromkeys(known, ()), "an entry of a connection")
+        flat = {x: np.broadcast_to(known[x], (own, *shape)).reshape(-1) for x in formula.names}
+        value, _ = formula.evaluate(flat)
+        matrix[place] = np.broadcast_to(value, (matrix[place].size,)).reshape(own, *shape)
+    return transport(matrix, length, connection.side)
 
 
 def transport(connection: Array, length: Any, side: str = "left") -> Array:

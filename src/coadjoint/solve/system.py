@@ -28,7 +28,7 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from coadjoint.families import PrincipalSymbol, Strand
+    from coadjoint.families import Connection, PrincipalSymbol
     from coadjoint.solve.events import Event
     from coadjoint.solve.functions import Values
     from coadjoint.solve.kernels import Kernels
@@ -68,11 +68,11 @@ class System(Functions):
             see `coadjoint.build.source.Source`.
         wave: Of a field whose waves break, their speed and the name of the length; see
             `coadjoint.solve.shocks`.
-        strand: The strain of a strand and its matrices; None of other systems.
+        connections: What has transports and a holonomy around a circle; none of most systems.
         symbol: The principal symbol of fields; None of other systems.
     """
 
-    strand: Strand | None = None
+    connections: tuple[Connection, ...] = ()
     symbol: PrincipalSymbol | None = None
     levels: Mapping[tuple[str, str], int] = MappingProxyType({})
     wave: tuple[str, ...] = ()

@@ -124,6 +124,7 @@ _TEXTS: dict[str, Any] = {
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]
 }
 
+Number = Annotated[Any, PlainValidator(_number), WithJsonSchema(_NUMBER_OR_TEXT)]
 Entry = Annotated[Any, PlainValidator(_entry), WithJsonSchema(_NUMBER_OR_TEXT)]
 Numbers = Annotated[Any, PlainValidator(_numbers), WithJsonSchema(_describe_lists(_NESTED))]
 Block = Annotated[str | list[str], PlainValidator(_block), WithJsonSchema(_TEXTS)]

@@ -7,7 +7,9 @@ Read next: `coadjoint.derive.routes.lax`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from pydantic import Field
 
@@ -17,6 +19,7 @@ from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import FUNCTIONS, words
+from coadjoint.spec.core.values import Number
 from coadjoint.spec.sections.variables import motion_roles, state_roles
 
 
@@ -26,15 +29,28 @@ class LaxPart(Part):
     spectral: str = Field("lambda", description="name of the spectral parameter in L and M")
     L: str = Field(description="a square matrix of state, parameters and the spectral parameter")
     M: str = Field(description="the same of velocities too: how L turns")
+    values: list[Number] = Field(
+        [],
+        description="of fields around a circle: numbers in the place of the spectral parameter, "
+        'which the trace of the holonomy of L is computed, as [0.5, "1/3"]',
+    )
 
 
 @dataclass(frozen=True)
 class Lax:
-    """A declared Lax pair: ``dL/dt = [L, M]`` for every value of the spectral parameter."""
+    """A declared Lax pair: ``dL/dt = [L, M]`` for every value of the spectral parameter.
+
+    Attributes:
+        spectral: Name of the spectral parameter.
+        L: The matrix.
+        M: How it turns.
+        values: Numbers for which the trace of the holonomy of L is computed.
+    """
 
     spectral: str
     L: Formula
     M: Formula
+    values: tuple[Fraction, ...] = ()
 
 
 def read_lax(reading: Reading, part: LaxPart) -> Lax:
@@ -52,7 +68,23 @@ def read_lax(reading: Reading, part: LaxPart) -> Lax:
     M = _read_square(reading, "M", part.M, of_motion)
     if L.shape != M.shape:
         raise misfit(reading.source, ("lax", "M"), M, f"{words(L.shape)}, as L is")
-    return Lax(part.spectral, L, M)
+    _check_values(reading, part.values)
+    return Lax(part.spectral, L, M, tuple(part.values))
+
+
+def _check_values(reading: Reading, values: Sequence[Fraction]) -> None:
+    """There is a circle, and no value twice."""
+    space, key = reading.file.space, ("lax", "values")
+    if not values:
+        return
+    if not space or any(each.ends != "periodic" for each in space.values()):
+        problem, expected = "values are given, and there is no circle", "none"
+        hint = "Remove values, or write [space] without ends."
+        raise reading.source.fault(key, problem, "values", expected, hint)
+    for place, value in enumerate(values):
+        if value in values[:place]:
+            problem = f"the value {value} is there twice"
+            raise reading.source.fault((*key, place), problem, str(value), "each once")
 
 
 def _check_spectral(reading: Reading, name: str) -> None:
