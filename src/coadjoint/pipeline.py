@@ -151,9 +151,8 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     certificate = prove(spec, list(routes)).require()
     check_loops(family, loops)
     progress("render")
-    facts, methods = judge_family(
-        windows, declared, family, loops, certificate, in_plane=spec.in_plane
-    )
+    plane = [n for n, kept in grid.exact.items() if kept] if isinstance(grid, TorusGrid) else None
+    facts, methods = judge_family(windows, declared, family, loops, certificate, in_plane=plane)
     supported = certificate.count(Verdict.SUPPORTED)
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)

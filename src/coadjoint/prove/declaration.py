@@ -206,7 +206,7 @@ def tell_torus(context: FamilyContext, grid: TorusGrid) -> FamilyContext:
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
     )
     lines = ["fields:", *equation_lines(first), "points:", *family_lines(grid.family)]
-    return replace(context, routes=routes, equations=tuple(lines), torus=grid.torus, methods=())
+    return replace(context, routes=routes, equations=tuple(lines), torus=grid.torus)
 
 
 def tell_symbol(first: Equations) -> PrincipalSymbol | None:

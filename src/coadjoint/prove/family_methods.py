@@ -27,7 +27,7 @@ from coadjoint.lower.program import Program
 from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
-from coadjoint.prove.methods import KINKED, Judgement, judge, judge_spheres
+from coadjoint.prove.methods import KINKED, SWEEPS, Judgement, judge, judge_spheres
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Windows
@@ -219,7 +219,7 @@ def judge_family(
     loops: Mapping[str, Loops],
     certificate: Certificate,
     *,
-    in_plane: bool = False,
+    in_plane: Sequence[str] | None = None,
 ) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
     """The facts of a system of equal members, and every method judged by them.
 
@@ -229,7 +229,7 @@ def judge_family(
         family: Those of the generic member.
         loops: Its functions.
         certificate: What is proved for every number of members.
-        in_plane: Whether the members are points of a plane.
+        in_plane: Where the members are points of a plane, the integrals that truncated series keep.
     """
     facts = FamilyFacts(windows, declared, family, loops, certificate)
     looped = {*LOOPED, *(["isospectral_midpoint"] if family.matrices is not None else [])}
@@ -242,14 +242,31 @@ def judge_family(
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
-    elif in_plane:
+    elif in_plane is not None:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _PLANE)
     elif facts.has_kinks:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), KINKED)
     if facts.is_driven:
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
-    return facts, judge(facts, refusals, {}, rules)
+    judged = judge(facts, refusals, {}, rules)
+    if in_plane is not None:
+        judged = tuple(_judge_plane(each, in_plane) for each in judged)
+    return facts, judged
+
+
+def _judge_plane(judged: JudgedMethod, kept: Sequence[str]) -> JudgedMethod:
+    """The midpoint of a plane keeps what truncated series do, all of which is quadratic."""
+    if judged.name != "midpoint":
+        return judged
+    return JudgedMethod(
+        name=judged.name,
+        order=judged.order,
+        exactly=tuple(kept),
+        decides=f"{', '.join(kept)} are quadratic, and kept by truncated series",
+        cost=f"{SWEEPS} of one midpoint",
+        rank=1,
+    )
 
 
 def _judge_spheres(

@@ -67,6 +67,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
 
+#: The method with steps of one length of fields by Fourier derivatives.
+_BY_WAVES = "midpoint"
+#: How the reason begins for which a step of it fails.
+NOT_SOLVED = "the equation of a step is not solved"
+
 
 def simulate(
     system: System,
@@ -114,6 +119,8 @@ def simulate(
     else:
         check_no_noise(system, method, seed)
         obstacles = dict.fromkeys((*GENERATED, *STRUCTURED, *MAPPED), obstacle) if obstacle else {}
+        if system.obstacle:  # whose midpoint is one of Python's, not a generated one
+            obstacles.pop(_BY_WAVES)
         if is_chosen_by_structure(method, step) and not obstacle:
             obstacles |= generated.find_structure_obstacles(system, find_kind(reconstruct))
             obstacles |= generated.find_missing_maps(system, reconstruct)
@@ -137,7 +144,13 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
-    if check_newton(newton, name):
+    if check_newton(newton, name) and system.obstacle:
+        raise KernelArgumentError(
+            f"newton is True, and {system.obstacle}; expected newton=False.",
+            found="True",
+            reason=system.obstacle,
+        )
+    if newton:
         generated.check_newton_applies(system, reconstruct)
     if np.size(t) == 2 and (name in {*STRUCTURED, *MAPPED} or has_noise(system)):
         assert step is not None, "methods that keep structure, and noise, have steps of one length"
@@ -184,7 +197,7 @@ def simulate(
         from coadjoint.solve.spectral import warn_of_jump
 
         warn_of_jump(system, request)
-    if not request.method.startswith(SCIPY):
+    if not request.method.startswith(SCIPY) and not system.obstacle:
         speeds = watch_waves(system, request)
         solution = generated.simulate(system, request)
         speeds(solution)
@@ -256,6 +269,10 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         import scipy.integrate  # which takes longer than a run of a generated solver
 
         driving.enter(time)
+        if name == _BY_WAVES:
+            from coadjoint.solve.wave_midpoint import WaveMidpoint
+
+            return WaveMidpoint(rates, time, state, end, step=request.step or 0.0)
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
@@ -312,12 +329,14 @@ def _make_solution(
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
+    by_waves = request.method == _BY_WAVES
     course = Course(
         method=request.method,
-        order=None,
-        rtol=request.rtol,
-        atol=request.atol,
-        step=None,
+        order=2 if by_waves else None,
+        rtol=None if by_waves else request.rtol,
+        atol=None if by_waves else request.atol,
+        step=request.step,
+        chosen=request.chosen,
         projection=describe_projection(system, request.method),
         start=start,
     )
@@ -407,6 +426,8 @@ def _follow(
     # An evaluation that is not finite spoils those after it in its step, the latest among them.
     if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
         return *came, "NONFINITE", f"the rates are not finite {place}"
+    if reason.startswith(NOT_SOLVED):
+        return *came, "NOT_SOLVED", f"{reason} This is {place}."
     if solver.status == "failed":
         return *came, "STEP_UNDERFLOW", f"{reason} This is {place}."
     if solver.status == "running":

@@ -64,7 +64,17 @@ class SpectralSystem(FamilySystem):
         self.__dict__.update(system.__dict__)
         for name in ("_kernels", "_solvers"):
             self.__dict__.pop(name, None)
-        self.differences, self.METHODS = system, ()
+        self.differences = system
+        self.METHODS = tuple(
+            replace(
+                each,
+                exactly=tuple(x for x in each.exactly if x == "energy"),
+                nearly=(*each.nearly, *(x for x in each.exactly if x != "energy")),
+                is_poisson=False,
+            )
+            for each in system.METHODS
+            if each.name == "midpoint"
+        )
         kept = (
             replace(each, conserved=each.name == "energy") for each in system.OBSERVABLES.values()
         )

@@ -136,7 +136,8 @@ class System(Functions):
 
         Fourier derivatives are exact for smooth periodic fields but for rounding, as soon as there
         are enough points. Python leads the steps between transforms of SciPy, so that methods
-        ``scipy:NAME`` alone apply, to one trajectory; generated solvers need differences.
+        ``scipy:NAME`` apply, and the midpoint with steps of one length, to one trajectory;
+        generated solvers need differences.
 
         Raises:
             KernelArgumentError: Another name, or a system without fields.

@@ -1,0 +1,113 @@
+"""The implicit midpoint by Fourier derivatives: what it keeps, its order, and steps too long."""
+
+import numpy as np
+import pytest
+
+from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.wave_midpoint import WaveMidpoint
+from coadjoint.systems import euler_2d, kdv, spin_chain
+
+N, L = 32, 10.0
+OPTIONS = {"samples": 5}
+
+
+def chain():
+    """The spin chain by Fourier derivatives, and a smooth state of all its components."""
+    w = 2 * np.pi * np.arange(N) / N
+    Pi = [np.cos(w), np.sin(w) / 2, 1 + 0 * w]
+    Xi = [0.2 + np.cos(w) / 5, np.sin(w) / 2, 0.1 + 0 * w]
+    return spin_chain.system.resize({"s": N}).with_derivatives("fourier"), [*Pi, *Xi]
+
+
+def start():
+    """The state of the chain in a row."""
+    return np.concatenate(chain()[1])
+
+
+def test_the_energy_is_kept_to_rounding_where_it_is_quadratic():
+    """Over 500 steps; by the explicit method of SciPy as far as its tolerance."""
+    system, _ = chain()
+    run = system.simulate(start(), (0, 10), step=0.02, **OPTIONS)
+    assert run.settings["method"] == "midpoint"
+    assert (run.settings["order"], run.settings["step"]) == (2, 0.02)
+    assert "energy" in run.settings["chosen"]
+    assert run.drift["energy"] < 1e-13
+    explicit = system.simulate(start(), (0, 10), rtol=1e-6, atol=1e-8, **OPTIONS)
+    assert explicit.drift["energy"] > 1e-9
+
+
+def test_a_plane_keeps_energy_and_enstrophy_to_rounding():
+    """Both are quadratic, and truncated series keep them; the cube of w is not kept."""
+    system = euler_2d.system
+    w = np.array([system.STATE.defaults[c] for c in system.STATE.components]).reshape(32, 32)
+    run = system.simulate({"w": w}, (0, 15), step=0.1, **OPTIONS)
+    assert run.settings["method"] == "midpoint"
+    assert max(run.drift.values()) < 1e-13
+    assert {*run.drift} == {"energy", "Z"}
+    assert np.abs(run["C"] - run["C"][0]).max() > 1e-6
+
+
+def test_errors_fall_with_the_square_of_the_step():
+    """Against SciPy's method of order 8."""
+    system, _ = chain()
+    known = system.simulate(start(), (0, 1), samples=2, rtol=1e-12, atol=1e-13).state[:, -1]
+    errors = [
+        np.abs(system.simulate(start(), (0, 1), step=h, samples=2).state[:, -1] - known).max()
+        for h in (0.05, 0.025)
+    ]
+    assert abs(np.log2(errors[0] / errors[1]) - 2) < 0.05
+
+
+def test_paths_between_steps_are_cubics():
+    """In the middle of a step, half of both ends and an eighth of the slopes between them."""
+    h, first = 0.4, np.array([1.0, 0.0])
+    solver = WaveMidpoint(lambda _, y: np.array([y[1], -y[0]]), 0.0, first, h, step=h)
+    assert solver.step() is None
+    path, last = solver.dense_output(), solver.y
+    middle = (first + last) / 2 + h / 8 * np.array([first[1] - last[1], last[0] - first[0]])
+    np.testing.assert_allclose(path(h / 2), middle, atol=1e-15)
+    np.testing.assert_array_equal(path(h), last)
+    assert path(np.array([0.0, h / 2, h])).shape == (2, 3)
+
+
+def test_the_last_step_ends_where_the_run_does():
+    """An end that is no whole number of steps."""
+    system, _ = chain()
+    run = system.simulate(start(), (0, 0.25), step=0.1, samples=4)
+    assert run.time[-1] == 0.25
+    assert run.status == "OK"
+    given = system.simulate(start(), [0, 0.05, 0.25], step=0.1)
+    np.testing.assert_array_equal(given.state[:, -1], run.state[:, -1])
+
+
+def test_steps_that_are_too_long_are_a_status():
+    """Of KdV, whose third derivative is stiff; shorter ones are solved, as the advice says."""
+    system = kdv.system.resize({"s": 32}).with_derivatives("fourier")
+    m = np.cos(2 * np.pi * np.arange(32) / 32) / 3
+    run = system.simulate(m, (0, 1), step=1.0, samples=2)
+    assert run.status == "NOT_SOLVED"
+    assert "Shorten steps" in run.message
+    assert system.simulate(m, (0, 0.1), step=0.01, samples=2).status == "OK"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "midpoint"}, "expected step="),
+        ({"step": 0.1, "newton": True}, "expected newton=False"),
+        ({"method": "gauss4", "step": 0.1}, "'midpoint', 'scipy:DOP853'"),
+        ({"method": "midpoint", "step": 0.1, "rtol": 1e-3}, "one or the other"),
+    ],
+)
+def test_what_does_not_go_with_it_is_refused(options, message):
+    """With what there is instead."""
+    system, _ = chain()
+    with pytest.raises(KernelArgumentError, match=message):
+        system.simulate(start(), (0, 1), **options)
+
+
+def test_a_batch_is_refused():
+    """SciPy's loop follows one trajectory."""
+    system, _ = chain()
+    with pytest.raises(KernelArgumentError, match="one trajectory"):
+        system.simulate(np.stack([start()] * 2, axis=-1), (0, 1), step=0.1)
