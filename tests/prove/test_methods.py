@@ -187,7 +187,8 @@ def test_kinks_and_noise_take_all():
     """Each method says what is in the way."""
     _, methods = judge_shipped("stochastic_rigid_body")
     reasons = {each.decides for each in methods.values() if not each.applies}
-    said = "motions with noise have methods of their own: heun, spherical_midpoint, midpoint"
+    own = "heun, spherical_midpoint, coadjoint_mean, midpoint"
+    said = f"motions with noise have methods of their own: {own}"
     assert said in reasons
     assert not any(each.applies for each in methods.values())
 
