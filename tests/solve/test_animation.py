@@ -13,7 +13,7 @@ from PIL import Image
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import animation
 from coadjoint.solve.plot import draw
-from coadjoint.systems import heavy_top, kepler
+from coadjoint.systems import euler_2d, heavy_top, kepler
 
 TOP = ({"Pi": [0, 0, 3], "Gamma": [0.6, 0, 0.8]}, (0, 2), {"I": [1, 1, 0.6], "m": 0.3})
 
@@ -88,3 +88,24 @@ def test_one_sample_does_not_move(tmp_path):
     with pytest.raises(KernelArgumentError, match="Ask for more, samples=200"):
         heavy_top.simulate(*TOP, samples=1).animate(tmp_path / "top.gif")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_field_in_a_plane_moves_in_its_last_panel():
+    """Its colours at a time are those of the latest sample, at four times as many points."""
+    x = 2 * np.pi * np.arange(8) / 8
+    w = np.cos(x)[:, None] + np.sin(2 * x)[None, :]
+    run = euler_2d.system.resize({"x": 8, "y": 8}).simulate({"w": w}, (0, 4), samples=5)
+    figure = draw(run)
+    (panel,) = (each for each in figure.axes if hasattr(each, "coadjoint_field"))
+    colours, _ = panel.coadjoint_field
+    (move,) = (
+        each
+        for each in animation._list_moves(figure, run)
+        if each.__qualname__.startswith("_move_field")
+    )
+    for now, at in ((0.0, 0), (1.5, 1), (4.0, 4)):
+        move(now)
+        shown = np.asarray(colours.get_array()).reshape(32, 32).T
+        np.testing.assert_allclose(shown[::4, ::4], run["w"][..., at], atol=1e-12)
+        assert panel.get_title().startswith(f"t = {run.time[at]:.4g}")
+    assert np.abs(run["w"][..., 4] - run["w"][..., 0]).max() > 0.1

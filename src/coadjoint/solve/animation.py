@@ -16,7 +16,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
-from coadjoint.solve.plot import COLOURS, draw, new_figure
+from coadjoint.solve.plot import COLOURS, draw, new_figure, refine, tell_time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -146,6 +146,9 @@ def _list_moves(figure: Any, solution: Solution) -> Iterator[Move]:
             yield from (_move_along(axes, solution.time, each) for each in path)
         elif getattr(axes, "coadjoint_time", False):
             yield _move_over(axes)
+        field = getattr(axes, "coadjoint_field", None)
+        if field is not None:
+            yield _move_field(axes, solution, *field)
 
 
 def _move_along(axes: Any, time: Array, path: Array) -> Move:
@@ -158,6 +161,17 @@ def _move_along(axes: Any, time: Array, path: Array) -> Move:
         point.set_data(*place[:2])
         if len(place) == 3:
             point.set_3d_properties(place[2])
+
+    return move
+
+
+def _move_field(axes: Any, solution: Solution, colours: Any, values: Array) -> Move:
+    """A field in a plane, ``(N_x, N_y, T)``: the latest sample before the time of the film."""
+
+    def move(now: float) -> None:
+        at = max(0, int(np.searchsorted(solution.time, now, side="right")) - 1)
+        colours.set_array(refine(values[..., at]).T)
+        axes.set_title(tell_time(solution, at), fontsize=9)
 
     return move
 

@@ -340,7 +340,7 @@ def _draw_plane(figure: Any, place: Any, solution: Solution, name: str, torus: T
         colours = axes.pcolormesh(
             x,
             y,
-            _refine(values[..., at]).T,
+            refine(values[..., at]).T,
             cmap="PuOr",
             vmin=-largest,
             vmax=largest,
@@ -348,17 +348,22 @@ def _draw_plane(figure: Any, place: Any, solution: Solution, name: str, torus: T
         )
         colours.set_rasterized(True)
         axes.set_aspect("equal")
-        time = f"t = {solution.time[at]:.4g} {unit_label(solution.unit('time'))}".strip()
-        axes.set_title(time, fontsize=9)
+        axes.set_title(tell_time(solution, at), fontsize=9)
         axes.tick_params(labelsize=8, labelleft=n % 2 == 0, labelbottom=n + 2 >= len(shown))
         axes.set_xlabel(torus.coordinates[0] * (n + 2 >= len(shown)), fontsize=9)
         axes.set_ylabel(torus.coordinates[1] * (n % 2 == 0), fontsize=9)
+    axes.coadjoint_field = colours, values  # in a film the last one moves
     bar = figure.colorbar(colours, ax=every, pad=0.02, aspect=40)
     bar.set_label(f"{_symbol(name)} {unit_label(solution.system.STATE[name].unit)}", fontsize=9)
     bar.ax.tick_params(labelsize=8)
 
 
-def _refine(field: Array) -> Array:
+def tell_time(solution: Solution, at: int) -> str:
+    """The time of a sample, with its unit."""
+    return f"t = {solution.time[at]:.4g} {unit_label(solution.unit('time'))}".strip()
+
+
+def refine(field: Array) -> Array:
     """The same trigonometric polynomial at more points."""
     from scipy import fft
 
