@@ -132,6 +132,15 @@ def test_wrong_claims_are_refused():
         prove(read('expression = "w^3"', 'expression = "w_x^2*w"')).require()
 
 
+def test_what_the_field_does_not_keep_its_series_do_not_keep():
+    """The square of a slope has a linear variation, and both claims of it are refuted."""
+    spec = read('expression = "w^2/2"', 'expression = "w_x^2/2"')
+    claims = [each for each in prove(spec).claims if "Z" in each.statement.split()]
+    claims += [each for each in prove(spec).claims if "integral of Z" in each.statement]
+    assert {each.verdict for each in claims} == {Verdict.REFUTED}
+    assert any("N > 3 K" in each.statement for each in claims)
+
+
 def test_waves_come_back_if_there_are_too_few_points():
     """3 K < N strictly: N = 3 K has false waves."""
     assert find_aliases(10, 3) == []

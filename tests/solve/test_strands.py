@@ -7,10 +7,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from coadjoint.errors import KernelArgumentError
+from coadjoint.derive import derive
+from coadjoint.errors import DerivationError, KernelArgumentError
 from coadjoint.prove.declaration import find_connections
 from coadjoint.solve.strands import transport
-from tests.specs import emitted
+from coadjoint.spec import read_spec_text
+from tests.specs import emitted, shipped
 
 LENGTH = 10.0
 
@@ -172,6 +174,14 @@ def test_traces_are_those_of_the_strain_and_of_the_pair_at_its_values():
         np.testing.assert_allclose(traces[name], expected, atol=1e-12)
         assert np.abs(traces[name] - traces[name][0]).max() < 1e-4
         assert np.abs(traces[name] - traces["Xi"]).max() > 0.1
+
+
+def test_a_pole_of_the_pair_is_no_value():
+    """L of the chiral model has 1/mu."""
+    text = shipped("spin_chain_chiral").path.read_text(encoding="utf-8")
+    first = derive(read_spec_text(text.replace("[0.5, 3]", "[3, 0]"), "chain.toml"), "lax")
+    with pytest.raises(DerivationError, match=r"L has a pole at mu = 0.*Remove 0 from values"):
+        find_connections(first)
 
 
 def test_traces_of_a_batch_are_those_of_its_trajectories():

@@ -1,7 +1,7 @@
 """Cross-check, motions of solvers: what steps ask of a motion, in any arithmetic.
 
 Comes in: functions of a kernel, by the equations or by the Programs, and where a member is. Goes
-out: its rates, and what methods on coadjoint orbits and discrete gradients ask for beside them.
+out: its rates, and the other functions that methods on orbits and discrete gradients use.
 Read next: `coadjoint.crosscheck.methods`, the steps.
 """
 

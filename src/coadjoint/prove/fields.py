@@ -52,9 +52,10 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
     for equations in routes:
         yield from _about_pair(first, routes, equations)
     yield from _about_strand(first)
-    yield from (
-        about_torus(make_torus(first)) if first.spec.in_plane else about_grid(make_grid(first))
-    )
+    if first.spec.in_plane:
+        yield from about_torus(make_torus(first), partial(decide_density, first))
+    else:
+        yield from about_grid(make_grid(first))
 
 
 # -- the bracket ------------------------------------------------------------------------------

@@ -10,10 +10,11 @@ Read next: `coadjoint.prove.fields`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from coadjoint.derive.fields.torus import TorusGrid
+from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.zero import Decision, Discovery, Examined
 
@@ -25,8 +26,16 @@ COUNTED = 8
 _WHERE = "with the waves up to K along each coordinate of N > 3 K points"
 
 
-def about_torus(grid: TorusGrid) -> Iterator[Examined]:
-    """What is proved of a field at the points of a plane."""
+def about_torus(
+    grid: TorusGrid, decide: Callable[[Sequence[Element]], Decision]
+) -> Iterator[Examined]:
+    """What is proved of a field at the points of a plane.
+
+    Args:
+        grid: The field.
+        decide: Whether the field itself conserves the integrals of densities.
+    """
+    densities = {each.name: each.values for each in grid.equations.exact.emitted}
     yield (
         "products of two fields at the points have the truncated series of these products, "
         f"{_WHERE}",
@@ -36,12 +45,12 @@ def about_torus(grid: TorusGrid) -> Iterator[Examined]:
     for name, exact in grid.exact.items():
         what = "the energy" if name == "energy" else name
         if exact:
-            yield f"{what} is conserved, {_WHERE}", "conserved", _decide_projection
+            found = partial(_decide_projection, decide, densities[name])
+            yield f"{what} is conserved, {_WHERE}", "conserved", found
             continue
         method = "its variation by the field is not linear, so that it has waves that are left out"
-        found = Discovery(method, "of truncated series")
         statement = f"{name} may change by the waves that are left out, {_WHERE}"
-        yield statement, "conserved", partial(_give, found)
+        yield statement, "conserved", partial(Discovery, method, "of truncated series")
     waves = ((2, 0), (1, 1), (-2, 0))
     defect = find_defect(waves, most=2)
     assert defect, "a cyclic sum that is not zero"
@@ -54,11 +63,6 @@ def about_torus(grid: TorusGrid) -> Iterator[Examined]:
             "for K = 2",
         ),
     )
-
-
-def _give(found: Discovery) -> Discovery:
-    """What is known already."""
-    return found
 
 
 def _decide_aliases() -> Decision:
@@ -83,8 +87,13 @@ def find_aliases(N: int, K: int) -> list[int]:
     return [n for n in waves for m in range(-K, K + 1) if n != m and (n - m) % N == 0]
 
 
-def _decide_projection() -> Decision:
-    """What `TorusGrid.exact` says, with the integral that the field itself keeps."""
+def _decide_projection(
+    decide: Callable[[Sequence[Element]], Decision], densities: Sequence[Element]
+) -> Decision:
+    """What `TorusGrid.exact` says, where the field itself keeps the integrals."""
+    decision = decide(densities)
+    if decision.verdict is not Verdict.PROVED:
+        return decision
     method = (
         "its variation is linear in the field, so that it has no waves that are left out, and "
         "times the rate it is of the third degree, of which sums over N > 3 K points are "

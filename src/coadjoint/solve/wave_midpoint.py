@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
+from coadjoint.solve.simulate import NOT_SOLVED
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -31,7 +33,7 @@ CLOSE: Final = 1e-12
 #: The part of a step by which the last one may be longer.
 LONGER: Final = 1e-6
 #: What SciPy's loop is told where sweeps come no closer.
-FAILED: Final = "the equation of a step is not solved: its sweeps come no closer. Shorten steps."
+FAILED: Final = f"{NOT_SOLVED}: its sweeps come no closer. Shorten steps."
 
 
 class WaveMidpoint(OdeSolver):
