@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
@@ -243,33 +243,28 @@ class FamilySystem(System):
             ResourceError: So many members do not fit into memory.
         """
         size = check_sizes(self.name, self.index, self.small, sizes)
-        state, shared, indexed, observables, functions, elementary = self._declared
-        made = FamilySystem(
-            self.name,
-            str(self.folder / "__init__.py"),
-            (replace(self.index, size=size), self.small),
-            state,
-            shared,
-            indexed,
-            observables,
-            functions,
-            elementary,
-            self.id,
-            unit_of_time=self.unit_of_time,
-            defaults=self._defaults,
-            repeating=self._repeating,
-            time=self.TIME,
+        return self._copy(replace(self.index, size=size))
+
+    def _copy(self, index: Index, **changed: Any) -> Self:
+        """The same for another index, and what else is changed."""
+        given: dict[str, Any] = {
+            "unit_of_time": self.unit_of_time,
+            "defaults": self._defaults,
+            "repeating": self._repeating,
+            "time": self.TIME,
             **self._driving,
-            methods=self.METHODS,
-            spheres=self.spheres,
-            positions=self.positions,
-            kinks=self.kinks,
-            pair_kinks=self.pair_kinks,
-            connections=self.connections,
-            wave=self.wave,
-            spectral=self.spectral,
-            symbol=self.symbol,
-        )
+            "methods": self.METHODS,
+            "spheres": self.spheres,
+            "positions": self.positions,
+            "kinks": self.kinks,
+            "pair_kinks": self.pair_kinks,
+            "connections": self.connections,
+            "wave": self.wave,
+            "spectral": self.spectral,
+            "symbol": self.symbol,
+        }
+        file, first = str(self.folder / "__init__.py"), (index, self.small)
+        made = type(self)(self.name, file, first, *self._declared, self.id, **given | changed)
         made.levels = self.levels
         return made
 

@@ -61,7 +61,7 @@ class TorusSystem(FamilySystem):
     obstacle = "its derivatives are those of Fourier series, between which Python leads the steps"
 
     def __init__(self, *declared: Any, torus: Torus, **given: Any) -> None:
-        self.torus, self.around, self._given = torus, torus, given
+        self.torus, self.around = torus, torus
         self.counts = tuple(size or LEAST for size in torus.sizes)
         self._points = FamilySystem(*declared, **given)
         super().__init__(*declared, **given)
@@ -104,23 +104,8 @@ class TorusSystem(FamilySystem):
         torus = type(old)(
             old.coordinates, old.lengths, tuple(own.values()), old.derivatives, old.solved
         )
-        state, shared, indexed, observables, functions, elementary = self._declared
-        made = TorusSystem(
-            self.name,
-            str(self.folder / "__init__.py"),
-            (replace(self.index, size=prod(own[name] or 0 for name in names)), self.small),
-            state,
-            shared,
-            indexed,
-            observables,
-            functions,
-            elementary,
-            self.id,
-            torus=torus,
-            **self._given,
-        )
-        made.levels = self.levels
-        return made
+        whole = prod(own[name] or 0 for name in names)
+        return self._copy(replace(self.index, size=whole), torus=torus)
 
     def _repeat(self, quantity: Quantity, size: int) -> Quantity:
         """A quantity of a point as one of all points."""
