@@ -1,6 +1,8 @@
 """A field in a plane: rates by sums over waves, steady flows, what is kept, and what is refused."""
 
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ import sympy
 
 import coadjoint
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.torus import PlaneWaves, TorusSystem
+from coadjoint.solve.plane_waves import PlaneWaves
+from coadjoint.solve.torus import TorusSystem
 from coadjoint.systems import euler_2d
 from tests.specs import shipped
 
@@ -208,3 +211,15 @@ def test_a_size_that_is_missing_is_asked_for(tmp_path):
     with pytest.raises(KernelArgumentError, match="'x': 64, 'y': 64"):
         coadjoint.load(path)
     assert coadjoint.load(path, sizes={"x": 8, "y": 9}).counts == (8, 9)
+
+
+def test_the_system_is_imported_without_what_few_runs_need():
+    """As every other one: no NumPy, no reader of specs."""
+    code = (
+        "import sys; import coadjoint.systems.euler_2d as e; print(e.system); print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    told, modules = done.stdout.splitlines()
+    assert "32 x 32 points" in told
+    assert {"coadjoint.solve.torus"} <= {*modules.split()}
+    assert not {"numpy", "pydantic", "sympy", "scipy"} & {*modules.split()}

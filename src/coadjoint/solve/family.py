@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 #: Bytes of memory for each row of the state and of the parameters: its name and its place among
 #: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
 ROW_BYTES: Final = 1000
+#: Functions that fields by Fourier derivatives have.
+BY_WAVES: Final = ("rhs", "energy", "observables")
 #: The largest part of the memory of a machine that a System may take.
 SHARE: Final = 0.5
 

@@ -189,7 +189,8 @@ def simulate(
 
         check_means(system, request.state)
     if isinstance(system, FamilySystem) and system.torus is not None:
-        from coadjoint.solve.torus import TorusSystem, check_plane
+        from coadjoint.solve.plane_waves import check_plane
+        from coadjoint.solve.torus import TorusSystem
 
         assert isinstance(system, TorusSystem), system.name
         check_plane(system, request.state)

@@ -26,7 +26,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError, PeriodicityWarning
 from coadjoint.render.targets.protocol import Call, Kernel
-from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.family import BY_WAVES, FamilySystem
 from coadjoint.solve.formulas import Formula
 from coadjoint.solve.kernels import Kernels
 from coadjoint.solve.quantities import Quantities
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-#: Functions that fields have with these derivatives.
-FUNCTIONS: Final = ("rhs", "energy", "observables")
 #: How much larger than elsewhere a step across the ends is that is called a jump, and the least
 #: part of a field that is looked at.
 STEEP, SMALL = 10.0, 1e-6
@@ -79,7 +77,7 @@ class SpectralSystem(FamilySystem):
             replace(each, conserved=each.name == "energy") for each in system.OBSERVABLES.values()
         )
         self.OBSERVABLES = Quantities(*kept)
-        self.functions = {name: system.functions[name] for name in FUNCTIONS}
+        self.functions = {name: system.functions[name] for name in BY_WAVES}
 
     def resize(self, sizes: Mapping[str, int]) -> SpectralSystem:
         """The fields at another number of points."""
