@@ -69,7 +69,7 @@ def pytest_configure(config):
     everything = "not campaign" not in config.option.markexpr
     specs.SEARCH_EVERYWHERE = everything
     if not everything:  # what compilers make of a text is for tests of compilers and of the ladder
-        os.environ.setdefault(OPTIMIZE, "1")
+        os.environ.setdefault(OPTIMIZE, "0")
 
 
 @pytest.fixture

@@ -118,6 +118,8 @@ def test_the_environment_lowers_how_much_is_optimised(monkeypatch):
     monkeypatch.setenv("COADJOINT_OPTIMIZE", "1")
     assert "-O1" in found.flags("exact")
     assert found.flags("exact") != most
+    monkeypatch.setenv("COADJOINT_OPTIMIZE", "0")
+    assert ("-O0" in found.flags("exact"), "-O1" in found.flags("fast")) == (True, True)
     monkeypatch.setenv("COADJOINT_OPTIMIZE", "3")
     assert (found.flags("exact"), "-O2" in found.flags("exact", source)) == (most, True)
 

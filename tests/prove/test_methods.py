@@ -241,7 +241,7 @@ RUNS = {
     "suslov": (suslov, [0.429, -0.084, 0.0], None),
 }
 #: Steps of 0.1; an integral that is not kept is missed by more after so many.
-STEPS, ROUNDING = 50, 1e-12
+STEPS, ROUNDING = 24, 1e-12
 #: Energies that the mean of a gradient misses by little: they are no polynomials.
 MISSED = {("kepler", "average_gradient"): 2e-12}
 

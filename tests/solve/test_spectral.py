@@ -192,7 +192,7 @@ def test_the_chiral_model_keeps_a_trace_for_each_spectral_parameter():
 
     By differences of order 4 those of the same field change by more than 1e-8.
     """
-    N, L = 128, 10.0
+    N, L = 64, 10.0
     w = 2 * np.pi * np.arange(N) / N
     Pi = [0.3 * np.cos(w), 0.15 * np.sin(w), 0.5 + 0 * w]
     Xi = [0.3 + 0 * w, np.sin(w) / 4, np.cos(w) / 5]

@@ -107,7 +107,8 @@ class Compiler:
             CompilerError: The environment asks for no level of optimisation.
         """
         own = _GNU if self.is_gnu and source.is_loops else ()
-        level = min(source.level, _allowed_level())
+        lowest = int(build == "fast")  # without optimisation nothing is fused
+        level = min(source.level, max(_allowed_level(), lowest))
         fusing = _FUSING if self.is_gnu and level == 1 else ()
         suited = (f"-O{level}", *fusing, *own, *machine)
         return (*_FLAGS, *suited, BUILDS[build], *source.defines, *_SHARED)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -106,8 +107,11 @@ def test_similar_steps_are_no_poisson_maps(name: str) -> None:
     assert find_defect(motion, naive, x) > 1e-6
 
 
-def follow(motion: Motion, x: Any, end: float) -> Any:
+@cache
+def follow(name: str, end: float) -> Any:
     """The motion itself, by many steps of the classical method of Runge and Kutta."""
+    motion = make_motion(name)
+    x = make_start(motion)[:, np.newaxis].astype(np.longdouble)
     count = 800
     h = np.longdouble(end) / count
     for _ in range(count):
@@ -137,7 +141,7 @@ def test_order(kind: str, name: str, order: int) -> None:
         ends.append(end)
     measured = np.log2(float(abs(ends[0] - ends[1]).max() / abs(ends[1] - ends[2]).max()))
     assert measured == pytest.approx(order, abs=0.1)
-    exact = follow(motion, x, 0.8)
+    exact = follow(name, 0.8)
     gaps = [float(abs(end - exact).max()) for end in ends]
     assert gaps[2] < 0.3 * gaps[1] < 0.1 * gaps[0] + 1e-12
 
