@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isqrt
+from types import MappingProxyType
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -118,6 +119,8 @@ class Spectral:
         densities: Of the totals, the energy and the observables, texts by their names.
         solved: Of a velocity that follows from m = A u, its name, m, and the factors of derivatives
             in A as texts by their order; A takes constants to 0 without that of order 0.
+        slopes: Of rates and products by their names, how they change with fields and derivatives
+            about constant fields, texts by the names of these; zeros are left out.
     """
 
     def __init__(
@@ -128,9 +131,11 @@ class Spectral:
         rates: Mapping[str, str],
         densities: Mapping[str, str],
         solved: Mapping[str, tuple[str, Mapping[int, str]]],
+        slopes: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
     ) -> None:
         self.length, self.derivatives, self.products = length, derivatives, products
         self.rates, self.densities, self.solved = rates, densities, solved
+        self.slopes = slopes
 
 
 class Torus:

@@ -265,6 +265,7 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
+    direct = _find_direction(system, packed) if name == _BY_WAVES else None
 
     def begin(time: float, state: Array, end: float) -> OdeSolver:
         import scipy.integrate  # which takes longer than a run of a generated solver
@@ -273,7 +274,8 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         if name == _BY_WAVES:
             from coadjoint.solve.wave_midpoint import WaveMidpoint
 
-            return WaveMidpoint(rates, time, state, end, step=request.step or 0.0)
+            length = request.step or 0.0
+            return WaveMidpoint(rates, time, state, end, step=length, direct=direct)
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
@@ -286,6 +288,16 @@ def _simulate_alone(system: System, request: Request) -> Solution:
     if ending is not None:
         run = _cut_at_event(*run[:2], ending)
     return _make_solution(system, packed, driving, run, request, trail)
+
+
+def _find_direction(
+    system: System, parameters: Array
+) -> Callable[[Array, float], Callable[[Array], Array]] | None:
+    """What directs sweeps of the midpoint: the linear part of fields, where there is one."""
+    from coadjoint.solve.stiff_waves import find_stiff_waves  # which reads formulas
+
+    waves = find_stiff_waves(system, parameters)
+    return None if waves is None else waves.direct
 
 
 def _make_trail(
