@@ -184,10 +184,3 @@ def test_what_does_not_go_with_it_is_refused(options, message):
     system, _ = chain()
     with pytest.raises(KernelArgumentError, match=message):
         system.simulate(start(), (0, 1), **options)
-
-
-def test_a_batch_is_refused():
-    """SciPy's loop follows one trajectory."""
-    system, _ = chain()
-    with pytest.raises(KernelArgumentError, match="one trajectory"):
-        system.simulate(np.stack([start()] * 2, axis=-1), (0, 1), step=0.1)

@@ -119,21 +119,21 @@ class WaveMidpoint(OdeSolver):
         noise = half * float(np.abs(self.fun(time, rounded) - self.fun(time, middle)).max())
         return most <= ROUNDINGS * noise
 
-    def _dense_output_impl(self) -> _Cubic:
+    def _dense_output_impl(self) -> Cubic:
         """The path of the last step."""
         start, old = self._before
         slopes = self.fun(start, old), self.fun(self.t, self.y)
-        return _Cubic(start, self.t, (old, self.y), slopes)
+        return Cubic(start, self.t, (old, self.y), slopes)
 
 
-class _Cubic(DenseOutput):
+class Cubic(DenseOutput):
     """The cubic of Hermite through both ends of a step."""
 
     def __init__(
         self, start: float, end: float, states: tuple[Array, Array], slopes: tuple[Array, Array]
     ) -> None:
         super().__init__(start, end)
-        self._states, self._slopes = states, slopes
+        self._states, self._slopes = np.stack(states), np.stack(slopes)
 
     def _call_impl(self, t: Array) -> Array:
         """States at times."""
