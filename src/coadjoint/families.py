@@ -16,7 +16,7 @@ Read next: `coadjoint.derive.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isqrt
 from types import MappingProxyType
@@ -162,6 +162,38 @@ class Torus:
     ) -> None:
         self.coordinates, self.lengths, self.sizes = coordinates, lengths, sizes
         self.derivatives, self.solved = derivatives, solved
+
+
+class Profiles:
+    """Where fields begin, as functions of the place.
+
+    Args:
+        lengths: The parameters that are the lengths of the coordinates.
+        formulas: By the name of a field its components, in all coordinates, then in all parameters
+            that points share.
+    """
+
+    def __init__(
+        self, lengths: tuple[str, ...], formulas: Mapping[str, Callable[..., tuple[float, ...]]]
+    ) -> None:
+        self.lengths, self.formulas = lengths, formulas
+
+
+@dataclass(frozen=True)
+class WrittenProfiles:
+    """The same as texts of Python.
+
+    Attributes:
+        lengths: As above.
+        arguments: The names of coordinates and parameters, in order.
+        texts: By the name of a field one text for each component.
+        called: What the texts name of Python's ``math``.
+    """
+
+    lengths: tuple[str, ...]
+    arguments: tuple[str, ...]
+    texts: Mapping[str, tuple[str, ...]]
+    called: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,12 @@ class Interpolants:
     def take(self, which: Places) -> Interpolants:
         """Some of them, in a given order."""
         paths = [self.paths[place] for place in which.tolist()]
-        return Interpolants(paths, self.start[which], self.size[which], self.member[which])
+        return Interpolants(
+            paths=paths,
+            start=self.start[which],
+            size=self.size[which],
+            member=self.member[which],
+        )
 
     def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
         """As `Steps.follow`."""
@@ -326,7 +331,7 @@ class Trail:
             self._times.append(before)
         if self.lookout is None:
             return None
-        steps = Interpolants([path], start, size, np.zeros(1, np.intp))
+        steps = Interpolants(paths=[path], start=start, size=size, member=np.zeros(1, np.intp))
         endings = self.lookout.look(move_onto_constraints(steps, self._around))
         return endings[0] if endings else None
 
@@ -344,8 +349,12 @@ class Trail:
         if not self._keeps:
             return None
         begun = np.array(self._times)
-        alone = np.zeros(len(begun), np.intp)
-        steps = Interpolants(self._paths, begun, np.diff(np.append(begun, end)), alone)
+        steps = Interpolants(
+            paths=self._paths,
+            start=begun,
+            size=np.diff(np.append(begun, end)),
+            member=np.zeros(len(begun), np.intp),
+        )
         return Dense(steps.take(np.flatnonzero(begun < end)), signal, start)
 
 
@@ -354,8 +363,8 @@ def join_interpolants(lots: Sequence[KeptSteps]) -> Interpolants:
     own = [each for each in lots if isinstance(each, Interpolants)]
     assert len(own) == len(lots), "each is a run of SciPy"
     return Interpolants(
-        [path for each in own for path in each.paths],
-        np.concatenate([each.start for each in own]),
-        np.concatenate([each.size for each in own]),
-        np.repeat(np.arange(len(own)), [len(each.start) for each in own]),
+        paths=[path for each in own for path in each.paths],
+        start=np.concatenate([each.start for each in own]),
+        size=np.concatenate([each.size for each in own]),
+        member=np.repeat(np.arange(len(own)), [len(each.start) for each in own]),
     )

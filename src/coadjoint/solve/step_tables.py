@@ -84,7 +84,8 @@ def read_dense(record: Mapping[str, Any]) -> Dense:
     steps: Interpolants | Polynomials
     if "paths" in record:
         paths = [_read_path(path) for path in record["paths"]]
-        steps = Interpolants(paths, begun, size, np.array(record["member"], np.intp))
+        member = np.array(record["member"], np.intp)
+        steps = Interpolants(paths=paths, start=begun, size=size, member=member)
         good = len(steps.paths) == len(begun) == len(steps.member)
     else:
         path = np.array(record["coefficients"], np.float64)
