@@ -16,9 +16,10 @@ Read next: `coadjoint.derive.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isqrt
+from types import MappingProxyType
 from typing import Any
 
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
@@ -118,6 +119,8 @@ class Spectral:
         densities: Of the totals, the energy and the observables, texts by their names.
         solved: Of a velocity that follows from m = A u, its name, m, and the factors of derivatives
             in A as texts by their order; A takes constants to 0 without that of order 0.
+        slopes: Of rates and products by their names, how they change with fields and derivatives
+            about constant fields, texts by the names of these; zeros are left out.
     """
 
     def __init__(
@@ -128,9 +131,11 @@ class Spectral:
         rates: Mapping[str, str],
         densities: Mapping[str, str],
         solved: Mapping[str, tuple[str, Mapping[int, str]]],
+        slopes: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
     ) -> None:
         self.length, self.derivatives, self.products = length, derivatives, products
         self.rates, self.densities, self.solved = rates, densities, solved
+        self.slopes = slopes
 
 
 class Torus:
@@ -157,6 +162,38 @@ class Torus:
     ) -> None:
         self.coordinates, self.lengths, self.sizes = coordinates, lengths, sizes
         self.derivatives, self.solved = derivatives, solved
+
+
+class Profiles:
+    """Where fields begin, as functions of the place.
+
+    Args:
+        lengths: The parameters that are the lengths of the coordinates.
+        formulas: By the name of a field its components, in all coordinates, then in all parameters
+            that points share.
+    """
+
+    def __init__(
+        self, lengths: tuple[str, ...], formulas: Mapping[str, Callable[..., tuple[float, ...]]]
+    ) -> None:
+        self.lengths, self.formulas = lengths, formulas
+
+
+@dataclass(frozen=True)
+class WrittenProfiles:
+    """The same as texts of Python.
+
+    Attributes:
+        lengths: As above.
+        arguments: The names of coordinates and parameters, in order.
+        texts: By the name of a field one text for each component.
+        called: What the texts name of Python's ``math``.
+    """
+
+    lengths: tuple[str, ...]
+    arguments: tuple[str, ...]
+    texts: Mapping[str, tuple[str, ...]]
+    called: tuple[str, ...]
 
 
 @dataclass(frozen=True)

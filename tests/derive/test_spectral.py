@@ -51,6 +51,10 @@ def test_the_texts_of_korteweg_and_de_vries():
     assert found.rates == {"m": "-c*m_sss - m*m_s - product1_s"}
     assert found.densities["J"] == "c*m*m_ss/2 + m**3/2"
     assert (found.length, found.solved) == ("L", {})
+    assert found.slopes == {
+        "product1": {"m": "2*m"},
+        "m": {"m_s": "-m", "product1_s": "-1", "m_sss": "-c"},
+    }
 
 
 def test_the_velocity_of_camassa_and_holm_is_solved_for():

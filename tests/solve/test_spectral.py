@@ -128,12 +128,6 @@ def test_generated_solvers_are_refused_with_the_reason(options):
     assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
 
 
-def test_a_batch_is_refused():
-    """Methods of SciPy follow one trajectory."""
-    with pytest.raises(KernelArgumentError, match="derivatives are those of Fourier series"):
-        fourier(kdv.system, 32).simulate(np.zeros((32, 2)), (0, 1))
-
-
 @pytest.mark.campaign
 def test_a_spec_is_loaded_with_them(tmp_path):
     """With a number of points."""

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.stiff_waves import StiffWaves
 from coadjoint.solve.wave_midpoint import WaveMidpoint
-from coadjoint.systems import euler_2d, kdv, spin_chain
+from coadjoint.systems import camassa_holm, euler_2d, kdv, spin_chain
+from tests.fields import cnoidal_wave
 
 N, L = 32, 10.0
 OPTIONS = {"samples": 5}
@@ -80,14 +82,92 @@ def test_the_last_step_ends_where_the_run_does():
     np.testing.assert_array_equal(given.state[:, -1], run.state[:, -1])
 
 
+#: Points, the length and the central charge of the wave of Korteweg and de Vries.
+POINTS, CIRCLE, CHARGE = 128, 12.0, 1.3
+
+
+def cnoidal(h, end, points=POINTS):
+    """A run along the wave, and by how much it misses the wave at its end."""
+    s = np.arange(points) * CIRCLE / points
+    system = kdv.system.resize({"s": points}).with_derivatives("fourier")
+    start, given = cnoidal_wave(s, 0.0)[0].ravel(), {"c": CHARGE, "L": CIRCLE}
+    run = system.simulate(start, (0, end), step=h, samples=3, parameters=given)
+    return run, np.abs(run.state[:, -1] - cnoidal_wave(s, end)[0].ravel()).max()
+
+
+def spoil(monkeypatch, factor):
+    """Direct sweeps by a multiple of the linear part of the motion."""
+    find = StiffWaves.find_matrices
+    monkeypatch.setattr(StiffWaves, "find_matrices", lambda self, state: factor * find(self, state))
+
+
+def test_steps_are_long_where_third_derivatives_are_stiff(monkeypatch):
+    """Hundreds of times as long as plain sweeps solve; error of order 2, energy and mass kept."""
+    errors = []
+    for h in (0.04, 0.02):
+        run, error = cnoidal(h, 0.8)
+        assert run.status == "OK"
+        assert run.drift["energy"] < 1e-14
+        np.testing.assert_allclose(run["M"], run["M"][0], rtol=1e-14)
+        errors.append(error)
+    assert errors[1] < 1e-6
+    assert abs(np.log2(errors[0] / errors[1]) - 2) < 0.01
+    spoil(monkeypatch, 0)
+    assert cnoidal(2e-4, 4e-3)[0].status == "NOT_SOLVED"
+    assert cnoidal(3e-5, 6e-4)[0].status == "OK"
+
+
+@pytest.mark.parametrize(
+    ("factor", "solved"), [(0.7, True), (1.4, True), (1e20, False), (-1, False)]
+)
+def test_another_linear_part_finds_the_same_or_nothing(monkeypatch, factor, solved):
+    """One that is a bit off needs more sweeps; one that leads nowhere is a status."""
+    right, _ = cnoidal(0.01, 0.02)
+    spoil(monkeypatch, factor)
+    run, _ = cnoidal(0.01, 0.02)
+    assert run.status == ("OK" if solved else "NOT_SOLVED")
+    if solved:
+        np.testing.assert_allclose(run.state, right.state, rtol=1e-11)
+    else:
+        assert run.time[-1] == 0
+
+
+def test_steps_that_are_solved_to_rounding_of_short_waves_are_taken():
+    """Of 2048 points, where rounding of third derivatives over a step is beyond 1e-12."""
+    run, _ = cnoidal(0.01, 0.02, points=2048)
+    assert run.status == "OK"
+    assert run.drift["energy"] < 1e-13
+
+
 def test_steps_that_are_too_long_are_a_status():
-    """Of KdV, whose third derivative is stiff; shorter ones are solved, as the advice says."""
+    """Too long for what is not linear; shorter ones are solved, as the advice says."""
     system = kdv.system.resize({"s": 32}).with_derivatives("fourier")
     m = np.cos(2 * np.pi * np.arange(32) / 32) / 3
     run = system.simulate(m, (0, 1), step=1.0, samples=2)
     assert run.status == "NOT_SOLVED"
     assert "Shorten steps" in run.message
     assert system.simulate(m, (0, 0.1), step=0.01, samples=2).status == "OK"
+
+
+@pytest.mark.parametrize(
+    "system", [kdv.system, camassa_holm.system, spin_chain.system], ids=lambda each: each.name
+)
+@pytest.mark.parametrize("count", [9, 10])
+def test_the_linear_part_is_that_of_rates(system, count):
+    """About constant fields: differences are exact, since rates are of degree 2."""
+    own = system.resize({"s": count}).with_derivatives("fourier")
+    source, fields = np.random.default_rng(count), len(own.own_state)
+    parameters = source.uniform(1, 2, size=own.PARAMETERS.size)
+    means = np.repeat(source.normal(size=fields), count)
+    found = StiffWaves(own, parameters).find_matrices(means)
+    for b in range(fields):
+        unit = np.zeros((fields, count))
+        unit[b, 0] = 1.0
+        change = own.rhs(means + unit.ravel(), parameters) - own.rhs(
+            means - unit.ravel(), parameters
+        )
+        waves = np.fft.rfft(change.reshape(fields, count) / 2, axis=1)
+        np.testing.assert_allclose(found[:, :, b].T, waves, atol=1e-11 * np.abs(waves).max())
 
 
 @pytest.mark.parametrize(
@@ -104,10 +184,3 @@ def test_what_does_not_go_with_it_is_refused(options, message):
     system, _ = chain()
     with pytest.raises(KernelArgumentError, match=message):
         system.simulate(start(), (0, 1), **options)
-
-
-def test_a_batch_is_refused():
-    """SciPy's loop follows one trajectory."""
-    system, _ = chain()
-    with pytest.raises(KernelArgumentError, match="one trajectory"):
-        system.simulate(np.stack([start()] * 2, axis=-1), (0, 1), step=0.1)

@@ -8,7 +8,9 @@ Read next: `coadjoint.derive.setting`.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from functools import reduce
 from typing import Any, Final, cast
 
@@ -46,6 +48,41 @@ Value = Any
 LONG_SUM: Final = 64
 
 SINGULAR = "the inverse of a singular matrix is asked for; expected det != 0."
+
+
+class Values:
+    """Values of which no sign has to be decided, in the place of a field: numbers, or texts."""
+
+    zero: Any
+    one: Any
+
+    def number(self, value: Fraction) -> Any:
+        """A rational number."""
+        raise NotImplementedError
+
+    def is_zero(self, value: Any) -> bool:
+        """Whether a value is certainly 0."""
+        raise NotImplementedError
+
+    def is_function_free(self, _: Any) -> bool:
+        """Said of every divisor: a division by 0 raises by itself."""
+        return True
+
+    def sum(self, values: Iterable[Any]) -> Any:
+        """A long sum."""
+        return reduce(operator.add, values, self.zero)
+
+    def call(self, function: str, *arguments: Any) -> Any:
+        """An elementary function."""
+        raise NotImplementedError
+
+    def absolute(self, value: Any) -> Any:
+        """The absolute value."""
+        raise NotImplementedError
+
+    def power(self, base: Any, exponent: Any) -> Any:
+        """A power with any exponent."""
+        raise NotImplementedError
 
 
 def interpret(node: tree.Node, values: Mapping[str, Value], field: Field) -> Value:
@@ -125,8 +162,8 @@ def _value(node: tree.Node, below: list[Value], values: Mapping[str, Value], fie
         case tree.Binary(operator="/"):
             check_divisor(below[1], field)
             return scale(1 / below[1], below[0])
-        case tree.Binary(operator=operator):
-            return _BINARY[operator](*below)
+        case tree.Binary(operator=symbol):
+            return _BINARY[symbol](*below)
         case tree.Call(function="norm"):
             return field.call("sqrt", dot(below[0], below[0]))
         case tree.Call(function="inverse"):
@@ -240,6 +277,8 @@ def _any_power(base: Element, exponent: Element, field: Field) -> Element:
     Raises:
         DerivationError: The base is not known to be positive.
     """
+    if isinstance(field, Values):
+        return cast(Element, field.power(base, exponent))
     number = field.as_number(exponent)
     if number is not None and number.denominator == 1:
         return cast(Element, _power(base, int(number), field))
@@ -257,6 +296,8 @@ def _any_power(base: Element, exponent: Element, field: Field) -> Element:
 
 def _absolute(value: Element, field: Field) -> Element:
     """The absolute value: the value times its sign, which jumps where it is 0."""
+    if isinstance(field, Values):
+        return cast(Element, field.absolute(value))
     if field.is_zero(value):
         return field.zero
     known = sign(field, value, strict=False)

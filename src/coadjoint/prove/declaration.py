@@ -25,6 +25,7 @@ from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES
 from coadjoint.derive.fields.grid import Grid
 from coadjoint.derive.fields.jets import jets_of, solved
+from coadjoint.derive.fields.profile_texts import write_profiles
 from coadjoint.derive.fields.stencils import find_largest
 from coadjoint.derive.fields.symbol import find_matrix
 from coadjoint.derive.fields.torus import TorusGrid
@@ -192,6 +193,7 @@ def tell_fields(context: FamilyContext, grid: Grid) -> FamilyContext:
         wave=wave,
         spectral=grid.spectral,
         symbol=tell_symbol(first),
+        profiles=write_profiles(spec),
     )
 
 
@@ -206,7 +208,13 @@ def tell_torus(context: FamilyContext, grid: TorusGrid) -> FamilyContext:
         *(f"Proved equal to the route {route}." for route in spec.routes[1:]),
     )
     lines = ["fields:", *equation_lines(first), "points:", *family_lines(grid.family)]
-    return replace(context, routes=routes, equations=tuple(lines), torus=grid.torus)
+    return replace(
+        context,
+        routes=routes,
+        equations=tuple(lines),
+        torus=grid.torus,
+        profiles=write_profiles(spec),
+    )
 
 
 def tell_symbol(first: Equations) -> PrincipalSymbol | None:

@@ -13,7 +13,14 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final
 
 from coadjoint.declared import Quantity
-from coadjoint.families import Connection, Index, PrincipalSymbol, Spectral, Torus
+from coadjoint.families import (
+    Connection,
+    Index,
+    PrincipalSymbol,
+    Spectral,
+    Torus,
+    WrittenProfiles,
+)
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
@@ -404,6 +411,7 @@ class FamilyContext:
     spectral: Spectral | None = None
     symbol: PrincipalSymbol | None = None
     torus: Torus | None = None
+    profiles: WrittenProfiles | None = None
 
     @property
     def held(self) -> Loops:
@@ -523,7 +531,8 @@ def render_family_template(
             *(["spectral=SPECTRAL"] * bool(context.spectral)),
             *(["symbol=SYMBOL"] * bool(context.symbol)),
             *(["torus=TORUS"] * bool(context.torus)),
-            *(["defaults=DEFAULTS"] * bool(context.defaults)),
+            *(["profiles=PROFILES"] * bool(context.profiles)),
+            *(["defaults=DEFAULTS"] * bool(context.defaults and not context.profiles)),
             *([f"repeating={tuple_text(map(quote, context.repeating))}"] * bool(context.repeating)),
         ],
         "methods": list(map(declaration, context.methods)),
@@ -533,7 +542,10 @@ def render_family_template(
         "symbol": _tell_texts(context.symbol),
         "torus": _tell_texts(context.torus),
         "steps": describe_steps(context),
-        "defaults": {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
+        "defaults": {}
+        if context.profiles
+        else {quote(n): fill(map(repr, own)) for n, own in context.defaults.items()},
+        "profiles": _tell_profiles(context.profiles),
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "
@@ -622,6 +634,18 @@ def _tell_texts(record: Spectral | PrincipalSymbol | Torus | None) -> dict[str, 
         if isinstance(value, Mapping)
         else tell(value)
         for name, value in ({} if record is None else vars(record)).items()
+    }
+
+
+def _tell_profiles(profiles: WrittenProfiles | None) -> dict[str, Any]:
+    """Where fields begin, as a generated package declares it; empty without."""
+    if profiles is None:
+        return {}
+    return {
+        "called": ", ".join(profiles.called),
+        "lengths": tuple_text(map(quote, profiles.lengths)),
+        "arguments": ", ".join(profiles.arguments),
+        "texts": {quote(name): own for name, own in profiles.texts.items()},
     }
 
 

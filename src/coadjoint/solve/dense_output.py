@@ -50,23 +50,20 @@ class KeptSteps(Steps, Protocol):
 
 @dataclass
 class Interpolants:
-    """Steps of one trajectory by SciPy.
+    """Steps of trajectories by SciPy.
 
     Attributes:
         paths: The interpolant of each step.
         start: When each begins.
         size: How long each is.
+        member: Whose each is.
     """
 
     paths: Sequence[Any]
     start: Array
     size: Array
+    member: Places
     degree: int = SCIPY_DEGREE
-
-    @property
-    def member(self) -> Places:
-        """Whose each is: there is one member."""
-        return np.zeros(len(self.start), np.intp)
 
     @property
     def nbytes(self) -> int:
@@ -77,7 +74,12 @@ class Interpolants:
     def take(self, which: Places) -> Interpolants:
         """Some of them, in a given order."""
         paths = [self.paths[place] for place in which.tolist()]
-        return Interpolants(paths, self.start[which], self.size[which])
+        return Interpolants(
+            paths=paths,
+            start=self.start[which],
+            size=self.size[which],
+            member=self.member[which],
+        )
 
     def follow(self, rows: Places, only: Places | None = None) -> Callable[[Array], Array]:
         """As `Steps.follow`."""
@@ -329,7 +331,7 @@ class Trail:
             self._times.append(before)
         if self.lookout is None:
             return None
-        steps = Interpolants([path], start, size)
+        steps = Interpolants(paths=[path], start=start, size=size, member=np.zeros(1, np.intp))
         endings = self.lookout.look(move_onto_constraints(steps, self._around))
         return endings[0] if endings else None
 
@@ -347,5 +349,22 @@ class Trail:
         if not self._keeps:
             return None
         begun = np.array(self._times)
-        steps = Interpolants(self._paths, begun, np.diff(np.append(begun, end)))
+        steps = Interpolants(
+            paths=self._paths,
+            start=begun,
+            size=np.diff(np.append(begun, end)),
+            member=np.zeros(len(begun), np.intp),
+        )
         return Dense(steps.take(np.flatnonzero(begun < end)), signal, start)
+
+
+def join_interpolants(lots: Sequence[KeptSteps]) -> Interpolants:
+    """The steps of trajectories, each by SciPy, as those of the members of a batch."""
+    own = [each for each in lots if isinstance(each, Interpolants)]
+    assert len(own) == len(lots), "each is a run of SciPy"
+    return Interpolants(
+        paths=[path for each in own for path in each.paths],
+        start=np.concatenate([each.start for each in own]),
+        size=np.concatenate([each.size for each in own]),
+        member=np.repeat(np.arange(len(own)), [len(each.start) for each in own]),
+    )

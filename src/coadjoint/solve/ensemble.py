@@ -45,6 +45,15 @@ class Status(IntEnum):
     NOT_SOLVED = 8
 
 
+def tell_endings(codes: NDArray[np.int8]) -> str:
+    """How many trajectories stopped before the end, and why; "" if none did."""
+    counts = {status.name: int((codes == status).sum()) for status in Status}
+    ended = [f"{count} {name}" for name, count in counts.items() if count and name != "OK"]
+    short = codes.size - counts["OK"]
+    told = f"{short} of {codes.size} trajectories did not reach the end: {', '.join(ended)}"
+    return told if ended else ""
+
+
 #: Numbers of a recorded step before its polynomials.
 HEAD = 5
 #: Numbers that tell of a kink that was met.

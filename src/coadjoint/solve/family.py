@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.system`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from types import MappingProxyType
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError, ResourceError
-from coadjoint.families import Connection, Index, PrincipalSymbol, Spectral, Torus
+from coadjoint.families import Connection, Index, PrincipalSymbol, Profiles, Spectral, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
@@ -65,6 +65,7 @@ class FamilySystem(System):
         wave: Of a field that is carried by itself, the speed of waves and the name of the length.
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
+        profiles: Where fields begin.
         own_state: Components of a member.
         torus: Of a field in a plane, what is computed around its points.
     """
@@ -101,12 +102,14 @@ class FamilySystem(System):
         wave: tuple[str, ...] = (),
         spectral: Spectral | None = None,
         symbol: PrincipalSymbol | None = None,
+        profiles: Profiles | None = None,
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
         self.kinks, self.pair_kinks, self.wave = kinks, pair_kinks, wave
         self.connections, self.spectral, self.symbol = connections, spectral, symbol
         self.own_state = [name for each in state.values() for name in each.components]
+        self.profiles = profiles
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -264,6 +267,7 @@ class FamilySystem(System):
             "wave": self.wave,
             "spectral": self.spectral,
             "symbol": self.symbol,
+            "profiles": self.profiles,
         }
         file, first = str(self.folder / "__init__.py"), (index, self.small)
         made = type(self)(self.name, file, first, *self._declared, self.id, **given | changed)
@@ -274,7 +278,7 @@ class FamilySystem(System):
         """A quantity of a member as one of all members, component after component.
 
         Where its default differs from member to member, there is none for another number of them,
-        unless those of some members repeat.
+        unless those of some members repeat or a formula has them.
         """
         components = tuple(f"{name}[{i}]" for name in quantity.components for i in range(size))
         default = quantity.default and tuple(v for v in quantity.default for _ in range(size))
@@ -286,8 +290,33 @@ class FamilySystem(System):
             default = (
                 tuple(own[k + i % some] for k in starts for i in range(size)) if fits else None
             )
+        if self.profiles is not None and quantity.name in self.profiles.formulas:
+            default = self._begin(quantity.name)
         shape = (*quantity.shape, size)
         return replace(quantity, shape=shape, components=components, default=default)
+
+    def _begin(self, field: str) -> tuple[float, ...] | None:
+        """A field at the beginning, component after component.
+
+        None where nobody has said how many points there are, or a formula has no value at one.
+        """
+        profiles, shared = self.profiles, self._declared[1]
+        assert profiles is not None, self.name
+        if self.index.size is None:
+            return None
+        formula, given = profiles.formulas[field], [shared.defaults[c] for c in shared.components]
+        places = self._list_places([shared.defaults[name] for name in profiles.lengths])
+        try:
+            values = [formula(*place, *given) for place in places]
+        except (ArithmeticError, ValueError):
+            return None
+        return tuple(float(x) for component in zip(*values, strict=True) for x in component)
+
+    def _list_places(self, lengths: Sequence[float]) -> Iterator[tuple[float, ...]]:
+        """The coordinates of all points: around a circle, or from end to end of a line."""
+        (length,) = lengths
+        steps = self.size - (not self.index.periodic)
+        return ((n * length / steps,) for n in range(self.size))
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Pickled by reference, and its size."""

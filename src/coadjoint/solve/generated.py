@@ -23,7 +23,7 @@ from coadjoint.solve.costs import choose_order
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.domain import Domain, Exit
 from coadjoint.solve.driving import Driving, Function, Linear, Previous, Signal, make_signal
-from coadjoint.solve.ensemble import Ensemble, Inputs, Status
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status, tell_endings
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
 from coadjoint.solve.kinks import describe_sliding, list_kinks_met
@@ -474,7 +474,7 @@ def _make_solution(
     if recording is not None and status == "EVENT":
         message = recording.explain_end()
     else:
-        message = _explain_batch(run) if batch else _explain(system, request, run, course)
+        message = tell_endings(run.status) if batch else _explain(system, request, run, course)
     return Solution(
         system,
         times,
@@ -564,14 +564,3 @@ def _advise_newton(system: System, request: Request) -> str:
     """What else may solve the equations of steps; "" for nothing."""
     has_it = not (request.newton or find_newton_obstacle(system, request.reconstruct))
     return ", or newton=True, which solves stiff ones" if has_it else ""
-
-
-def _explain_batch(run: Ensemble) -> str:
-    """How many trajectories stopped before the end, and why; "" if none did."""
-    counts = {status.name: int((run.status == status).sum()) for status in Status}
-    ended = [f"{count} {name}" for name, count in counts.items() if count and name != "OK"]
-    total = run.status.size
-    short = total - counts["OK"]
-    return f"{short} of {total} trajectories did not reach the end: {', '.join(ended)}" * bool(
-        ended
-    )

@@ -145,6 +145,28 @@ class Occurrences:
         return f"<{told}>" if many > 1 else f"<1 event {name!r}, t = {first:g}>"
 
 
+def join_occurrences(lots: Sequence[Occurrences], batch: tuple[int, ...]) -> Occurrences:
+    """Those of trajectories, one after the other, as those of the members of a batch.
+
+    Args:
+        lots: Of one event, without inputs.
+        batch: The shape of the batch.
+    """
+    first, counts = lots[0], [len(each) for each in lots]
+    parameters = np.stack([each.parameters for each in lots], axis=1)
+    own = parameters != parameters[:, :1]
+    return replace(
+        first,
+        batch=batch,
+        member=np.repeat(np.arange(len(lots)), counts),
+        time=np.concatenate([each.time for each in lots]),
+        direction=np.concatenate([each.direction for each in lots]),
+        state=np.concatenate([each.state for each in lots], axis=1),
+        parameters=np.repeat(parameters, counts, axis=1) if own.any() else first.parameters,
+        undefined=np.array([each.undefined for each in lots]).reshape(batch),
+    )
+
+
 class Events(Mapping[str, Occurrences]):
     """The events of a Solution by name; without any where none were looked for.
 

@@ -119,8 +119,6 @@ def simulate(
     else:
         check_no_noise(system, method, seed)
         obstacles = dict.fromkeys((*GENERATED, *STRUCTURED, *MAPPED), obstacle) if obstacle else {}
-        if system.obstacle:  # whose midpoint is one of Python's, not a generated one
-            obstacles.pop(_BY_WAVES)
         if is_chosen_by_structure(method, step) and not obstacle:
             obstacles |= generated.find_structure_obstacles(system, find_kind(reconstruct))
             obstacles |= generated.find_missing_maps(system, reconstruct)
@@ -128,6 +126,8 @@ def simulate(
             obstacles |= dict.fromkeys(
                 (*STRUCTURED, *MAPPED), f"Python leads the steps: {stepwise}"
             )
+        if system.obstacle:  # whose midpoint is one of Python's, not a generated one
+            obstacles.pop(_BY_WAVES)
         without = (
             ""
             if obstacle
@@ -204,6 +204,10 @@ def simulate(
         speeds(solution)
         return solution
     _check_alone(system, request, obstacle)
+    if request.state.ndim > 1:
+        from coadjoint.solve.one_by_one import simulate_one_by_one
+
+        return simulate_one_by_one(system, request, partial(_simulate_alone, system))
     return _simulate_alone(system, request)
 
 
@@ -218,10 +222,11 @@ def _explain_obstacle(system: System, name: str, obstacle: str) -> KernelArgumen
 
 
 def _check_alone(system: System, request: Request, obstacle: str) -> None:
-    """The methods of SciPy follow one trajectory, and keep no checkpoint.
+    """The methods of SciPy keep no checkpoint, and follow a batch where nothing else does.
 
     Raises:
-        KernelArgumentError: The state is a batch, or there is to be a checkpoint.
+        KernelArgumentError: The state is a batch that other methods follow, or there is to be a
+            checkpoint.
     """
     if request.checkpoint is not None:
         reason = f": {obstacle}" if obstacle else ""
@@ -231,7 +236,7 @@ def _check_alone(system: System, request: Request, obstacle: str) -> None:
             found=str(request.checkpoint),
             reason=obstacle,
         )
-    if request.state.ndim > 1:
+    if request.state.ndim > 1 and not system.obstacle:
         advice = f"generated solvers do not apply: {obstacle}. Call it for each member"
         if not obstacle:
             advice = "leave method out, or take one of the generated ones, for a batch"
@@ -265,6 +270,7 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
+    direct = _find_direction(system, packed) if name == _BY_WAVES else None
 
     def begin(time: float, state: Array, end: float) -> OdeSolver:
         import scipy.integrate  # which takes longer than a run of a generated solver
@@ -273,7 +279,8 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         if name == _BY_WAVES:
             from coadjoint.solve.wave_midpoint import WaveMidpoint
 
-            return WaveMidpoint(rates, time, state, end, step=request.step or 0.0)
+            length = request.step or 0.0
+            return WaveMidpoint(rates, time, state, end, step=length, direct=direct)
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
@@ -286,6 +293,16 @@ def _simulate_alone(system: System, request: Request) -> Solution:
     if ending is not None:
         run = _cut_at_event(*run[:2], ending)
     return _make_solution(system, packed, driving, run, request, trail)
+
+
+def _find_direction(
+    system: System, parameters: Array
+) -> Callable[[Array, float], Callable[[Array], Array]] | None:
+    """What directs sweeps of the midpoint: the linear part of fields, where there is one."""
+    from coadjoint.solve.stiff_waves import find_stiff_waves  # which reads formulas
+
+    waves = find_stiff_waves(system, parameters)
+    return None if waves is None else waves.direct
 
 
 def _make_trail(

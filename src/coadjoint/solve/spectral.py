@@ -79,6 +79,12 @@ class SpectralSystem(FamilySystem):
         self.OBSERVABLES = Quantities(*kept)
         self.functions = {name: system.functions[name] for name in BY_WAVES}
 
+    @property
+    def own(self) -> Spectral:
+        """What is computed with these derivatives."""
+        assert self.spectral is not None, self.name
+        return self.spectral
+
     def resize(self, sizes: Mapping[str, int]) -> SpectralSystem:
         """The fields at another number of points."""
         return SpectralSystem(self.differences.resize(sizes))
@@ -181,16 +187,21 @@ class Waves:
 
     def differentiate(self, values: Array, order: int) -> Array:
         """The derivative of values ``(N, trajectories)``."""
-        return self._multiply(values, self._symbol(order))
+        return self._multiply(values, self.find_symbol(order))
 
     def solve(self, right: Array, factors: Mapping[int, Array]) -> Array:
         """U with ``sum_k a_k D_k u = right``; with the mean 0 where constants are taken to 0."""
-        symbol = sum((a * self._symbol(k) for k, a in factors.items()), np.zeros(1)).real
+        return self._multiply(right, self.invert(factors))
+
+    def invert(self, factors: Mapping[int, Array]) -> Array:
+        """One over what ``sum_k a_k D_k`` multiplies each wave by; 0 where that takes it to 0."""
+        symbol = sum((a * self.find_symbol(k) for k, a in factors.items()), np.zeros(1)).real
         if 0 not in factors:
             symbol[0] = np.inf
-        return self._multiply(right, 1 / symbol)
+        inverse: Array = 1 / symbol
+        return inverse
 
-    def _symbol(self, order: int) -> NDArray[np.complex128]:
+    def find_symbol(self, order: int) -> NDArray[np.complex128]:
         """What a derivative multiplies each wave by."""
         symbol: NDArray[np.complex128] = np.asarray((1j * self._numbers) ** order, dtype=complex)
         if order % 2 and self.size % 2 == 0:

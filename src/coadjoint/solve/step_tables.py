@@ -44,7 +44,8 @@ def describe_dense(dense: Dense | None) -> dict[str, Any] | None:
     steps = dense.steps
     if isinstance(steps, Interpolants):
         paths = [{"class": type(path).__name__} | _describe_path(path) for path in steps.paths]
-        return record | {"begun": steps.start, "size": steps.size, "paths": paths}
+        named = {"member": steps.member, "begun": steps.start, "size": steps.size}
+        return record | named | {"paths": paths}
     assert isinstance(steps, Polynomials), "there are no others"
     named = {"member": steps.member, "begun": steps.start, "size": steps.size}
     return record | named | {"coefficients": steps.path}
@@ -82,8 +83,10 @@ def read_dense(record: Mapping[str, Any]) -> Dense:
         raise ValueError("steps begin, and are long, in arrays of one length")
     steps: Interpolants | Polynomials
     if "paths" in record:
-        steps = Interpolants([_read_path(path) for path in record["paths"]], begun, size)
-        good = len(steps.paths) == len(begun)
+        paths = [_read_path(path) for path in record["paths"]]
+        member = np.array(record["member"], np.intp)
+        steps = Interpolants(paths=paths, start=begun, size=size, member=member)
+        good = len(steps.paths) == len(begun) == len(steps.member)
     else:
         path = np.array(record["coefficients"], np.float64)
         path = path if path.size else np.empty((len(path), 1, 1))
@@ -115,8 +118,10 @@ def _read_path(said: Mapping[str, Any]) -> Any:
     """An interpolant of SciPy: an object of one of its classes, with arrays and numbers alone."""
     from scipy.integrate import DenseOutput
 
-    known = {each.__name__: each for each in DenseOutput.__subclasses__()}
-    path = object.__new__(known[said["class"]])
+    from coadjoint.solve.wave_midpoint import Cubic
+
+    known: dict[str, Any] = {each.__name__: each for each in (*DenseOutput.__subclasses__(), Cubic)}
+    path: Any = object.__new__(known[said["class"]])
     for name, value in said.items():
         if name != "class":
             is_array = isinstance(value, Mapping)

@@ -136,7 +136,7 @@ class System(Functions):
 
         Fourier derivatives are exact for smooth periodic fields but for rounding, as soon as there
         are enough points. Python leads the steps between transforms of SciPy, so that methods
-        ``scipy:NAME`` apply, and the midpoint with steps of one length, to one trajectory;
+        ``scipy:NAME`` apply, and the midpoint with steps of one length, to one after the other;
         generated solvers need differences.
 
         Raises:
@@ -275,12 +275,13 @@ class System(Functions):
                 crosses a jump of samples. None for the defaults.
             method: ``"taylor"``, of an order that follows from ``rtol``, ``"dop853"`` or ``"rk4"``,
                 which are generated; or ``"scipy:DOP853"``, ``"scipy:Radau"`` and so on, of
-                `scipy.integrate`, for one trajectory. ``"auto"`` is ``"taylor"``, with ``step``
-                ``"dop853"``. Where its operations say that it is faster, as for a free body on
-                so(8), it is ``"dop853"`` with 1/4096 of the tolerances, as far as rounding lets it,
-                for the same errors; not with ``events`` or ``dense``. Where inputs are a function
-                it is ``"dop853"`` with steps in Python, and with the target ``"python"`` it is
-                ``"scipy:DOP853"``. `Solution.settings` says what it was.
+                `scipy.integrate`, for one trajectory, or by Fourier derivatives a batch. ``"auto"``
+                is ``"taylor"``, with ``step`` ``"dop853"``. Where its operations say that it is
+                faster, as for a free body on so(8), it is ``"dop853"`` with 1/4096 of the
+                tolerances, as far as rounding lets it, for the same errors; not with ``events`` or
+                ``dense``. Where inputs are a function it is ``"dop853"`` with steps in Python, and
+                with the target ``"python"`` it is ``"scipy:DOP853"``. `Solution.settings` says what
+                it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of

@@ -13,9 +13,10 @@ Read next: `coadjoint.solve.plane_waves`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
@@ -51,7 +52,7 @@ class TorusSystem(FamilySystem):
     def __init__(self, *declared: Any, torus: Torus, **given: Any) -> None:
         self.torus, self.around = torus, torus
         self.counts = tuple(size or LEAST for size in torus.sizes)
-        self._points = FamilySystem(*declared, **given)
+        self._points = FamilySystem(*declared, **(given | {"profiles": None}))
         super().__init__(*declared, **given)
         self.PARAMETERS = self._declared[1]
         self.functions = {name: self.functions[name] for name in BY_WAVES}
@@ -101,6 +102,13 @@ class TorusSystem(FamilySystem):
         places = [f"{i},{j}" for i in range(self.counts[0]) for j in range(self.counts[1])]
         components = tuple(f"{c}[{place}]" for c in quantity.components for place in places)
         return replace(repeated, shape=(*quantity.shape, *self.counts), components=components)
+
+    def _list_places(self, lengths: Sequence[float]) -> Iterator[tuple[float, ...]]:
+        """The coordinates of all points, along the second coordinate first."""
+        steps = [range(size) for size in self.counts]
+        for place in product(*steps):
+            parts = zip(place, lengths, self.counts, strict=True)
+            yield tuple(n * length / size for n, length, size in parts)
 
     def with_derivatives(self, derivatives: str) -> TorusSystem:
         """Itself: a plane has Fourier derivatives alone.

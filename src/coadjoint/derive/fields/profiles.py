@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import mpmath
 
-from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.interpret import Values, entries, interpret
 from coadjoint.derive.setting import assemble
 from coadjoint.exact import Field
 from coadjoint.spec import Spec
@@ -21,8 +21,8 @@ from coadjoint.spec import Spec
 DIGITS = 50
 
 
-class _Numbers:
-    """What `interpret` asks of a field, of numbers of many digits."""
+class _Numbers(Values):
+    """Numbers of many digits."""
 
     zero, one = mpmath.mpf(0), mpmath.mpf(1)
 
@@ -34,13 +34,17 @@ class _Numbers:
         """Whether a number is 0."""
         return bool(value == 0)
 
-    def is_function_free(self, value: Any) -> bool:
-        """Said of every divisor: a division by 0 raises by itself."""
-        return True
-
     def call(self, function: str, *arguments: Any) -> Any:
         """An elementary function."""
         return getattr(mpmath, function)(*arguments)
+
+    def absolute(self, value: Any) -> Any:
+        """The absolute value."""
+        return abs(value)
+
+    def power(self, base: Any, exponent: Any) -> Any:
+        """A power with any exponent."""
+        return base**exponent
 
 
 def evaluate_profile(spec: Spec, name: str, *parts: Fraction) -> tuple[Fraction, ...]:

@@ -5,6 +5,10 @@ them: a matrix that is antisymmetric for odd k and symmetric for even k, as diff
 motion is :math:`\dot u = P_D\, \delta H / \delta u` with these in the place of differences, and the
 energy is kept in continuous time. What is no field itself but a product of some is computed at the
 points before it is differentiated.
+
+How rates change about constant fields is written as well, from the same texts: by each field, and
+by each derivative of a field or product. From this the linear part of the motion follows wave by
+wave, by which implicit methods solve what is stiff in it.
 Comes in: a `GenericPoint`, whose differences are replaced. Goes out: a `Spectral`, what a run has
 to compute one after the other. Read next: `coadjoint.solve.spectral`.
 """
@@ -47,17 +51,40 @@ def write_spectral(point: GenericPoint) -> Spectral:
     place = point.placer(calculus, lambda name, _: sympy.Symbol(name), convert)
     rates = [rate(0) for rate in point.motion(calculus, place)]
     densities = {name: place(value)(0) for name, value in point.densities.items()}
+    products = {name: x for x, name in calculus.products.items()}
+    of_rates = dict(zip(point.setting.state, rates, strict=True))
     operator = {n: element_text(field, x) for n, x in circle.inertia_along(point.setting).items()}
     return Spectral(
         length=point.space.length,
         derivatives=calculus.derivatives,
-        products={name: sympy.sstr(x) for x, name in calculus.products.items()},
-        rates={name: sympy.sstr(x) for name, x in zip(point.setting.state, rates, strict=True)},
+        products={name: sympy.sstr(x) for name, x in products.items()},
+        rates={name: sympy.sstr(x) for name, x in of_rates.items()},
         densities={name: sympy.sstr(x) for name, x in densities.items()},
         solved={
             u: (m, operator) for u, m in zip(solved(point.spec), point.setting.state, strict=False)
         },
+        slopes=_write_slopes(products | of_rates, point.components, calculus.derivatives),
     )
+
+
+def _write_slopes(
+    values: Mapping[str, Any], fields: tuple[str, ...], derivatives: Mapping[str, Any]
+) -> dict[str, dict[str, str]]:
+    """How values change with fields and derivatives about constant fields, zeros left out.
+
+    What has no value there, as the slope of a root of derivatives, is left out too: nothing but the
+    number of sweeps rests on it.
+    """
+    constant = {sympy.Symbol(name): sympy.Integer(0) for name in derivatives}
+    without = (sympy.nan, sympy.zoo, sympy.oo, sympy.Derivative)
+    found = dict[str, dict[str, str]]()
+    for name, value in values.items():
+        slopes = {
+            x: value.diff(sympy.Symbol(x)).xreplace(constant) for x in (*fields, *derivatives)
+        }
+        kept = {x: sympy.sstr(y) for x, y in slopes.items() if y != 0 and not y.has(*without)}
+        found |= {name: kept} if kept else {}
+    return found
 
 
 @dataclass(frozen=True)
