@@ -1,5 +1,6 @@
 """The equations of entries of matrices: an inertia that is no Laplacian is refused."""
 
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -48,3 +49,19 @@ def test_structure_constants_and_products_of_matrices_are_one_motion(window):
         assert field.is_zero(equations.close(rate) - product)
         compared += not field.is_zero(product)
     assert compared == len(equations.variables)
+
+
+@pytest.mark.parametrize("window", [0, 1])
+def test_the_energy_of_loops_is_the_one_that_is_written_out(window):
+    """Half the sum of ``W_ij V_ij``, where V is the derivative of the energy by W."""
+    spec = shipped("zeitlin_su_n")
+    family, equations = derive_family(derive(spec)), derive(spec.family.windows[window])
+    field, energy, state = equations.setting.field, equations.exact.energy, equations.setting.state
+    (total,) = family.totals
+    (added,) = total.sums
+    assert added.term == family.matrices.state * family.matrices.velocity
+    share = Fraction(str(total.formula.coeff(added.symbol)))
+    slopes = field.gradient(energy, state)
+    whole = field.sum(field[name] * slope for name, slope in zip(state, slopes, strict=True))
+    assert field.is_zero(whole * field.number(share) - energy)
+    assert not field.is_zero(energy)

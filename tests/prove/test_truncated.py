@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.prove import Verdict, prove, truncated
+from coadjoint.prove.claims import _certify
 from tests.specs import shipped
 
 FLUID = "zeitlin_su_n"
@@ -21,6 +22,10 @@ def test_every_claim_is_proved_and_says_for_which_rows():
         "tr W^k is conserved",
         "the energy is conserved",
     ]
+    assert "the algebra u(N) satisfies the Jacobi identity, for N = 3 and 4" in {
+        claim.statement for claim in claims
+    }
+    assert sum(claim.kind == "conserved" for claim in claims) == len(always) == 2
     assert any("every Casimir is a function of the N known" in each.statement for each in claims)
 
 
@@ -38,6 +43,21 @@ def test_another_product_than_the_commutator_is_refuted(monkeypatch, sign):
     assert [claim.kind for claim in wrong] == ["equivalence"]
     assert "the commutator [W, V]" in wrong[0].statement
     assert not any("every N" in claim.statement for claim in certificate.claims)
+
+
+@pytest.mark.parametrize("window", [0, 1])
+def test_the_weakest_of_the_few_decides(window):
+    """What is refuted for one number of rows is refuted for the few, and nothing follows."""
+    spec = shipped(FLUID)
+    certificates = [_certify(each, searched=False) for each in spec.family.windows]
+    claims = list(certificates[window].claims)
+    (place,) = (n for n, claim in enumerate(claims) if claim.kind == "algebra")
+    claims[place] = replace(claims[place], verdict=Verdict.REFUTED)
+    certificates[window] = replace(certificates[window], claims=tuple(claims))
+    found = truncated.extend_truncated(spec, certificates)
+    wrong = [claim for claim in found.claims if claim.verdict is Verdict.REFUTED]
+    assert [claim.kind for claim in wrong] == ["algebra"]
+    assert not any("every N" in claim.statement for claim in found.claims)
 
 
 def test_a_bracket_of_the_other_side_is_refuted():
