@@ -37,7 +37,8 @@ class Index:
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
         from_zero: Whether names count from 0 all the same, as where members are looped over.
-        of_rows: Whether it counts the rows of square matrices, whose entries are the members.
+        surface: Of an index that counts the rows of square matrices, whose entries are the members,
+            on what these stand for functions: ``sphere``; else "".
     """
 
     name: str
@@ -46,7 +47,12 @@ class Index:
     first: int = 0
     count: str = ""
     from_zero: bool = False
-    of_rows: bool = False
+    surface: str = ""
+
+    @property
+    def of_rows(self) -> bool:
+        """Whether it counts the rows of square matrices, whose entries are the members."""
+        return bool(self.surface)
 
     @property
     def first_name(self) -> int:

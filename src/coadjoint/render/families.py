@@ -537,7 +537,7 @@ def render_family_template(
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "
-            f"periodic={context.index.periodic}{', of_rows=True' * context.index.of_rows}), "
+            f"periodic={context.index.periodic}{_tell_surface(context.index)}), "
             f"{context.small}"
         ),
     }
@@ -589,6 +589,11 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
     }
+
+
+def _tell_surface(index: Index) -> str:
+    """On what matrices stand for functions, as a generated package declares it."""
+    return f", surface={quote(index.surface)}" if index.surface else ""
 
 
 def _tell_spheres(context: FamilyContext) -> str:

@@ -150,7 +150,7 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
     if size is not None and size * size > limits.FAMILY_MEMBERS:
         problem = f"{name} = {size} makes {size * size} entries"
         raise source.too_many(key, problem, size * size, "FAMILY_MEMBERS")
-    return Index(name=name, size=size, of_rows=True, from_zero=True)
+    return Index(name=name, size=size, surface="sphere", from_zero=True)
 
 
 def _find_defaults(
