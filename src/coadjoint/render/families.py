@@ -471,6 +471,7 @@ def render_family_template(
         "lanes": LANES,
         "solves": any(loops.solve for loops in context.loops.values()),
         "level": any(loops.solve and loops.solve.level for loops in context.loops.values()),
+        "surface": context.index.surface,
         "multiplies": any(loops.products for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,

@@ -1,4 +1,4 @@
-"""Maps: a field in a plane, or on the sphere, as colours at some times.
+"""Maps: a field in a plane, on the sphere or on the torus, as colours at some times.
 
 Comes in: a `Solution` and the name of a quantity. Goes out: panels of a figure, all with the same
 colours about zero. A map of the sphere is Mollweide's, on which areas are those of the sphere.
@@ -54,7 +54,9 @@ def find_map(solution: Solution, name: str) -> Map | None:
     if torus is not None:
         return _find_plane(solution, name, torus)
     index: Index | None = getattr(solution.system, "index", None)
-    return _find_sphere(solution, name, index) if index is not None and index.surface else None
+    finders = {"sphere": _find_sphere, "torus": _find_torus}
+    find = finders.get(index.surface) if index is not None else None
+    return find(solution, name, index) if find is not None and index is not None else None
 
 
 def is_globe(solution: Solution, name: str) -> bool:
@@ -95,6 +97,23 @@ def _find_sphere(solution: Solution, name: str, index: Index) -> Map:
         show=lambda at: show_on_sphere(entries[..., at], np.sin(y), x),
         names=("", ""),
         projection="mollweide",
+    )
+
+
+def _find_torus(solution: Solution, name: str, index: Index) -> Map:
+    """A function on the torus for which entries of a matrix stand."""
+    from coadjoint.solve.matrix_functions import show_on_torus
+
+    n = index.size
+    assert n is not None, "a system has a size"
+    entries = solution[name].reshape(n, n, -1)
+    x = 2 * np.pi * np.arange(FINER * n) / (FINER * n)
+    return Map(
+        x=x,
+        y=x,
+        show=lambda at: refine(show_on_torus(entries[..., at])).T,
+        names=("x", "y"),
+        projection=None,
     )
 
 

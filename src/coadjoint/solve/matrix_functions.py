@@ -1,9 +1,11 @@
-r"""Functions on the sphere that skew-Hermitian matrices stand for.
+r"""Functions on a surface that skew-Hermitian matrices stand for.
 
-A matrix is a sum of matrices of spherical harmonics, ``i T_lm`` with a trace of squares of
-N/(4 pi), and stands for the sum of the harmonics with the same parts, whose squares have the
-integral 1: what `coadjoint.algebra.harmonics.find_entries` does, the other way.
-Comes in: entries. Goes out: values at latitudes and longitudes. Read next: `coadjoint.solve.maps`.
+On the sphere a matrix is a sum of matrices of spherical harmonics, ``i T_lm`` with a trace of
+squares of N/(4 pi), and stands for the sum of the harmonics with the same parts, whose squares have
+the integral 1: what `coadjoint.algebra.harmonics.find_entries` does, the other way. On the torus it
+is a sum of matrices of waves, ``i T_k``, and stands for that of the waves
+(`coadjoint.algebra.waves`).
+Comes in: entries. Goes out: values at points. Read next: `coadjoint.solve.maps`.
 """
 
 from __future__ import annotations
@@ -53,6 +55,31 @@ def show_on_sphere(entries: Array, heights: Array, longitudes: Array) -> Array:
         angles = order * longitudes
         values += np.outer(cosine @ waves, np.cos(angles)) + np.outer(sine @ waves, np.sin(angles))
     return values
+
+
+def show_on_torus(entries: Array) -> Array:
+    """Values of the function that a matrix stands for, at as many points as it has entries.
+
+    Args:
+        entries: The real matrix X of ``(X - X^T)/2 + i (X + X^T)/2``, ``(N, N)``, N odd.
+
+    Returns:
+        ``(N, N)``, in the unit of the entries, at multiples of ``2 pi/N`` along x, then along y.
+
+    >>> import numpy as np
+    >>> from coadjoint.algebra.waves import find_entries
+    >>> X = np.array(find_entries(5, [0, 0, 0, 1]))  # the sine of y
+    >>> bool(np.allclose(show_on_torus(X), np.sin(2 * np.pi * np.arange(5) / 5)))
+    True
+    """
+    n = len(entries)
+    i, k2 = np.arange(n)[:, None], np.arange(n)
+    turned = entries.T
+    over_i = (entries + turned) / 2 - 1j * (entries - turned) / 2
+    waves = np.empty((n, n), complex)  # by x and by k2
+    waves[(2 * i + k2) % n, np.broadcast_to(k2, (n, n))] = over_i[i, (i + k2) % n]
+    found: Array = np.fft.ifft(waves, axis=1, norm="forward").real
+    return found
 
 
 @cache
