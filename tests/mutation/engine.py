@@ -528,6 +528,16 @@ MUTANTS = (
         tests=("tests/prove/test_truncated.py",),
     ),
     *of(
+        "algebra/waves",
+        "find_entries: drop sign * turned",
+        "find_entries: flip sine sin",
+        "find_entries: flip sine cos",
+        "find_weight: rewrite k1 * step -> k1",
+        "find_weight: omit square",
+        "list_waves: rewrite -k[0] -> k[0]",
+        tests=("tests/spec/test_truncated.py -k 'waves'", "tests/derive/test_truncated.py -k sine"),
+    ),
+    *of(
         "prove/declaration",
         "find_connections: flip field",
         "find_connections: omit field",

@@ -8,7 +8,7 @@ from coadjoint.prove import Verdict, prove, truncated
 from coadjoint.prove.claims import _certify
 from tests.specs import shipped
 
-FLUID = "zeitlin_su_n"
+FLUID, TORUS = "zeitlin_su_n", "zeitlin_torus"
 
 
 def test_every_claim_is_proved_and_says_for_which_rows():
@@ -67,3 +67,31 @@ def test_a_bracket_of_the_other_side_is_refuted():
     certificate = prove(replace(spec, family=replace(spec.family, windows=windows)))
     wrong = [claim.kind for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
     assert wrong == ["equivalence"]
+
+
+def test_on_the_torus_the_sine_bracket_is_proved_and_odd_rows_are_named():
+    """All Casimirs are known of 3 rows alone: that of degree 5 is not looked for."""
+    claims = prove(shipped(TORUS)).require().claims
+    assert {claim.verdict for claim in claims} == {Verdict.PROVED}
+    scopes = {claim.statement.rpartition(", for ")[2] for claim in claims}
+    assert scopes == {"N = 3 and 5", "N = 3", "every odd N >= 3"}
+    least = [claim.statement for claim in claims if claim.statement.endswith("for N = 3")]
+    assert [each.partition(",")[0] for each in least] == [
+        "every Casimir is a function of the N known",
+        "the rates are those by the sine bracket",
+    ]
+    always = [claim.kind for claim in claims if claim.statement.endswith("every odd N >= 3")]
+    assert always == ["conserved", "conserved"]
+
+
+def test_another_bracket_of_waves_is_refuted(monkeypatch):
+    """Nothing is said of every N then."""
+    spec = shipped(TORUS)
+    honest = truncated.multiply_waves
+    monkeypatch.setattr(truncated, "multiply_waves", lambda *given: [-x for x in honest(*given)])
+    family = replace(spec.family, windows=spec.family.windows[:1])
+    certificate = prove(replace(spec, family=family))
+    wrong = [claim for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
+    assert [claim.kind for claim in wrong] == ["equivalence"]
+    assert "the sine bracket" in wrong[0].statement
+    assert not any("every odd N" in claim.statement for claim in certificate.claims)

@@ -50,11 +50,12 @@ def multiply_waves(equations: Equations, inertia: str, count: str) -> tuple[Elem
         # of W = A + i B over i the real part is B and the imaginary one is -A
         pairs = [((X[i][j] + X[j][i]) / 2, (X[j][i] - X[i][j]) / 2) for i, j in places]
         turned = [circle.turn(z, -k1 * (i + j)) for z, (i, j) in zip(pairs, places, strict=True)]
-        w[k1, k2] = tuple(field.sum(each) / n for each in zip(*turned, strict=True))
+        real, imaginary = (field.sum(each) / n for each in zip(*turned, strict=True))
+        w[k1, k2] = (real, imaginary)
         if (k1, k2) != (0, 0):
             numbers = {"k1": residue(k1, n), "k2": residue(k2, n), count: n}
             size = circle.read(put_numbers(inertia, numbers))
-            v[k1, k2] = tuple(x / size for x in w[k1, k2])
+            v[k1, k2] = (real / size, imaginary / size)
     rates = {k: _multiply(circle, k, w, v) for k in w}
     found = []
     for i, j in product(range(n), repeat=2):
@@ -94,7 +95,8 @@ class _Circle:
 
     def read(self, text: str) -> Element:
         """A formula without variables, as an element."""
-        return interpret(read_expression(text), self._setting.values, self.field)
+        value: Element = interpret(read_expression(text), self._setting.values, self.field)
+        return value
 
     def cosine(self, k: int) -> Element:
         """``cos(2 pi k/rows)``."""
