@@ -90,7 +90,7 @@ FIELDS = (
     *core_of(
         "lie-poisson",
         "sine_bracket",
-        "multiply_waves _multiply _Circle.cosine _Circle.sine _Circle.turn",
+        "_multiply _Circle.sine _Circle.turn",
         systems=(),
         tests=("tests/derive/test_truncated.py -k sine_bracket",),
     ),
