@@ -32,6 +32,8 @@ PICTURES = {
     "landau_lifshitz.png": "simulate landau_lifshitz --time 4 --plot",
     "kdv.png": "simulate kdv --time 1.2 --plot",
     "euler_2d.png": "simulate euler_2d --time 20 --plot",
+    "zeitlin_su_n.png": "simulate zeitlin_su_n --time 40 --plot",
+    "zeitlin_torus.png": "simulate zeitlin_torus --time 20 --plot",
 }
 
 

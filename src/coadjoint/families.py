@@ -38,7 +38,8 @@ class Index:
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
         from_zero: Whether names count from 0 all the same, as where members are looped over.
-        of_rows: Whether it counts the rows of square matrices, whose entries are the members.
+        surface: Of an index that counts the rows of square matrices, whose entries are the members,
+            on what these stand for functions: ``sphere`` or ``torus``; else "".
     """
 
     name: str
@@ -47,7 +48,12 @@ class Index:
     first: int = 0
     count: str = ""
     from_zero: bool = False
-    of_rows: bool = False
+    surface: str = ""
+
+    @property
+    def of_rows(self) -> bool:
+        """Whether it counts the rows of square matrices, whose entries are the members."""
+        return bool(self.surface)
 
     @property
     def first_name(self) -> int:
@@ -58,6 +64,10 @@ class Index:
     def member(self) -> str:
         """What stands for a member in brackets behind the name of what it has."""
         return "i, j" if self.of_rows else self.name
+
+    def allows(self, size: int) -> bool:
+        """Whether it may count up to a size: matrices on the torus have odd numbers of rows."""
+        return self.surface != "torus" or size % 2 == 1
 
     def count_members(self, size: int) -> int:
         """How many members there are where the index counts up to a size."""
@@ -254,17 +264,18 @@ class Solved:
 
 @dataclass(frozen=True)
 class MatrixMotion:
-    r"""A motion ``W' = [W, V]`` of skew-Hermitian matrices on a sphere, whose entries are members.
+    r"""A motion ``W' = [W, V]`` of skew-Hermitian matrices on a surface, whose entries are members.
 
     Member ``i*n + j`` is the real number ``W_ij`` that stands for the matrix :math:`(W - W^T)/2 +
     \mathrm{i} (W + W^T)/2`, and so is ``V_ij``. V follows from W by ``scale L V = W`` on each
-    diagonal,
+    diagonal, on the sphere with
 
     .. math:: (L V)_{ij} = 2 (s (s + 1) - z_i z_j) V_{ij} - c_i c_j V_{i+1, j+1}
         - c_{i-1} c_{j-1} V_{i-1, j-1},
 
-    with :math:`s = (n - 1)/2`, :math:`z_i = s - i` and :math:`c_i^2 = (i + 1)(n - 1 - i)`, where V
-    has the trace 0 and W is taken without its trace.
+    :math:`s = (n - 1)/2`, :math:`z_i = s - i` and :math:`c_i^2 = (i + 1)(n - 1 - i)`. On the torus
+    L multiplies the matrices of waves by :math:`k_1^2 + k_2^2` (`coadjoint.algebra.waves`). V has
+    the trace 0, and W is taken without its trace.
 
     Attributes:
         state: The entry of W that a member is.

@@ -27,6 +27,39 @@ WRONG = [
 ]
 
 
+#: The same on the torus, of how V follows from W.
+WRONG_WAVES = [
+    ("kernel.py", "(2.0 if k else 1.0) * cosines", "1.0 * cosines", ("numpy",), "rung 4"),
+    ("kernel.py", "turn = 2 * step % n", "turn = step % n", ("numpy",), "rung 4"),
+    ("kernel.py", "np.minimum(d, n - d) ** 2.0", "d**2.0", ("numpy",), "rung 4"),
+    ("kernel.py", "np.roll(own, -step", "np.roll(own, 1 - step", ("numpy",), "rung 4"),
+    ("kernel.py", "np.where(beyond, -found, found)", "found", ("numpy",), "rung 4"),
+    ("kernel.py", "range(8, 0, -1)", "range(5, 0, -1)", ("numpy",), "rung 4"),
+    ("kernel_python.py", "min(d, n - d) ** 2", "d**2", ("numpy", "python"), "rung 4"),
+    ("kernel.c", "(k ? 2.0 : 1.0)", "2.0", ("c",), "wrong kernel"),
+    ("kernel.c", "turn = 2 * step % n", "turn = step % n", ("c",), "wrong kernel"),
+    ("kernel.c", "beyond ? -found : found", "found", ("c",), "wrong kernel"),
+]
+
+
+@pytest.fixture(scope="module")
+def on_torus():
+    """The shipped system on the torus up to its texts."""
+    return pipeline.render(shipped("zeitlin_torus"))
+
+
+@pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG_WAVES)
+def test_the_ladder_sees_wrong_waves(on_torus, monkeypatch, file, old, new, targets, seen):
+    """Cosines, weights and steps along diagonals."""
+    texts = dict(on_torus.texts)
+    assert old in texts[file]
+    texts[file] = texts[file].replace(old, new)
+    monkeypatch.setattr(ladder, "POINTS", 2)
+    monkeypatch.setattr(ladder, "compare_steps", lambda *_: None)
+    with pytest.raises(CrossCheckError, match=seen):
+        climb(on_torus, texts, targets)
+
+
 @pytest.fixture(scope="module")
 def rendered():
     """The shipped system up to its texts."""
@@ -62,6 +95,7 @@ def test_a_wrong_factor_does_not_read_back(rendered):
         ("sandwich", {"product": "commutator"}),
         ("energy", {"product": "commutator"}),
         ("rhs", {"scale": None}),
+        ("rhs", {"surface": "torus"}),
     ],
 )
 def test_another_product_than_the_functions_is_seen(rendered, name, change):

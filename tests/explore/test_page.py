@@ -183,7 +183,11 @@ def test_spins_repeat():
 
 @pytest.mark.parametrize(
     ("name", "reason"),
-    [("euler_2d", "it is a field in a plane"), ("zeitlin_su_n", "entries of matrices")],
+    [
+        ("euler_2d", "it is a field in a plane"),
+        ("zeitlin_su_n", "entries of matrices"),
+        ("zeitlin_torus", "entries of matrices"),
+    ],
 )
 def test_what_is_no_line_of_members_is_refused(name, reason):
     """A plane and matrices would be drawn as members that they are not."""

@@ -20,6 +20,8 @@ REFUSED = ("tests/derive/test_fields.py -k 'refused or mass'",)
 FLUX = ("tests/prove/test_fields.py -k 'fluxes'",)
 #: The curl of the fluid's equation, claims in a plane, and rates by sums over waves.
 PLANE = ("tests/prove/test_torus.py", "tests/solve/test_torus.py -k 'waves or velocity'")
+#: What loops compute of matrices of any number of rows, against what is written out for a few.
+MATRICES = ("tests/derive/test_truncated.py",)
 
 FIELDS = (
     *core_of(
@@ -77,6 +79,20 @@ FIELDS = (
         "_find_slopes defects",
         systems=("hunter_saxton", "spin_chain"),
         tests=(*WAVES,),
+    ),
+    *core_of(
+        "lie-poisson",
+        "truncated",
+        "derive_truncated _find_scale multiply_out _commute",
+        systems=(),
+        tests=MATRICES,
+    ),
+    *core_of(
+        "lie-poisson",
+        "sine_bracket",
+        "_multiply _Circle.sine _Circle.turn",
+        systems=(),
+        tests=("tests/derive/test_truncated.py -k sine_bracket",),
     ),
     *core_of(
         "lie-poisson",

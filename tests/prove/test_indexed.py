@@ -43,7 +43,7 @@ from tests.specs import shipped
 TEXTS = {"ring": (RING, write_ring), "chain": (CHAIN, write_chain)}
 
 
-@pytest.mark.parametrize("name", [each for each in FAMILIES if each != "zeitlin_su_n"])
+@pytest.mark.parametrize("name", [each for each in FAMILIES if "zeitlin" not in each])
 def test_every_claim_is_proved_for_every_number_of_members(name):
     """No claim names a number alone, and the certificate is not empty."""
     spec = shipped(name)

@@ -5,9 +5,10 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.prove import Verdict, prove, truncated
+from coadjoint.prove.claims import _certify
 from tests.specs import shipped
 
-FLUID = "zeitlin_su_n"
+FLUID, TORUS = "zeitlin_su_n", "zeitlin_torus"
 
 
 def test_every_claim_is_proved_and_says_for_which_rows():
@@ -21,6 +22,10 @@ def test_every_claim_is_proved_and_says_for_which_rows():
         "tr W^k is conserved",
         "the energy is conserved",
     ]
+    assert "the algebra u(N) satisfies the Jacobi identity, for N = 3 and 4" in {
+        claim.statement for claim in claims
+    }
+    assert sum(claim.kind == "conserved" for claim in claims) == len(always) == 2
     assert any("every Casimir is a function of the N known" in each.statement for each in claims)
 
 
@@ -40,6 +45,21 @@ def test_another_product_than_the_commutator_is_refuted(monkeypatch, sign):
     assert not any("every N" in claim.statement for claim in certificate.claims)
 
 
+@pytest.mark.parametrize("window", [0, 1])
+def test_the_weakest_of_the_few_decides(window):
+    """What is refuted for one number of rows is refuted for the few, and nothing follows."""
+    spec = shipped(FLUID)
+    certificates = [_certify(each, searched=False) for each in spec.family.windows]
+    claims = list(certificates[window].claims)
+    (place,) = (n for n, claim in enumerate(claims) if claim.kind == "algebra")
+    claims[place] = replace(claims[place], verdict=Verdict.REFUTED)
+    certificates[window] = replace(certificates[window], claims=tuple(claims))
+    found = truncated.extend_truncated(spec, certificates)
+    wrong = [claim for claim in found.claims if claim.verdict is Verdict.REFUTED]
+    assert [claim.kind for claim in wrong] == ["algebra"]
+    assert not any("every N" in claim.statement for claim in found.claims)
+
+
 def test_a_bracket_of_the_other_side_is_refuted():
     """Right invariant motions go the other way: ``dW/dt = [V, W]``."""
     spec = shipped(FLUID)
@@ -47,3 +67,31 @@ def test_a_bracket_of_the_other_side_is_refuted():
     certificate = prove(replace(spec, family=replace(spec.family, windows=windows)))
     wrong = [claim.kind for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
     assert wrong == ["equivalence"]
+
+
+def test_on_the_torus_the_sine_bracket_is_proved_and_odd_rows_are_named():
+    """All Casimirs are known of 3 rows alone: that of degree 5 is not looked for."""
+    claims = prove(shipped(TORUS)).require().claims
+    assert {claim.verdict for claim in claims} == {Verdict.PROVED}
+    scopes = {claim.statement.rpartition(", for ")[2] for claim in claims}
+    assert scopes == {"N = 3 and 5", "N = 3", "every odd N >= 3"}
+    least = [claim.statement for claim in claims if claim.statement.endswith("for N = 3")]
+    assert [each.partition(",")[0] for each in least] == [
+        "every Casimir is a function of the N known",
+        "the rates are those by the sine bracket",
+    ]
+    always = [claim.kind for claim in claims if claim.statement.endswith("every odd N >= 3")]
+    assert always == ["conserved", "conserved"]
+
+
+def test_another_bracket_of_waves_is_refuted(monkeypatch):
+    """Nothing is said of every N then."""
+    spec = shipped(TORUS)
+    honest = truncated.multiply_waves
+    monkeypatch.setattr(truncated, "multiply_waves", lambda *given: [-x for x in honest(*given)])
+    family = replace(spec.family, windows=spec.family.windows[:1])
+    certificate = prove(replace(spec, family=family))
+    wrong = [claim for claim in certificate.claims if claim.verdict is Verdict.REFUTED]
+    assert [claim.kind for claim in wrong] == ["equivalence"]
+    assert "the sine bracket" in wrong[0].statement
+    assert not any("every odd N" in claim.statement for claim in certificate.claims)

@@ -164,7 +164,8 @@ def write(rendered, change=lambda main: main):
     }
     if family.matrices is not None:
         own = ("energy_gradient", "bracket_vector", "sandwich")
-        main["sizes"] = "4, 9, 16, 25, 49"  # entries of so many rows
+        rows = [n for n in (2, 3, 4, 5, 7) if n >= family.small and family.index.allows(n)]
+        main["sizes"] = ", ".join(str(n * n) for n in rows)
         main["projection"] = " ".join(f".{each} = {name}_{each}," for each in own)
     main = MAIN % main
     files = {n: texts[n] for n in ("kernel.c", "kernel.h", "solver.c", "solver.h")}

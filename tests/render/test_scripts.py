@@ -81,7 +81,13 @@ def test_kernels_equal_those_of_numpy(name, exact):
 
 @pytest.mark.parametrize(
     ("name", "size"),
-    [("spin_chain", 41), ("n_body", 43), ("camassa_holm", 33), ("zeitlin_su_n", 7)],
+    [
+        ("spin_chain", 41),
+        ("n_body", 43),
+        ("camassa_holm", 33),
+        ("zeitlin_su_n", 7),
+        ("zeitlin_torus", 7),
+    ],
 )
 def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
     """So do loops over members, in blocks and without, with sums over pairs and solutions."""

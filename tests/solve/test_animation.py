@@ -13,7 +13,7 @@ from PIL import Image
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import animation
 from coadjoint.solve.plot import draw
-from coadjoint.systems import euler_2d, heavy_top, kepler
+from coadjoint.systems import euler_2d, heavy_top, kepler, zeitlin_su_n
 
 TOP = ({"Pi": [0, 0, 3], "Gamma": [0.6, 0, 0.8]}, (0, 2), {"I": [1, 1, 0.6], "m": 0.3})
 
@@ -109,3 +109,27 @@ def test_a_field_in_a_plane_moves_in_its_last_panel():
         np.testing.assert_allclose(shown[::4, ::4], run["w"][..., at], atol=1e-12)
         assert panel.get_title().startswith(f"t = {run.time[at]:.4g}")
     assert np.abs(run["w"][..., 4] - run["w"][..., 0]).max() > 0.1
+
+
+def test_a_fluid_on_the_sphere_moves_in_its_last_panel():
+    """A map of the sphere, whose colours are those of the function of the matrix at a time."""
+    fluid = zeitlin_su_n.system.resize({"N": 3})
+    run = fluid.simulate({"W": [0, 1, 0, 2, 0, 1, 0, 0.5, 0]}, (0, 4), samples=5, target="numpy")
+    figure = draw(run)
+    maps = [each for each in figure.axes if each.name == "mollweide"]
+    assert len(maps) == 4
+    colours, show = maps[-1].coadjoint_field
+    (move,) = (
+        each
+        for each in animation._list_moves(figure, run)
+        if each.__qualname__.startswith("_move_field")
+    )
+    for now, at in ((0.0, 0), (1.5, 1), (4.0, 4)):
+        move(now)
+        shown = np.asarray(colours.get_array()).reshape(12, 24)
+        np.testing.assert_array_equal(shown, show(at))
+        mean = np.cos(np.pi * ((np.arange(12) + 0.5) / 12 - 0.5)) @ shown
+        np.testing.assert_allclose(mean.mean(), run["W"].reshape(9, -1)[::4, at].sum(), atol=0.02)
+        assert maps[-1].get_title().startswith(f"t = {run.time[at]:.4g}")
+    assert np.abs(show(4) - show(0)).max() > 0.1
+    assert colours.norm.vmin == -colours.norm.vmax

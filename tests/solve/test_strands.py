@@ -1,12 +1,15 @@
 """Group elements along strands: transport, the holonomy and its trace as an integral."""
 
 import importlib
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
+from coadjoint.algebra.matrices import take_image
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError, KernelArgumentError
 from coadjoint.prove.declaration import find_connections
@@ -174,6 +177,40 @@ def test_traces_are_those_of_the_strain_and_of_the_pair_at_its_values():
         np.testing.assert_allclose(traces[name], expected, atol=1e-12)
         assert np.abs(traces[name] - traces[name][0]).max() < 1e-4
         assert np.abs(traces[name] - traces["Xi"]).max() > 0.1
+
+
+def test_connections_of_the_pair_have_its_entries_at_the_values():
+    """``(Xi + lam Pi)/(1 - lam^2)`` about each axis, lam = (mu - 1)/(mu + 1)."""
+    Xi, Pi = np.array([0.3, -0.7, 1.1]), np.array([0.9, 0.2, -0.4])
+    known = {f"{name}{n + 1}": x[n] for name, x in (("Xi", Xi), ("Pi", Pi)) for n in range(3)}
+    found = {each.name: each for each in find_connections(emitted("spin_chain_chiral"))}
+    assert [*found] == ["Xi", "L(1/2)", "L(3)"]
+    for name, lam in (("L(1/2)", -1 / 3), ("L(3)", 1 / 2)):
+        connection = found[name]
+        assert (connection.side, connection.length, connection.size) == ("left", "L", 3)
+        matrix = np.zeros((3, 3))
+        for place, text in connection.entries.items():
+            matrix[place] = eval(text, {}, known)
+        np.testing.assert_allclose(matrix, hat((Xi + lam * Pi) / (1 - lam**2)), atol=1e-14)
+
+
+def test_a_chain_with_ends_has_no_connections():
+    """Nothing goes around it."""
+    chain = emitted("spin_chain_chiral")
+    open_space = replace(chain.spec.space, ends="fixed")
+    assert open_space.has_ends
+    spec = replace(chain.spec, space=open_space)
+    assert find_connections(SimpleNamespace(setting=chain.setting, spec=spec)) == ()
+
+
+def test_matrices_that_are_no_numbers_have_no_connections():
+    """Their transports would need the values of parameters."""
+    strand = emitted("se3_strand")
+    number, known = strand.setting.field.number, strand.spec.algebra
+    matrices = tuple({at: number(x) for at, x in each.items()} for each in known.matrices)
+    algebra = take_image(known, matrices=matrices)
+    spec = replace(strand.spec, algebra=algebra)
+    assert find_connections(SimpleNamespace(setting=strand.setting, spec=spec)) == ()
 
 
 def test_a_pole_of_the_pair_is_no_value():

@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.spec.reader import read_spec, read_spec_text
 from tests.specs import shipped
+from tests.torus_matrices import sample
+from tests.truncated import pack
 
 TEXT = """
 title = "Fluid by matrices"
@@ -18,6 +21,7 @@ W = { role = "momentum", default = [1, 0, 0, 0, "0.5"], unit = "1/s" }
 [parameters]
 k = { positive = true, default = 2 }
 """
+TORUS = TEXT.replace('inertia = "k*l*(l + 1)"', 'surface = "torus", inertia = "k*(k1^2 + k2^2)"')
 VARIABLE = 'W = { role = "momentum"'
 
 
@@ -45,6 +49,31 @@ def test_a_size_is_chosen_when_it_is_read():
     bare = read(TEXT.replace("size = 5, ", ""))
     assert bare.family.index.size is None
     assert bare.family.defaults == {}
+
+
+def test_on_the_torus_there_are_odd_numbers_of_rows():
+    """3 and 5 are written out; another number is refused, declared or chosen."""
+    family = read(TORUS).family
+    assert [len(each.state) for each in family.windows] == [9, 25]
+    assert (family.index.surface, family.least) == ("torus", 3)
+    assert len(read(TORUS, {"N": 9}).family.defaults["W"][0]) == 81
+    for text, sizes in ((TORUS.replace("size = 5", "size = 4"), {}), (TORUS, {"N": 8})):
+        with pytest.raises(SpecError, match=r"on the torus.*an odd number of 3 or more"):
+            read(text, sizes)
+    with pytest.raises(SpecError, match="an integer of 3 or more"):
+        read(TORUS, {"N": 1})
+    with pytest.raises(SpecError, match=r"'k1' is the number of a wave, too"):
+        read(TORUS.replace("k = {", "k1 = { default = 1 }\nk = {"))
+    with pytest.raises(SpecError, match="'sphere' or 'torus'"):
+        read(TORUS.replace('"torus"', '"cylinder"'))
+
+
+def test_parts_are_those_of_waves():
+    """The cosine of x and half the sine of (1, 1), by the order of their lengths."""
+    parts = TORUS.replace('[1, 0, 0, 0, "0.5"]', '[1, 0, 0, 0, 0, "0.5"]')
+    (found,) = read(parts).family.defaults["W"]
+    expected = pack(sample({(1, 0): (1, 0), (1, 1): (0, 0.5)}, 5))
+    np.testing.assert_allclose(np.array(found, float), expected, atol=1e-15)
 
 
 REFUSED = [

@@ -78,7 +78,7 @@ def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
         if not any(own):
             continue
         own += [0.0] * (2 * degree + 1 - len(own))
-        for order, diagonal in enumerate(_list_towers(n, degree)):
+        for order, diagonal in enumerate(list_towers(n, degree)):
             cosine, sine = own[2 * order - 1 : 2 * order + 1] if order else (own[0], 0.0)
             for i, x in enumerate(diagonal):
                 share = x / sqrt(2) if order else x
@@ -88,7 +88,7 @@ def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
     return whole
 
 
-def _list_towers(n: int, degree: int) -> list[list[float]]:
+def list_towers(n: int, degree: int) -> list[list[float]]:
     """The diagonals of T_lm above the main one by m from 0 on, with tr T_lm T_lm^T = n/(4 pi)."""
     c = [sqrt((i + 1) * (n - 1 - i)) for i in range(n - 1)]  # of S_+, the transpose of S_-
     own, towers = [1.0] * (n - degree), list[list[float]]()

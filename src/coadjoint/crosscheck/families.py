@@ -407,7 +407,8 @@ def _compare_targets(
     """
     equal = {target: 0 for target in targets if target != "numpy" and "numpy" in targets}
     most = LARGEST_MATRIX if system.index.of_rows else max(SIZES)
-    for size in (small, small + 1, *(size for size in SIZES if small + 1 < size <= most)):
+    sizes = (small, small + 1, *(size for size in SIZES if small + 1 < size <= most))
+    for size in filter(system.index.allows, sizes):
         sized = system.resize({system.index.name: size})
         source = np.random.default_rng(size)
         for batch in BATCHES:

@@ -85,14 +85,18 @@ class _Members:
         return replace(self, arrays={**self.arrays, "state": found})
 
     def multiply(self, products: Products) -> _Members:
-        """The same with what is computed of matrices, by dense elimination on each diagonal."""
+        """The same with what is computed of matrices.
+
+        On the sphere by dense elimination on each diagonal, on the torus from its Fourier series.
+        """
         state, size, found = self.arrays["state"], self.size, list[Any]()
         if products.scale is None:
             pairs = [(list(state[:size]), list(state[size:]))]
         else:
             (scale,) = self.evaluate(products.scale, 0)
             runs = (list(state[k : k + size]) for k in range(0, len(state), size))
-            pairs = [(W, self._find_velocity(scale, W)) for W in runs]
+            find = self._find_on_sphere if products.surface == "sphere" else self._find_on_torus
+            pairs = [(W, find(scale, W)) for W in runs]
         first, turns = pairs[0], products.product == "sandwich"
         for k, (W, V) in enumerate(pairs):
             found += [*W, *V]
@@ -103,7 +107,7 @@ class _Members:
             found += both if products.product else []
         return replace(self, arrays={**self.arrays, "state": found})
 
-    def _find_velocity(self, scale: Any, W: Sequence[Any]) -> list[Any]:
+    def _find_on_sphere(self, scale: Any, W: Sequence[Any]) -> list[Any]:
         """V with ``scale L V = W``; where L takes multiples of 1 to 0, the mean is added to it."""
         n, V = isqrt(self.size), dict[int, Any]()
 
@@ -127,6 +131,30 @@ class _Members:
             known = [each / scale for each in right]
             solved = BoundedEquations(lower).solve(known)
             V |= {i * n + i + diagonal: x for i, x in zip(rows, solved, strict=True)}
+        return [V[k] for k in range(self.size)]
+
+    def _find_on_torus(self, scale: Any, W: Sequence[Any]) -> list[Any]:
+        """V with ``scale L V = W``: waves of each diagonal, over the squares of their numbers."""
+        n, V = isqrt(self.size), dict[int, Any]()
+
+        def number(value: int | Fraction) -> Any:
+            return self.number(Fraction(value))
+
+        turn = self.call("atan", number(1)) * number(8)
+        angles = [turn * number(Fraction(t, n)) for t in range(n)]
+        cosines, sines = ([self.call(f, each) for each in angles] for f in ("cos", "sin"))
+        for k2 in range(n):
+            places = [(i, (i + k2) % n) for i in range(n)]
+            own = {place: [number(0)] for place in places}
+            for k1 in range(n):
+                square = sum(min(k, n - k) ** 2 for k in (k1, k2))
+                for table in (cosines, sines) if square else ():
+                    parts = [table[k1 * (i + j) % n] for i, j in places]
+                    terms = [W[i * n + j] * x for (i, j), x in zip(places, parts, strict=True)]
+                    share = reduce(add, terms) / number(n * square)
+                    for place, x in zip(places, parts, strict=True):
+                        own[place].append(share * x)
+            V |= {i * n + j: reduce(add, own[i, j]) / scale for i, j in places}
         return [V[k] for k in range(self.size)]
 
     def _multiply_entries(self, W: Sequence[Any], V: Sequence[Any], *, turns: bool) -> list[Any]:

@@ -64,12 +64,13 @@ def show_members(equations: Equations) -> Iterator[Section]:
 def _show_matrices(equations: Equations, family: Family) -> Section:
     """The equations of matrices of any number of rows."""
     rows, count = family.index.name, len(equations.spec.state)
+    odd = "" if family.index.allows(family.small + 1) else " and odd"
     lines = (equal(literal(left), literal(right)) for left, right in tell_motion(family))
     return Section(
         title="Equations of motion",
-        law=f"matrices of {rows} rows counted from 0, {rows} >= {family.small}, with what has no "
-        f"neighbour left out; the steps that follow are those of {family.index.find_size(count)} "
-        "rows",
+        law=f"matrices of {rows} rows counted from 0, {rows} >= {family.small}{odd}, with what "
+        f"has no neighbour left out; the steps that follow are those of "
+        f"{family.index.find_size(count)} rows",
         law_latex="",
         lines=tuple(lines),
     )

@@ -1,4 +1,4 @@
-r"""The equations of the entries of matrices on the sphere, for any number of rows.
+r"""The equations of the entries of matrices on a surface, for any number of rows.
 
 The route of the spec is followed for matrices of a few rows, by structure constants of u(N). For
 all others the coadjoint motion is a commutator of matrices,
@@ -14,6 +14,7 @@ Read next: `coadjoint.families`.
 from __future__ import annotations
 
 from math import isqrt
+from typing import Final
 
 import sympy
 
@@ -25,7 +26,7 @@ from coadjoint.exact import Element
 from coadjoint.exact.dense import Matrix, product
 from coadjoint.families import Family, MatrixMotion, Sum, Total
 from coadjoint.spec.core.expressions import read_expression
-from coadjoint.spec.truncated import DEGREE
+from coadjoint.spec.surfaces import SURFACES
 
 
 def derive_truncated(equations: Equations) -> Family:
@@ -35,7 +36,7 @@ def derive_truncated(equations: Equations) -> Family:
         equations: Of matrices of a few rows.
 
     Raises:
-        DerivationError: The inertia is no multiple of ``l*(l + 1)``.
+        DerivationError: The inertia is no multiple of the Laplacian.
     """
     spec = equations.spec
     declared = spec.family
@@ -72,21 +73,24 @@ def derive_truncated(equations: Equations) -> Family:
 
 
 def _find_scale(equations: Equations, text: str, count: sympy.Symbol) -> sympy.Expr:
-    """The inertia over ``l*(l + 1)``, which no degree changes.
+    """The inertia over minus the Laplacian, which no mode changes.
 
     Raises:
         DerivationError: It does.
     """
     spec = equations.spec
     assert spec.family is not None, spec.name
-    degree, rows = sympy.Symbol(DEGREE), spec.family.index.name
-    known = {DEGREE: degree, rows: sympy.sqrt(count)}
-    inertia = Written(equations).value(read_expression(text), known)
-    scale = sympy.simplify(inertia / (degree * (degree + 1)))
-    if scale.has(degree):
+    rows, surface = spec.family.index.name, SURFACES[spec.family.index.surface]
+    modes = {name: sympy.Symbol(name) for name in surface.modes}
+    known = {**modes, rows: sympy.sqrt(count)}
+    inertia, laplacian = (
+        Written(equations).value(read_expression(each), known) for each in (text, surface.laplacian)
+    )
+    scale = sympy.simplify(inertia / laplacian)
+    if scale.has(*modes.values()):
         raise DerivationError(
             f"{spec.path}: truncation.{rows}.inertia is {text!a}; expected a multiple of "
-            "l*(l + 1), as that of an ideal fluid. Write it as '2*l*(l + 1)/sqrt(N^2 - 1)'.",
+            f"{surface.laplacian}, as that of an ideal fluid. Write it as {surface.inertia!a}.",
             found=text,
         )
     return scale
@@ -102,6 +106,13 @@ def tell_motion(family: Family) -> tuple[tuple[str, str], ...]:
     return (
         (f"d{matrices.state}/dt", f"[{matrices.state}, V]"),
         (f"{scale}*L V", str(matrices.state)),
+        *_LAPLACIANS[family.index.surface](str(rows)),
+    )
+
+
+def _tell_on_sphere(rows: str) -> tuple[tuple[str, str], ...]:
+    """The Laplacian of Hoppe and Yau."""
+    return (
         (
             "(L V)[i, j]",
             "2*(s*(s + 1) - z[i]*z[j])*V[i, j] - c[i]*c[j]*V[i+1, j+1] - c[i-1]*c[j-1]*V[i-1, j-1]",
@@ -109,6 +120,19 @@ def tell_motion(family: Family) -> tuple[tuple[str, str], ...]:
         ("s, z[i]", f"({rows} - 1)/2, s - i"),
         ("c[i]", f"sqrt((i + 1)*({rows} - 1 - i))"),
     )
+
+
+def _tell_on_torus(rows: str) -> tuple[tuple[str, str], ...]:
+    """That of waves."""
+    return (
+        ("L T[k]", "(k1^2 + k2^2)*T[k]"),
+        ("T[k][i, j]", f"exp(2*pi*i*k1*(i + j)/{rows})"),
+        ("k2", f"j - i mod {rows}"),
+        ("|k1|, |k2|", f"0 to ({rows} - 1)/2"),
+    )
+
+
+_LAPLACIANS: Final = {"sphere": _tell_on_sphere, "torus": _tell_on_torus}
 
 
 def multiply_out(equations: Equations) -> tuple[Element, ...]:

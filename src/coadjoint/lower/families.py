@@ -148,10 +148,12 @@ class Products:
     Attributes:
         scale: The factor of the equation for V; None where V is given.
         product: ``commutator`` for [W, V], ``sandwich`` for V W V, or "" for none.
+        surface: Whose Laplacian the equation has, as in `coadjoint.families.Index`.
     """
 
     scale: Part | None
     product: str
+    surface: str
 
     @property
     def blocks(self) -> int:
@@ -363,7 +365,8 @@ class _Lowering:
             scale = (
                 None if function.name in GIVEN else self._part(name, [family.matrices.scale], {})
             )
-            return replace(function, products=Products(scale, PRODUCTS.get(function.name, "")))
+            product, surface = PRODUCTS.get(function.name, ""), family.index.surface
+            return replace(function, products=Products(scale, product, surface))
         for each in family.solved:
             factors = self._part(name, each.factors, {})
             of = family.states.index(each.of)

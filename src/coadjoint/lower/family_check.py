@@ -49,18 +49,20 @@ def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
             assert solve.level == each.level, loops.name
             _check_part(loops.name, solve.factors, each.factors, symbols, ())
         if family.matrices is not None:
-            _check_products(family.matrices, loops, symbols)
+            _check_products(family.matrices, family.index.surface, loops, symbols)
         assert compared, loops.name
     if "kinks" in functions:
         check_sides(family, functions["sided_rhs"], functions["kinks"])
 
 
-def _check_products(matrices: MatrixMotion, loops: Loops, symbols: _Symbols) -> None:
+def _check_products(matrices: MatrixMotion, surface: str, loops: Loops, symbols: _Symbols) -> None:
     """Before a function the right product is computed, of V by the right equation or as given."""
     products, wanted = loops.products, PRODUCTS.get(loops.name, "")
     assert products is not None, loops.name
     if products.product != wanted:
         raise _fail(loops.name, f"the product {products.product!r} in the place of {wanted!r}")
+    if products.surface != surface:
+        raise _fail(loops.name, f"a Laplacian on the {products.surface}, not the {surface}")
     if (products.scale is None) != (loops.name in GIVEN):
         raise _fail(loops.name, "V is given, and should be solved for, or the other way round")
     if products.scale is not None:

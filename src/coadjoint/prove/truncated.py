@@ -1,4 +1,4 @@
-r"""Claims about matrices on the sphere of any number of rows N.
+r"""Claims about matrices on a surface of any number of rows N.
 
 For a few N the motion is written out on the dual of u(N), and all claims are proved as of every
 other system; there it is decided as well that the rates by structure constants are the commutator
@@ -8,6 +8,9 @@ other system; there it is decided as well that the rates by structure constants 
   product does not change where factors go round;
 * the energy :math:`h = -\tfrac12 \mathrm{tr}(W V)` has the rate :math:`-\mathrm{tr}(V [W, V]) = 0`,
   since L, of which V is the inverse times W, has a symmetric matrix on each diagonal.
+
+On the torus it is decided as well that the rates are those by the sine bracket of waves
+(`coadjoint.derive.sine_bracket`), for the least N.
 
 Comes in: the certificates of a few N. Goes out: one certificate, in which each claim says for which
 N it holds. Read next: `coadjoint.derive.truncated`.
@@ -20,6 +23,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from coadjoint.derive import derive
+from coadjoint.derive.sine_bracket import multiply_waves
 from coadjoint.derive.truncated import derive_truncated, multiply_out
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.zero import decide_zero, make_entry
@@ -41,40 +45,54 @@ def extend_truncated(spec: Spec, certificates: Sequence[Certificate]) -> Certifi
         DerivationError: The inertia is no multiple of that of degree 1, which is written out.
     """
     derive_truncated(derive(spec))
-    few = _list_few(spec)
-    own = [
-        [c for c in each.claims if c.kind != "casimir" or c.statement.startswith(_COMPLETE)]
-        for each in certificates
-    ]
+    family = spec.family
+    assert family is not None, spec.name
+    few = _list_few(spec, family.windows)
+    own = [[c for c in each.claims if c.kind != "casimir"] for each in certificates]
     assert len({tuple(c.kind for c in each) for each in own}) == 1, spec.name
-    claims = [_join(spec, same, few) for same in zip(*own, strict=True)]
+    claims = [_join(same, few) for same in zip(*own, strict=True)]
+    claims.append(_join_complete(spec, certificates))
     claims.append(_compare_products(spec, few))
+    if family.index.surface == "torus":
+        claims.append(_compare_waves(spec))
     if all(claim.verdict is Verdict.PROVED for claim in claims):
         claims = [claim for claim in claims if claim.kind != "conserved"] + _follow(spec, few)
     return Certificate(spec.name, tuple(claims))
 
 
-def _list_few(spec: Spec) -> str:
-    """The numbers of rows that are written out: ``N = 3 and 4``."""
+def _list_few(spec: Spec, windows: Sequence[Spec]) -> str:
+    """The numbers of rows of some that are written out: ``N = 3 and 4``."""
     family = spec.family
     assert family is not None, spec.name
-    sizes = [str(family.index.find_size(len(each.state))) for each in family.windows]
+    sizes = [str(family.index.find_size(len(each.state))) for each in windows]
     return f"{family.index.name} = {' and '.join(sizes)}"
 
 
-def _join(spec: Spec, same: Sequence[Claim], few: str) -> Claim:
+def _join(same: Sequence[Claim], few: str) -> Claim:
     """One claim from those of the few, of which the weakest decides."""
-    assert spec.family is not None, spec.name
     order = (Verdict.REFUTED, Verdict.SUPPORTED, Verdict.PROVED)
     worst = min(same, key=lambda claim: order.index(claim.verdict))
     statement = _ALGEBRA if worst.kind == "algebra" else worst.statement
-    if worst.kind == "casimir":
-        counts = [spec.family.index.find_size(len(w.state)) for w in spec.family.windows]
-        told = [each.statement.removeprefix(_COMPLETE) for each in same]
-        assert told == [f"{n} known, near almost every point" for n in counts], told
-        statement = f"{_COMPLETE}{spec.family.index.name} known, near almost every point"
     seconds = sum(claim.seconds for claim in same)
     return replace(worst, statement=f"{statement}, for {few}", seconds=seconds)
+
+
+def _join_complete(spec: Spec, certificates: Sequence[Certificate]) -> Claim:
+    """That all Casimirs are known, where those of all degrees are found: degree 5 is not."""
+    family = spec.family
+    assert family is not None, spec.name
+    found, windows = list[Claim](), list[Spec]()
+    for window, certificate in zip(family.windows, certificates, strict=True):
+        told = [c for c in certificate.claims if c.statement.startswith(_COMPLETE)]
+        count = family.index.find_size(len(window.state))
+        known = f"{_COMPLETE}{count} known, near almost every point"
+        assert [c.statement for c in told] in ([], [known]), told
+        found += told
+        windows += [window] * len(told)
+    assert found, spec.name
+    statement = f"{_COMPLETE}{family.index.name} known, near almost every point"
+    same = [replace(each, statement=statement) for each in found]
+    return _join(same, _list_few(spec, windows))
 
 
 def _compare_products(spec: Spec, few: str) -> Claim:
@@ -94,11 +112,31 @@ def _compare_products(spec: Spec, few: str) -> Claim:
     return claim
 
 
+def _compare_waves(spec: Spec) -> Claim:
+    """Structure constants of matrices and the sine bracket of waves give one motion."""
+    family = spec.family
+    assert family is not None, spec.name
+    start, window = perf_counter(), family.windows[0]
+    equations = derive(window, spec.routes[0])
+    rates = map(equations.close, equations.exact.rates)
+    waves = multiply_waves(equations, family.truncation, family.index.name)
+    pairs = zip(rates, waves, strict=True)
+    decision = decide_zero([a - b for a, b in pairs], equations.setting.field)
+    statement = (
+        "the rates are those by the sine bracket, dw_k/dt = 2 sum sin(2 pi m x n/N) w_m v_n over "
+        f"m + n = k, for {_list_few(spec, [window])}"
+    )
+    claim = make_entry(statement, "equivalence", decision, perf_counter() - start)
+    assert isinstance(claim, Claim), claim
+    return claim
+
+
 def _follow(spec: Spec, few: str) -> list[Claim]:
     """What follows for every number of rows from the form of the motion."""
     assert spec.family is not None, spec.name
     rows, least = spec.family.index.name, spec.family.least
-    scope = f"for every {rows} >= {least}"
+    odd = "odd " * (not spec.family.index.allows(least + 1))
+    scope = f"for every {odd}{rows} >= {least}"
     return [
         Claim(
             statement=f"tr W^k is conserved, k = 1 to {rows}, {scope}",

@@ -479,6 +479,7 @@ def render_family_template(
         "lanes": LANES,
         "solves": any(loops.solve for loops in context.loops.values()),
         "level": any(loops.solve and loops.solve.level for loops in context.loops.values()),
+        "surface": context.index.surface,
         "multiplies": any(loops.products for loops in context.loops.values()),
         "turns": "projection" in context.loops,
         "fewest": FEWEST,
@@ -549,7 +550,7 @@ def render_family_template(
         "dop853": {each.name: fill(map(repr, getattr(table, each.name))) for each in fields(table)},
         "index": (
             f"Index({quote(context.index.name)}, {context.index.size}, "
-            f"periodic={context.index.periodic}{', of_rows=True' * context.index.of_rows}), "
+            f"periodic={context.index.periodic}{_tell_surface(context.index)}), "
             f"{context.small}"
         ),
     }
@@ -601,6 +602,11 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
     }
+
+
+def _tell_surface(index: Index) -> str:
+    """On what matrices stand for functions, as a generated package declares it."""
+    return f", surface={quote(index.surface)}" if index.surface else ""
 
 
 def _tell_spheres(context: FamilyContext) -> str:

@@ -16,7 +16,8 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
-from coadjoint.solve.plot import COLOURS, draw, new_figure, refine, tell_time
+from coadjoint.solve.labels import tell_time
+from coadjoint.solve.plot import COLOURS, draw, new_figure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -165,12 +166,12 @@ def _move_along(axes: Any, time: Array, path: Array) -> Move:
     return move
 
 
-def _move_field(axes: Any, solution: Solution, colours: Any, values: Array) -> Move:
-    """A field in a plane, ``(N_x, N_y, T)``: the latest sample before the time of the film."""
+def _move_field(axes: Any, solution: Solution, colours: Any, show: Callable[[int], Array]) -> Move:
+    """A field on a surface, shown by the number of a sample: the latest before the film's time."""
 
     def move(now: float) -> None:
         at = max(0, int(np.searchsorted(solution.time, now, side="right")) - 1)
-        colours.set_array(refine(values[..., at]).T)
+        colours.set_array(show(at))
         axes.set_title(tell_time(solution, at), fontsize=9)
 
     return move

@@ -370,6 +370,13 @@ def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -
             found=size,
             expected=small,
         )
+    if not index.allows(size):
+        raise KernelArgumentError(
+            f"the size of {index.name} of {name} is {size}; expected an odd number, since matrices "
+            f"of an even number of rows have no waves. Take {size - 1} or {size + 1}.",
+            found=size,
+            expected=(size - 1, size + 1),
+        )
     return size
 
 

@@ -6,7 +6,6 @@ is imported here alone.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
@@ -16,9 +15,10 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
-from coadjoint.notation.names import GREEK
 from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.labels import symbol_label, unit_label
+from coadjoint.solve.maps import draw_map, find_map, is_globe
 from coadjoint.solve.scenes import (
     Paths,
     angles,
@@ -33,7 +33,6 @@ from coadjoint.solve.scenes import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from coadjoint.families import Torus
     from coadjoint.solve.occurrences import Occurrences
     from coadjoint.solve.solution import Solution
 
@@ -48,10 +47,6 @@ LEGEND_ROWS, LINES = 14, 28
 AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 #: Pictures of members, one above the other.
 STACKED = 3
-#: How many times of a field in a plane are shown.
-SHOWN = 4
-#: How many points are drawn along each coordinate of a plane for each one that there is.
-FINER = 4
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -87,6 +82,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
     strip = 0.14 if paths or sphere else 0.2  # drift is no third of a picture
     if sphere or (paths and paths.members.shape[1] == 3):
         figure.set_size_inches(7.2, 6.4)
+    elif any(is_globe(solution, name) for name in solution.system.STATE):
+        figure.set_size_inches(7.2, 5.6)  # maps of the sphere are half as high as they are wide
     conserved = bool(solution.conserved)
     grid = figure.add_gridspec(1 + conserved, 1, height_ratios=[1.0, strip][: 1 + conserved])
     if paths:
@@ -209,7 +206,7 @@ def _component(name: str) -> str:
     """A component as a symbol with its number below."""
     base = name.rstrip("0123456789")
     number = name.removeprefix(base)
-    return f"{_symbol(base)}$_{{{number}}}$" if number else _symbol(base)
+    return f"{symbol_label(base)}$_{{{number}}}$" if number else symbol_label(base)
 
 
 def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
@@ -249,7 +246,7 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
     axes.coadjoint_path = vector[np.newaxis]
     axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
     axes.scatter(*vector[:, -1:], color="#000000", s=36, marker="s", zorder=4, label="end")
-    symbol, unit = _symbol(name), unit_label(solution.system.STATE[name].unit)
+    symbol, unit = symbol_label(name), unit_label(solution.system.STATE[name].unit)
     _style_space(axes, [f"{symbol}$_{n}$ {unit}" for n in (1, 2, 3)])
     axes.set_proj_type("ortho")  # its horizon is where `faces_viewer` has it
     axes.view_init(*angles(toward))
@@ -278,9 +275,9 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
     panels = place.subgridspec(len(quantities), 1)
     shared = None
     for n, (name, quantity) in enumerate(quantities):
-        torus = getattr(solution.system, "torus", None)
-        if torus is not None:
-            _draw_plane(figure, panels[n], solution, name, torus)
+        surface = find_map(solution, name)
+        if surface is not None:
+            draw_map(figure, panels[n], solution, name, surface)
             continue
         if len(quantity.components) > LINES:
             _draw_rows(figure, panels[n], solution, name, ends=n == len(quantities) - 1)
@@ -289,7 +286,7 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         shared = shared or axes
         for stroke, component in zip(_strokes(), quantity.components, strict=False):
             axes.plot(solution.time, solution[component], linewidth=1.0, label=component, **stroke)
-        axes.set_ylabel(f"{_symbol(name)} {unit_label(quantity.unit)}", fontsize=9)
+        axes.set_ylabel(f"{symbol_label(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
         size = 8 if columns == 1 else 6.5
@@ -314,66 +311,11 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         lower = str(n + 1) * (len(parts) > 1)
         bar = figure.colorbar(colours, ax=axes, pad=0.01)
         unit = unit_label(_unit_of(quantity.unit, n, len(parts)))
-        bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit}", fontsize=9)
+        bar.set_label(f"{symbol_label(name)}$_{{{lower}}}$ {unit}", fontsize=9)
         bar.ax.tick_params(labelsize=8)
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
-
-
-def _draw_plane(figure: Any, place: Any, solution: Solution, name: str, torus: Torus) -> None:
-    """A field in a plane at some times, all with the same colours."""
-    values = solution[name]
-    shown = np.unique(np.linspace(0, len(solution) - 1, SHOWN).round().astype(int))
-    largest = float(np.abs(values).max()) or 1.0
-    lengths = (solution.system.PARAMETERS.rows(length) for length in torus.lengths)
-    x, y = (
-        np.arange(FINER * n) * (np.ravel(solution.parameters[row])[0] / (FINER * n))
-        for n, row in zip(values.shape, lengths, strict=False)
-    )
-    rows = -(-len(shown) // 2)
-    panels = place.subgridspec(rows, min(len(shown), 2))
-    every = []
-    for n, at in enumerate(shown):
-        axes = figure.add_subplot(panels[n // 2, n % 2])
-        every.append(axes)
-        colours = axes.pcolormesh(
-            x,
-            y,
-            refine(values[..., at]).T,
-            cmap="PuOr",
-            vmin=-largest,
-            vmax=largest,
-            shading="nearest",
-        )
-        colours.set_rasterized(True)
-        axes.set_aspect("equal")
-        axes.set_title(tell_time(solution, at), fontsize=9)
-        axes.tick_params(labelsize=8, labelleft=n % 2 == 0, labelbottom=n + 2 >= len(shown))
-        axes.set_xlabel(torus.coordinates[0] * (n + 2 >= len(shown)), fontsize=9)
-        axes.set_ylabel(torus.coordinates[1] * (n % 2 == 0), fontsize=9)
-    axes.coadjoint_field = colours, values  # in a film the last one moves
-    bar = figure.colorbar(colours, ax=every, pad=0.02, aspect=40)
-    bar.set_label(f"{_symbol(name)} {unit_label(solution.system.STATE[name].unit)}", fontsize=9)
-    bar.ax.tick_params(labelsize=8)
-
-
-def tell_time(solution: Solution, at: int) -> str:
-    """The time of a sample, with its unit."""
-    return f"t = {solution.time[at]:.4g} {unit_label(solution.unit('time'))}".strip()
-
-
-def refine(field: Array) -> Array:
-    """The same trigonometric polynomial at more points."""
-    from scipy import fft
-
-    waves, shape = fft.fftshift(fft.fft2(field)), [FINER * n for n in field.shape]
-    room = [
-        (new // 2 - n // 2, (new + 1) // 2 - (n + 1) // 2)
-        for new, n in zip(shape, field.shape, strict=True)
-    ]
-    found: Array = fft.ifft2(fft.ifftshift(np.pad(waves, room))).real * FINER**2
-    return found
 
 
 def _unit_of(unit: str, place: int, count: int) -> str:
@@ -434,14 +376,3 @@ def _strokes() -> Iterator[dict[str, str]]:
     while True:
         for style in STYLES:
             yield from ({"color": colour, "linestyle": style} for colour in COLOURS)
-
-
-def unit_label(unit: str) -> str:
-    """A unit for an axis, its exponents raised."""
-    raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
-    return "" if unit in ("", "1") else f"[{raised}]"
-
-
-def _symbol(name: str) -> str:
-    """A Greek name as its letter, in matplotlib's own TeX; other names as they are."""
-    return rf"$\{name}$" if name in GREEK else name

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve.labels import unit_label
 from coadjoint.solve.paths import Path
-from coadjoint.solve.plot import COLOURS, begin_figure, finish, unit_label
+from coadjoint.solve.plot import COLOURS, begin_figure, finish
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -151,7 +151,7 @@ class Windows:
             to that at which both ends of the matrices keep apart.
         loaded: The spec written out for all members, with the claims that are not proved for every
             number of them; None without such claims.
-        truncation: Of entries of matrices on the sphere the inertia, as text; else "".
+        truncation: Of entries of matrices on a surface the inertia, as text; else "".
     """
 
     index: Index

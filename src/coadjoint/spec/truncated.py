@@ -1,27 +1,24 @@
-r"""Truncated: a fluid on the sphere by matrices of N rows, written out for a few small N.
+r"""Truncated: a fluid on a surface by matrices of N rows, written out for a few small N.
 
 Comes in: a checked file with a table [truncation]. Goes out: the Spec of few rows, as any other
 spec has on the algebra u(N), with all that is known of other numbers in its attribute ``family``.
 The momentum is a skew-Hermitian matrix :math:`(W - W^T)/2 + \mathrm{i} (W + W^T)/2` of real
 entries ``W_0, W_1, ...``, row by row, and its velocity V solves ``inertia(L) V = W``, L being the
-Laplacian of Hoppe and Yau with a change of sign (`coadjoint.families.MatrixMotion`): the energy is
-half the sum of ``W_ij V_ij``.
+Laplacian with a change of sign (`coadjoint.families.MatrixMotion`): the energy is half the sum of
+``W_ij V_ij``.
 Read next: `coadjoint.derive.truncated`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from math import isqrt, prod
 from typing import Any, Final
 
 from coadjoint import limits
 from coadjoint.algebra.families import label
-from coadjoint.algebra.harmonics import find_entries
-from coadjoint.exact.dense import inverse
 from coadjoint.families import Index
 from coadjoint.spec.copies import Places
 from coadjoint.spec.core.members import member_name
@@ -30,15 +27,12 @@ from coadjoint.spec.core.values import read_default
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.algebra_keys import AlgebraPart
 from coadjoint.spec.sections.energies import HamiltonianPart
+from coadjoint.spec.surfaces import SURFACES
 
-#: Rows of the matrices that are written out.
-WRITTEN: Final = (3, 4)
-#: The fewest rows: with one of them nothing moves.
-LEAST: Final = 2
-#: What an inertia calls the degree of harmonics.
-DEGREE: Final = "l"
 #: Tables of a spec with [truncation].
 TABLES: Final = ("truncation", "variables", "parameters", "claims")
+#: What the numbers of modes are.
+_NUMBERS: Final = {"sphere": "degree of harmonics", "torus": "number of a wave"}
 _HEAD: Final = ("title", "source", "description", "license", "routes")
 
 
@@ -62,7 +56,9 @@ def read_truncated(
     (variable,) = file.variables
     _check_names(source, file)
     index = _choose(source, file, sizes)
-    windows = tuple(read(*_write_out(source, file, index.name, variable, n)) for n in WRITTEN)
+    surface = SURFACES[index.surface]
+    counts = surface.written
+    windows = tuple(read(*_write_out(source, file, index.name, variable, n)) for n in counts)
     family = Windows(
         index=index,
         variables=(variable,),
@@ -73,7 +69,7 @@ def read_truncated(
         reach=0,
         alone=(0, 0),
         pairs=False,
-        least=LEAST,
+        least=surface.least,
         windows=windows,
         truncation=file.truncation[index.name].inertia,
     )
@@ -120,14 +116,21 @@ def _check_tables(source: Source, file: Any) -> None:
 
 def _check_names(source: Source, file: Any) -> None:
     """The number of rows, the degree and what is declared have names that differ."""
-    (rows,) = file.truncation
+    ((rows, part),) = file.truncation.items()
+    modes = SURFACES[part.surface].modes
     taken = {name: table for table in ("variables", "parameters") for name in getattr(file, table)}
-    for name in (rows, DEGREE):
-        if name in taken or (name, DEGREE) == (DEGREE, rows):
-            what = "number of rows" if name == rows else "degree of harmonics"
+    for name in (rows, *modes):
+        if name in taken or (name in modes and name == rows):
+            what = "number of rows" if name == rows else _NUMBERS[part.surface]
             key = (taken.get(name, "truncation"), name)
             problem, hint = f"{name!r} is the {what}, too", "Rename one of them."
             raise source.at_key(key, problem, name, "names that differ", hint)
+
+
+def put_numbers(text: str, numbers: Mapping[str, int]) -> str:
+    """A formula with numbers in the place of names."""
+    shown = {name: str(n) if n >= 0 else f"({n})" for name, n in numbers.items()}
+    return re.sub(r"[A-Za-z]\w*", lambda found: shown.get(found[0], found[0]), text)
 
 
 def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
@@ -138,19 +141,24 @@ def _choose(source: Source, file: Any, sizes: Mapping[str, int]) -> Index:
         LimitError: It is too large.
     """
     ((name, part),) = file.truncation.items()
-    key = ("truncation", name)
+    key, least = ("truncation", name), SURFACES[part.surface].least
+    odd = SURFACES[part.surface].is_odd
     for other, size in sizes.items():
         if other != name:
             problem = f"a size is chosen for {other!a}, which counts no rows"
             raise source.at_key(key, problem, other, f"the number of rows {name!r}")
-        if isinstance(size, bool) or not isinstance(size, int) or size < LEAST:
+        if isinstance(size, bool) or not isinstance(size, int) or size < least:
             problem = f"the size {size!r} is chosen for {name!r}"
-            raise source.at_key(key, problem, str(size), f"an integer of {LEAST} or more")
+            raise source.at_key(key, problem, str(size), f"an integer of {least} or more")
     size = sizes.get(name, part.size)
+    index = Index(name=name, size=size, surface=part.surface, from_zero=True)
+    if size is not None and (size < least or not index.allows(size)):
+        problem, kind = f"{name} = {size} on the {part.surface}", "odd number" if odd else "number"
+        raise source.at_key(key, problem, str(size), f"an {kind} of {least} or more")
     if size is not None and size * size > limits.FAMILY_MEMBERS:
         problem = f"{name} = {size} makes {size * size} entries"
         raise source.too_many(key, problem, size * size, "FAMILY_MEMBERS")
-    return Index(name=name, size=size, of_rows=True, from_zero=True)
+    return index
 
 
 def _find_defaults(
@@ -170,10 +178,10 @@ def _find_defaults(
         return {}  # so few rows have none of the last harmonics
     if not 0 < count < index.size**2:
         problem = f"the default has {count} parts" if count else "the default is no list"
-        expected = f"parts of 1 to {index.size**2 - 1} harmonics, degree by degree from 1 on"
+        expected = f"1 to {index.size**2 - 1} parts of {SURFACES[index.surface].parts}"
         raise source.fault(key, problem, count, expected)
     parts = [float(x) for x in read_default(source, key, given, (count,)) or ()]
-    rows = find_entries(index.size, parts)
+    rows = SURFACES[index.surface].find_entries(index.size, parts)
     return {variable: (tuple(Fraction(x) for row in rows for x in row),)}
 
 
@@ -186,9 +194,9 @@ def _write_out(source: Source, file: Any, count: str, variable: str, n: int) -> 
         name = member_name(variable, k)
         entries[name] = own.model_copy(update={"block": [label("X", k // n, k % n)]})
         places.repeat(("variables", variable), ("variables", name))
-    words = {count: str(n), DEGREE: "1"}
-    scale = re.sub(r"[A-Za-z]\w*", lambda found: words.get(found[0], found[0]), part.inertia)
-    terms = " + ".join(_list_terms(n, [*entries]))
+    surface = SURFACES[part.surface]
+    scale = put_numbers(part.inertia, {count: n, **surface.modes})
+    terms = " + ".join(surface.list_terms(n, [*entries]))
     update = {
         "truncation": {},
         "algebra": AlgebraPart.model_validate({"name": f"entries({n})"}),
@@ -200,50 +208,3 @@ def _write_out(source: Source, file: Any, count: str, variable: str, n: int) -> 
         places.repeat(inertia, key)
         places.forget_characters(key)
     return replace(source, positions=places.all), file.model_copy(update=update)
-
-
-def _list_terms(n: int, names: list[str]) -> Iterator[str]:
-    """``sum W_ij V_ij`` over the inertia of degree 1, where ``L V = W``, term by term.
-
-    On a diagonal the couplings are square roots of whole numbers b. With rows i over the product of
-    the roots before them L is rational, and so is its inverse.
-    """
-    for diagonal in range(1 - n, n):
-        rows = [i for i in range(n) if 0 <= i + diagonal < n]
-        own = [names[i * n + i + diagonal] for i in rows]
-        squares = [
-            (i + 1) * (n - 1 - i) * (j + 1) * (n - 1 - j) for i in rows for j in [i + diagonal]
-        ]
-        matrix = [[Fraction(0)] * len(rows) for _ in rows]
-        for a, i in enumerate(rows):
-            z, w = (Fraction(n - 1 - 2 * k, 2) for k in (i, i + diagonal))
-            matrix[a][a] = 2 * (Fraction(n * n - 1, 4) - z * w)
-            if a + 1 < len(rows):
-                matrix[a][a + 1], matrix[a + 1][a] = Fraction(-squares[a]), Fraction(-1)
-        if not diagonal:  # its couplings are whole numbers: the inverse but for multiples of 1
-            mean = Fraction(1, n)
-            whole = [[mean] * n for _ in rows]
-            for a in range(n):
-                for b in range(n):
-                    step = abs(a - b)
-                    root = isqrt(squares[min(a, b)]) if step == 1 else 0
-                    whole[a][b] += matrix[a][a] if a == b else -root
-            found = [[x - mean for x in row] for row in inverse(tuple(map(tuple, whole)))]
-            squares = [1] * n
-        else:
-            found = [list(row) for row in inverse(tuple(map(tuple, matrix)))]
-        for a in range(len(rows)):
-            for b in range(a, len(rows)):
-                # (1/2) 2 for b > a, and L = l (l + 1) is 2 in degree 1
-                value = found[a][b] * (2 if b > a else 1)
-                root = prod(squares[a:b])
-                if value:
-                    yield _write_term(value, root, own[a], own[b])
-
-
-def _write_term(value: Fraction, root: int, one: str, other: str) -> str:
-    """A number over a square root times two names."""
-    below = "" if root == 1 else f"/sqrt({root})"
-    if isqrt(root) ** 2 == root and root > 1:
-        value, below = value / isqrt(root), ""
-    return f"({value.numerator}/{value.denominator}){below}*{one}*{other}"
