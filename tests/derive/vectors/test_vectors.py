@@ -7,8 +7,14 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.derive.document import document
 from coadjoint.derive.vectors import vector_form
-from coadjoint.derive.vectors.balance import is_derived, momentum_balance
+from coadjoint.derive.vectors.balance import (
+    balance_lines,
+    is_derived,
+    momentum_balance,
+    speeds_of,
+)
 from coadjoint.derive.vectors.gradients import gradient, total_of
 from coadjoint.derive.vectors.recognise import recognise
 from coadjoint.derive.vectors.vocabulary import make_vocabulary
@@ -104,6 +110,15 @@ def test_a_balance_is_shown_only_if_it_is_what_the_kernel_solves():
     for place in range(len(right)):
         wrong = [-side if n == place else side for n, side in enumerate(right)]
         assert not is_derived(equations, left, wrong), place
+
+
+@pytest.mark.parametrize("name", ["chaplygin_ball", "veselova_so4"])
+def test_velocities_that_a_route_replaces_have_no_balance(name):
+    """Hamel's equations have no rates of some velocities: none of their lines is printed."""
+    equations = derive(shipped(name), "hamel")
+    assert not speeds_of(equations).keys() >= set(equations.setting.velocities)
+    assert balance_lines(equations) is None
+    assert document(equations).sections
 
 
 @pytest.mark.parametrize(

@@ -31,10 +31,13 @@ def balance_lines(equations: Equations) -> VectorForm | None:
     """The balance of momenta under constraints, with the forces that these exert; None without one.
 
     Lagrange and d'Alembert's law is built from the algebra; it is shown only if it is the system
-    that the kernel solves, row by row, once the multipliers are put in.
+    that the kernel solves, row by row, once the multipliers are put in. A route in other velocities,
+    as Hamel's, has no rates of these.
     """
     setting, spec = equations.setting, equations.spec
     field, names = setting.field, setting.velocities
+    if not speeds_of(equations).keys() >= set(names):
+        return None
     if spec.algebra is None or spec.lagrangian is None or spec.variational or spec.dissipation:
         return None
     if any(each.left.shape != each.right.shape for each in spec.constraints):
@@ -105,14 +108,22 @@ def momentum_balance(equations: Equations) -> tuple[list[Element], list[Element]
         for a, b, multiplier in zip(*sides, multipliers, strict=False):
             work += multiplier * (a - b)
     right = [r + w for r, w in zip(right, field.gradient(work, names), strict=True)]
-    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
-    moving = [*names, *(n for n in equations.variables if n not in names)]
-    known = {name for name, _ in equations.exact.definitions}
-    speeds = {n: field[f"d{n}_dt"] if f"d{n}_dt" in known else rates[n] for n in moving}
+    speeds = speeds_of(equations)
     left = [
         field.sum(field.derivative(p, n) * speed for n, speed in speeds.items()) for p in momenta
     ]
     return left, right
+
+
+def speeds_of(equations: Equations) -> dict[str, Element]:
+    """The rates of velocities and variables, by the names of what the kernel solves for."""
+    field = equations.setting.field
+    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
+    solved = {name for name, _ in equations.exact.definitions}
+    for name in (*equations.setting.velocities, *equations.variables):
+        if f"d{name}_dt" in solved:
+            rates[name] = field[f"d{name}_dt"]
+    return rates
 
 
 def is_derived(equations: Equations, left: Sequence[Element], right: Sequence[Element]) -> bool:
