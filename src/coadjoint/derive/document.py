@@ -7,10 +7,8 @@ of a format must escape. Read next: `coadjoint.render.document`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 from coadjoint.derive.charts import declared_charts
@@ -19,6 +17,7 @@ from coadjoint.derive.generic import show_members
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
 from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
+from coadjoint.derive.theorems import find_theorem
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vectors.vocabulary import value_shape
 from coadjoint.exact import Element, Field, element_text
@@ -148,24 +147,13 @@ def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
 def _principle(equations: Equations) -> Section:
     """The theorem that the route follows."""
     route = equations.route
-    words = [("route", route), ("theorem", theorem_of(route))]
+    words = [("route", route), ("theorem", find_theorem(route).text)]
     others = [each for each in equations.spec.routes if each != route]
     if others:
         words.append(("proved equal to", ", ".join(others)))
     return Section(
         title="Principle", law="", law_latex="", lines=(), words=tuple(words), kind="principle"
     )
-
-
-def theorem_of(route: str) -> str:
-    """Where the theorem of a route stands, as its module says.
-
-    >>> theorem_of("lie-poisson")
-    'Holm 2011, sections 2.5.2 and 9.4'
-    """
-    module = import_module(f"coadjoint.derive.routes.{route.replace('-', '_')}")
-    found = re.search(r"(?:Theorem|Law|Principle) \(([^)]*)\)", module.__doc__ or "")
-    return " ".join(found[1].split()) if found else "see the steps"
 
 
 def _symbols(equations: Equations, names: _Names) -> Section:
@@ -302,7 +290,12 @@ def _chart(chart: Equations) -> Iterator[Section]:
     lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
     where = tuple((each.text, "throughout") for each in own.relations)
     yield Section(
-        title=f"Chart {own.name}", law="x = x(y)", law_latex="x = x(y)", lines=lines, words=where
+        title=f"Chart {own.name}",
+        law="x = x(y)",
+        law_latex="x = x(y)",
+        lines=lines,
+        words=where,
+        theorem=find_theorem("chart").text,
     )
     yield from (_section(chart, step) for step in chart.steps)
 
@@ -330,7 +323,13 @@ def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
 def _section(equations: Equations, step: Step) -> Section:
     field = equations.setting.field
     lines = tuple(formula_line(field, left, right) for left, right in step.lines)
-    return Section(title=step.title, law=step.text, law_latex=step.latex, lines=lines)
+    return Section(
+        title=step.title,
+        law=step.text,
+        law_latex=step.latex,
+        lines=lines,
+        theorem=step.theorem.text,
+    )
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

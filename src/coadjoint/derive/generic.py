@@ -55,10 +55,11 @@ def show_members(equations: Equations) -> Iterator[Section]:
             law="what increments of Wiener processes do to it, in the sense of Stratonovich",
             law_latex="",
             lines=tuple(_write_noise(names, family)),
+            kind="members",
         )
     if ends:
         law = "members that lack a neighbour, the first one being 0 and the last one N-1"
-        yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends))
+        yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends), kind="members")
 
 
 def _show_matrices(equations: Equations, family: Family) -> Section:

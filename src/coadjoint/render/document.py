@@ -66,6 +66,7 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
 def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     """A document with everything that templates ask for, which may be empty."""
     empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
+    empty |= {"theorem": ""}
     sections = [{**empty, **section} for section in document["sections"]]
     return {"picture": "", "caption": "", **document, "sections": sections}
 
