@@ -66,7 +66,9 @@ def test_an_unknown_theorem_is_an_error():
     """With what was found, and the nearest key of the table."""
     with pytest.raises(LookupError, match=r"'legnedre'.*Did you mean 'legendre'"):
         write_step("Momenta", "mu", by="legnedre")
-    with pytest.raises(LookupError, match=r"rests on 'x'; expected a key of THEOREMS. Add it there"):
+    with pytest.raises(
+        LookupError, match=r"rests on 'x'; expected a key of THEOREMS. Add it there"
+    ):
         find_theorem("x")
 
 
