@@ -13,7 +13,7 @@ from typing import Any
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.generic import show_members
+from coadjoint.derive.generic import fold_step, show_members
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
 from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
@@ -66,7 +66,7 @@ def document(equations: Equations) -> Document:
     if spec.definitions:
         sections.append(_definitions(spec.definitions, names))
     sections.append(_principle(equations))
-    sections += [_section(equations, step) for step in equations.steps]
+    sections += [_section(equations, step, names) for step in equations.steps]
     sections += [*_bracket(equations), *_observables(equations, names)]
     if equations.chart is None and equations.route == spec.routes[0]:
         sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
@@ -320,14 +320,27 @@ def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
     )
 
 
-def _section(equations: Equations, step: Step) -> Section:
-    field = equations.setting.field
-    lines = tuple(formula_line(field, left, right) for left, right in step.lines)
+def _section(equations: Equations, step: Step, names: _Names | None = None) -> Section:
+    """A step; of equal members that of one, with energies as the sums that the spec declares."""
+    field, spec = equations.setting.field, equations.spec
+    words: tuple[tuple[str, str], ...] = ()
+    declared = dict[str, tree.Node]()
+    if names is not None and spec.family is not None:
+        step, words = fold_step(equations, step)
+        given = {"l": spec.lagrangian, "h": spec.hamiltonian}
+        declared = {name: each.sums for name, each in given.items() if each and each.sums}
+    lines = tuple(
+        equal(left, names.write(declared[left.text]))
+        if names is not None and left.text in declared
+        else formula_line(field, left, right)
+        for left, right in step.lines
+    )
     return Section(
         title=step.title,
         law=step.text,
         law_latex=step.latex,
         lines=lines,
+        words=words,
         theorem=step.theorem.text,
     )
 
