@@ -29,6 +29,7 @@ from coadjoint.solve.scenes import (
     find_paths,
     find_sphere,
 )
+from coadjoint.solve.vehicles import Vehicle, draw_vehicle, find_vehicle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,7 +85,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
     paths = find_paths(solution) if len(solution) > 1 else None
     sphere = "" if paths else find_sphere(solution)
-    strip = 0.14 if paths or sphere else 0.2  # drift is no third of a picture
+    vehicle = None if paths or sphere else find_vehicle(solution)
+    strip = 0.14 if paths or sphere or vehicle else 0.2  # drift is no third of a picture
     if sphere or (paths and paths.members.shape[1] == 3):
         figure.set_size_inches(7.2, 6.4)
     conserved = bool(solution.conserved)
@@ -93,6 +95,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
         _draw_paths(figure, grid[0], solution, paths)
     elif sphere:
         _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
+    elif vehicle:
+        _draw_vehicle(figure, grid[0], solution, vehicle)
     else:
         _draw_components(figure, grid[0], solution)
     if conserved:
@@ -183,6 +187,19 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     if several:
         axes.legend(fontsize=8, frameon=False, **AT_RIGHT)
     axes.set_title("open circle: start, filled: end", fontsize=9, color="#5b6570")
+
+
+def _draw_vehicle(figure: Any, place: Any, solution: Solution, vehicle: Vehicle) -> None:
+    """A vehicle in the plane, and the trace of the point that its place is."""
+    axes = figure.add_subplot(place)
+    lines = draw_coloured(axes, vehicle.place, solution.time)
+    _time_bar(figure, axes, lines, solution)
+    axes.coadjoint_body = draw_vehicle(axes, vehicle)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"x {unit_label(vehicle.unit)}", fontsize=9)
+    axes.set_ylabel(f"y {unit_label(vehicle.unit)}", fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.grid(alpha=0.3)
 
 
 def _limit_space(axes: Any, paths: Paths) -> None:
