@@ -85,8 +85,8 @@ class BodyScene extends Scene {
       this.sizes = scaled(0.94 / out, this.sizes); // corners within the ellipsoid
     }
     this.below = this.weighs ? -Math.max(1.5, norm(this.arm) + 1.05 * Math.hypot(...this.sizes)) : -1.5;
-    this.camera.distance = this.weighs ? 7 : scene.moving ? 7.5 : 5;
-    this.camera.target = [0, 0, this.weighs ? -0.35 : 0];
+    this.camera.distance = this.weighs ? 7.6 : scene.moving ? 7.5 : 5;
+    this.camera.target = [0, 0, this.weighs ? -0.1 : 0]; // tips of arrows stand above what weighs
   }
   moving() { if (this.model.u.length) return; this.shape(); }
   place() { return rotate(this.flip, scene.moving ? this.model.position : [0, 0, 0]); }
