@@ -227,7 +227,7 @@ class RollingScene extends Scene {
     for (const p of points) if (!p.every(Number.isFinite)) p.fill(0);
     this.own = this.drawing.mesh(smooth(points.map((p) => scaled(1 / this.size, p)), triangles));
     this.spread = Math.max(...finite.map((p) => Math.abs(p[2]))) / this.size;
-    this.camera.distance = 5.5 * this.size;
+    this.camera.distance = 6.4 * this.size;
     this.camera.pitch = 0.42;
   }
   moving() { const { distance, pitch } = this.camera; this.surface(); Object.assign(this.camera, { distance, pitch }); }

@@ -31,9 +31,13 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
     """
     from coadjoint.solve.plot import draw
 
+    # what follows from a motion, as a place, is drawn where there is some
+    reconstruct = bool(system.RECONSTRUCTED)
     with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
         warnings.simplefilter("ignore")
-        solution = system.simulate(state, (0.0, SPAN), samples=SAMPLES, progress=False)
+        solution = system.simulate(
+            state, (0.0, SPAN), samples=SAMPLES, progress=False, reconstruct=reconstruct
+        )
     place = io.BytesIO()
     draw(solution).savefig(place, format="png", dpi=RESOLUTION)
     data = base64.b64encode(_take_colours(place)).decode("ascii")

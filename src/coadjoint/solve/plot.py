@@ -16,7 +16,7 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
-from coadjoint.notation.names import GREEK
+from coadjoint.notation.names import spell
 from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.scenes import (
@@ -224,9 +224,9 @@ def _limit_space(axes: Any, paths: Paths) -> None:
 
 def _component(name: str) -> str:
     """A component as a symbol with its number below."""
-    base = name.rstrip("0123456789")
-    number = name.removeprefix(base)
-    return f"{_symbol(base)}$_{{{number}}}$" if number else _symbol(base)
+    whole, bracket, member = name.partition("[")  # of a member: its number stands in brackets
+    letter, below = spell(whole)
+    return (f"{letter}$_{{{below}}}$" if below else letter) + bracket + member
 
 
 def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
@@ -266,7 +266,7 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
     axes.coadjoint_path = vector[np.newaxis]
     axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
     axes.scatter(*vector[:, -1:], color="#000000", s=36, marker="s", zorder=4, label="end")
-    symbol, unit = _symbol(name), unit_label(solution.system.STATE[name].unit)
+    symbol, unit = _component(name), unit_label(solution.system.STATE[name].unit)
     _style_space(axes, [f"{symbol}$_{n}$ {unit}" for n in (1, 2, 3)])
     axes.set_proj_type("ortho")  # its horizon is where `faces_viewer` has it
     axes.view_init(*angles(toward))
@@ -299,14 +299,16 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         if torus is not None:
             _draw_plane(figure, panels[n], solution, name, torus)
             continue
-        if len(quantity.components) > LINES:
+        most = LEGEND_ROWS if isinstance(solution.system, FamilySystem) else LINES
+        if len(quantity.components) > most:
             _draw_rows(figure, panels[n], solution, name, ends=n == len(quantities) - 1)
             continue
         axes = figure.add_subplot(panels[n], sharex=shared)
         shared = shared or axes
         for stroke, component in zip(_strokes(), quantity.components, strict=False):
-            axes.plot(solution.time, solution[component], linewidth=1.0, label=component, **stroke)
-        axes.set_ylabel(f"{_symbol(name)} {unit_label(quantity.unit)}", fontsize=9)
+            label = _component(component)
+            axes.plot(solution.time, solution[component], linewidth=1.0, label=label, **stroke)
+        axes.set_ylabel(f"{_component(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
         size = 8 if columns == 1 else 6.5
@@ -331,7 +333,10 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         lower = str(n + 1) * (len(parts) > 1)
         bar = figure.colorbar(colours, ax=axes, pad=0.01)
         unit = unit_label(_unit_of(quantity.unit, n, len(parts)))
-        bar.set_label(f"{_symbol(name)}$_{{{lower}}}$ {unit}", fontsize=9)
+        if n and unit == unit_label(_unit_of(quantity.unit, n - 1, len(parts))):
+            unit = ""  # that of the panel before; panels are low
+        label = f"{_component(name)}$_{{{lower}}}$" if lower else _component(name)
+        bar.set_label(f"{label} {unit}".rstrip(), fontsize=9 if len(parts) < STACKED else 7)
         bar.ax.tick_params(labelsize=8)
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
@@ -371,7 +376,7 @@ def _draw_plane(figure: Any, place: Any, solution: Solution, name: str, torus: T
         axes.set_ylabel(torus.coordinates[1] * (n % 2 == 0), fontsize=9)
     axes.coadjoint_field = colours, values  # in a film the last one moves
     bar = figure.colorbar(colours, ax=every, pad=0.02, aspect=40)
-    bar.set_label(f"{_symbol(name)} {unit_label(solution.system.STATE[name].unit)}", fontsize=9)
+    bar.set_label(f"{_component(name)} {unit_label(solution.system.STATE[name].unit)}", fontsize=9)
     bar.ax.tick_params(labelsize=8)
 
 
@@ -456,9 +461,5 @@ def _strokes() -> Iterator[dict[str, str]]:
 def unit_label(unit: str) -> str:
     """A unit for an axis, its exponents raised."""
     raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
-    return "" if unit in ("", "1") else f"[{raised}]"
-
-
-def _symbol(name: str) -> str:
-    """A Greek name as its letter, in matplotlib's own TeX; other names as they are."""
-    return rf"$\{name}$" if name in GREEK else name
+    several = len(set(unit.split(", "))) > 1  # one for each component: the axis has none of its own
+    return "" if unit in ("", "1") or several else f"[{raised}]"
