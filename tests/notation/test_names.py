@@ -27,8 +27,8 @@ from coadjoint.spec.core.expressions import read_expression
     [
         ("Pi1", r"\Pi_1"),
         ("dPi1_dt", r"\dot{\Pi}_1"),
-        ("vphi", r"v_\phi"),
-        ("ptheta", r"p_\theta"),
+        ("vphi", r"v_{\phi}"),
+        ("ptheta", r"p_{\theta}"),
         ("psi", r"\psi"),
         ("M12", "M_{12}"),
         ("M_1_10", "M_{1,10}"),
