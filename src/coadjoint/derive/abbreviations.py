@@ -31,9 +31,9 @@ def abbreviate(
         names: Names for parts, in order; `number_names` makes them.
 
     >>> a, b, c = sympy.symbols("a b c")
-    >>> long = sum((a + b * c) ** n for n in range(1, 20))
+    >>> long = sum((a + b * c**2) ** n for n in range(1, 20))
     >>> abbreviate([long], number_names(["a", "b", "c"]))[0]
-    ((w1, a + b*c),)
+    ((w1, a + b*c**2),)
     """
     if max((value.count_ops() for value in values), default=0) <= LONGEST:
         return (), tuple(values)
