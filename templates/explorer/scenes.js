@@ -85,8 +85,8 @@ class BodyScene extends Scene {
       this.sizes = scaled(0.94 / out, this.sizes); // corners within the ellipsoid
     }
     this.below = this.weighs ? -Math.max(1.5, norm(this.arm) + 1.05 * Math.hypot(...this.sizes)) : -1.5;
-    this.camera.distance = this.weighs ? 7 : scene.moving ? 7.5 : 5;
-    this.camera.target = [0, 0, this.weighs ? -0.35 : 0];
+    this.camera.distance = this.weighs ? 7.6 : scene.moving ? 7.5 : 5;
+    this.camera.target = [0, 0, this.weighs ? -0.1 : 0]; // tips of arrows stand above what weighs
   }
   moving() { if (this.model.u.length) return; this.shape(); }
   place() { return rotate(this.flip, scene.moving ? this.model.position : [0, 0, 0]); }
@@ -227,7 +227,7 @@ class RollingScene extends Scene {
     for (const p of points) if (!p.every(Number.isFinite)) p.fill(0);
     this.own = this.drawing.mesh(smooth(points.map((p) => scaled(1 / this.size, p)), triangles));
     this.spread = Math.max(...finite.map((p) => Math.abs(p[2]))) / this.size;
-    this.camera.distance = 5.5 * this.size;
+    this.camera.distance = 6.4 * this.size;
     this.camera.pitch = 0.42;
   }
   moving() { const { distance, pitch } = this.camera; this.surface(); Object.assign(this.camera, { distance, pitch }); }

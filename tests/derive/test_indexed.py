@@ -363,13 +363,29 @@ def test_a_document_shows_the_generic_member_and_the_ends():
         "dp[i]/dt = -exp(-q[i+1] + q[i]) + exp(q[i-1] - q[i])",
     ]
     assert generic.lines[0].latex == r"\dot{q}_i &= p_i"
-    assert [line.text for line in ends.lines[1::2]] == [
+    assert [line.text for line in ends.lines] == [  # dq/dt = p is that of every member
         "dp[0]/dt = -exp(q[0] - q[1])",
         "dp[N-1]/dt = exp(-q[N-1] + q[N-2])",
     ]
     for line in (*generic.lines, *ends.lines):
         ET.fromstring(line.mathml)
     assert generic.law.endswith("the steps that follow are those of 4 members")
+
+
+def test_steps_of_a_document_show_one_member():
+    """Of one with all its neighbours; the energy is a sum, and no rate is repeated."""
+    equations = derive(shipped("toda_lattice"))
+    steps = {each.title: each for each in document(equations).sections if each.kind == "step"}
+    (energy,) = steps["Hamiltonian"].lines
+    assert energy.text.startswith("h = sum(")
+    slopes = [line.text for line in steps["Derivatives of the Hamiltonian"].lines]
+    assert [text.split(" = ")[0] for text in slopes] == ["dh/dq_2", "dh/dp_2"]
+    assert steps["Derivatives of the Hamiltonian"].words == (
+        ("shown", "member 2; left out are the lines of 0, 1, 3"),
+    )
+    assert not steps["Hamilton's equations"].lines
+    assert [name for name, _ in steps["Hamilton's equations"].words] == ["rates"]
+    assert len(equations.steps[-1].lines) == 8  # which are those of all members
 
 
 def test_a_document_shows_sums_over_partners():

@@ -27,6 +27,9 @@ from coadjoint.spec.core.expressions import read_expression
     [
         ("Pi1", r"\Pi_1"),
         ("dPi1_dt", r"\dot{\Pi}_1"),
+        ("vphi", r"v_{\phi}"),
+        ("ptheta", r"p_{\theta}"),
+        ("psi", r"\psi"),
         ("M12", "M_{12}"),
         ("M_1_10", "M_{1,10}"),
         ("r_0_1", "r_{0,1}"),
@@ -146,3 +149,19 @@ def test_laws_become_mathml():
     assert to_mathml(r"\write18{rm}") is None
     assert is_formula(r"\mu = p", "mu = p")
     assert not is_formula("imposed after the variation", "imposed after the variation")
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        ("K[2] + K[3] - K[1]", "K2 + K3 - K1"),
+        ("A[1, 2]", "A12"),
+        ("B[1, 10]", "B_1_10"),
+        ("r1[2]", "r1_2"),
+        ("cross(K, r1)[3]", "(K x r1)_3"),
+    ],
+)
+def test_components_keep_their_numbers_in_text(formula, text):
+    """As in the other formats, by the names that components have where they are written out."""
+    shapes = {"K": (3,), "A": (2, 2), "B": (10, 10), "r1": (3,)}
+    assert write_tree(read_expression(formula), shapes).text == text

@@ -21,6 +21,7 @@ from coadjoint.render.document import (
     WIDTH,
     escape_latex,
     escape_typst,
+    leave_out_repeated,
     render_document,
     split_sides,
 )
@@ -283,3 +284,33 @@ def test_declared_charts_are_shown():
     whole = asdict(document(derive(spec(PLANE, ("MOTION", RATES)))))
     for form in FORMATS:
         assert "Chart polar" in render_document(whole, form)
+
+
+def long_rates(vectors):
+    """The lead and the last step of a page, with the same lines."""
+    lines = [{"mathml": f"<math><mi>a{n}</mi></math>" + " " * 9000} for n in range(3)]
+    other = {"mathml": "<math><mi>b</mi></math>"}
+    lead = {"title": "Motion", "kind": "motion", "lines": lines, "vectors": vectors, "words": ()}
+    step = {"title": "Law", "kind": "step", "lines": [*lines, other], "words": ()}
+    return [lead, {**step, "title": "Before", "lines": [other]}, step]
+
+
+def test_long_rates_stand_once_on_a_page():
+    """In their step where the lead has vectors, else in the lead."""
+    lead, before, step = leave_out_repeated(long_rates(["dPi/dt = Pi x Omega"]))
+    assert (len(lead["lines"]), len(before["lines"]), len(step["lines"])) == (0, 1, 4)
+    assert lead["words"] == [("in components", "see Law")]
+    lead, before, step = leave_out_repeated(long_rates([]))
+    assert (len(lead["lines"]), len(before["lines"]), len(step["lines"])) == (3, 1, 1)
+    assert step["words"] == [("rates", "see Motion")]
+
+
+def test_rates_that_differ_from_the_lead_stay():
+    """A step with another right side is no repetition, and short ones stand twice."""
+    sections = long_rates([])
+    sections[2]["lines"] = [
+        dict(line, mathml=line["mathml"] + "!") for line in sections[2]["lines"]
+    ]
+    assert leave_out_repeated(sections) == sections
+    short = [{**each, "lines": [{"mathml": "<math/>"}]} for each in long_rates([])]
+    assert leave_out_repeated(short) == short

@@ -41,9 +41,9 @@ def test_the_body_is_drawn_on_its_sphere_and_the_top_by_its_vertical(body):
 
     assert isinstance(plot_figure(body), Figure)
     titles = [axes.get_title() for axes in plot_figure(body).axes]
-    assert any(r"\Pi" in title and "sphere" in title for title in titles)
+    assert any("Π" in title and "sphere" in title for title in titles)
     top = heavy_top.simulate([0.3, 0, 2.0, 0.6, 0, 0.8], (0, 5), samples=100)
-    assert any(r"\Gamma" in axes.get_title() for axes in plot_figure(top).axes)
+    assert any("Γ" in axes.get_title() for axes in plot_figure(top).axes)
 
 
 def plot_figure(solution):
@@ -63,7 +63,7 @@ def test_components_are_drawn_where_there_is_no_sphere(body, tmp_path):
     spoiled = rigid_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=50)
     spoiled.state[0] *= np.linspace(1, 2, 50)
     labels = [text.get_text() for axes in plot_figure(spoiled).axes for text in legend(axes)]
-    assert {"Pi1", "Pi2", "Pi3"} <= set(labels)
+    assert {"Π$_{1}$", "Π$_{2}$", "Π$_{3}$"} <= set(labels)
 
 
 def legend(axes):

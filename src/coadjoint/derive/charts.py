@@ -111,7 +111,7 @@ def _equations(setting: Setting, chart: DeclaredChart) -> Equations:
     motion = in_chart(setting, chart.name, rates, image, through, relations=relations)
     assert motion.chart is not None, "just made"
     lines = write_rates(tuple(rates), rates.values())
-    step = write_step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines)
+    step = write_step("Motion in the chart", "dy/dt = Y(y)", r"\dot y = Y(y)", lines, by="chart")
     return replace(motion, chart=replace(motion.chart, name=chart.name), steps=(step,))
 
 

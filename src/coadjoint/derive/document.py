@@ -7,18 +7,17 @@ of a format must escape. Read next: `coadjoint.render.document`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.generic import show_members
+from coadjoint.derive.generic import fold_step, show_members
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
 from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
 from coadjoint.derive.setting import Declared
+from coadjoint.derive.theorems import find_theorem
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vectors.vocabulary import value_shape
 from coadjoint.exact import Element, Field, element_text
@@ -67,7 +66,7 @@ def document(equations: Equations) -> Document:
     if spec.definitions:
         sections.append(_definitions(spec.definitions, names))
     sections.append(_principle(equations))
-    sections += [_section(equations, step) for step in equations.steps]
+    sections += [_section(equations, step, names) for step in equations.steps]
     sections += [*_bracket(equations), *_observables(equations, names)]
     if equations.chart is None and equations.route == spec.routes[0]:
         sections += [part for chart in declared_charts(equations) for part in _chart(chart)]
@@ -148,24 +147,13 @@ def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
 def _principle(equations: Equations) -> Section:
     """The theorem that the route follows."""
     route = equations.route
-    words = [("route", route), ("theorem", theorem_of(route))]
+    words = [("route", route), ("theorem", find_theorem(route).text)]
     others = [each for each in equations.spec.routes if each != route]
     if others:
         words.append(("proved equal to", ", ".join(others)))
     return Section(
         title="Principle", law="", law_latex="", lines=(), words=tuple(words), kind="principle"
     )
-
-
-def theorem_of(route: str) -> str:
-    """Where the theorem of a route stands, as its module says.
-
-    >>> theorem_of("lie-poisson")
-    'Holm 2011, sections 2.5.2 and 9.4'
-    """
-    module = import_module(f"coadjoint.derive.routes.{route.replace('-', '_')}")
-    found = re.search(r"(?:Theorem|Law|Principle) \(([^)]*)\)", module.__doc__ or "")
-    return " ".join(found[1].split()) if found else "see the steps"
 
 
 def _symbols(equations: Equations, names: _Names) -> Section:
@@ -302,7 +290,12 @@ def _chart(chart: Equations) -> Iterator[Section]:
     lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
     where = tuple((each.text, "throughout") for each in own.relations)
     yield Section(
-        title=f"Chart {own.name}", law="x = x(y)", law_latex="x = x(y)", lines=lines, words=where
+        title=f"Chart {own.name}",
+        law="x = x(y)",
+        law_latex="x = x(y)",
+        lines=lines,
+        words=where,
+        theorem=find_theorem("chart").text,
     )
     yield from (_section(chart, step) for step in chart.steps)
 
@@ -327,10 +320,29 @@ def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
     )
 
 
-def _section(equations: Equations, step: Step) -> Section:
-    field = equations.setting.field
-    lines = tuple(formula_line(field, left, right) for left, right in step.lines)
-    return Section(title=step.title, law=step.text, law_latex=step.latex, lines=lines)
+def _section(equations: Equations, step: Step, names: _Names | None = None) -> Section:
+    """A step; of equal members that of one, with energies as the sums that the spec declares."""
+    field, spec = equations.setting.field, equations.spec
+    words: tuple[tuple[str, str], ...] = ()
+    declared = dict[str, tree.Node]()
+    if names is not None and spec.family is not None:
+        step, words = fold_step(equations, step)
+        given = {"l": spec.lagrangian, "h": spec.hamiltonian}
+        declared = {name: each.sums for name, each in given.items() if each and each.sums}
+    lines = tuple(
+        equal(left, names.write(declared[left.text]))
+        if names is not None and left.text in declared
+        else formula_line(field, left, right)
+        for left, right in step.lines
+    )
+    return Section(
+        title=step.title,
+        law=step.text,
+        law_latex=step.latex,
+        lines=lines,
+        words=words,
+        theorem=step.theorem.text,
+    )
 
 
 def equation_lines(equations: Equations) -> tuple[str, ...]:

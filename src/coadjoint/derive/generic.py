@@ -6,15 +6,17 @@ ends of an open chain. Read next: `coadjoint.derive.indexed`, which reads them o
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import sympy
 
+from coadjoint.derive.abbreviations import abbreviate, number_names
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.lines import Line, Section, equal, write_line
-from coadjoint.derive.records import Left, member, symbol
+from coadjoint.derive.records import Left, Step, member, rate, symbol
 from coadjoint.derive.truncated import tell_motion
 from coadjoint.families import Family
 from coadjoint.notation.elements import write_sympy
@@ -30,35 +32,86 @@ def show_members(equations: Equations) -> Iterator[Section]:
     if family.matrices is not None:
         yield _show_matrices(equations, family)
         return
-    i, written = family.index.name, len(equations.spec.state)
-    declared = equations.spec.family
-    assert declared is not None, equations.spec.name
+    i, written = family.index.name, count_written(equations)
     kind = "a ring" if family.index.periodic else "an open chain" if family.ends else "a system"
-    written //= len(declared.variables)
     names = _name_around(family, i, {n: f"{i}{n:+d}" for n in _list_shifts(family)})
+    taken = {each.name for each in (*names, *family.shared)} | {each.name for each in family.time}
+    short = number_names(taken)
+    rates = tuple(_write_rates(names, family.states, family.rates, short))
+    told = (
+        f"; {rates[0].text.split()[0]} and the like stand for parts of rates"
+        if len(rates) > len(family.states)
+        else ""
+    )
     pairs = [_write_pairs(names, each.symbol, each.term, family) for each in family.pair_sums]
     yield Section(
         title=f"Equations of member {i}",
         law=f"{kind} of N members, N >= {family.small}; the steps that follow are those of "
-        f"{written} members",
+        f"{written} members{told}",
         law_latex="",
-        lines=(*_write_rates(names, family.states, family.rates), *pairs),
+        lines=(*rates, *pairs),
     )
-    ends = [
-        line
-        for end, rates in family.ends.items()
-        for line in _write_rates(_name_at(family, end), family.states, rates)
-    ]
     if family.noise:
         yield Section(
             title=f"Noise of member {i}",
             law="what increments of Wiener processes do to it, in the sense of Stratonovich",
             law_latex="",
             lines=tuple(_write_noise(names, family)),
+            kind="members",
         )
+    ends = tuple(_write_ends(family, short))
     if ends:
-        law = "members that lack a neighbour, the first one being 0 and the last one N-1"
-        yield Section(title="Ends", law=law, law_latex="", lines=tuple(ends))
+        law = "what differs of members that lack a neighbour; the first one is 0, the last one N-1"
+        yield Section(title="Ends", law=law, law_latex="", lines=ends, kind="members")
+
+
+def _write_ends(family: Family, short: Iterator[sympy.Symbol]) -> Iterator[Line]:
+    """What differs of members at the ends from the generic one."""
+    for end, rates in family.ends.items():
+        pairs = zip(family.states, rates, family.rates, strict=True)
+        own = {state: rate for state, rate, generic in pairs if rate != generic}
+        yield from _write_rates(_name_at(family, end), [*own], [*own.values()], short)
+
+
+def count_written(equations: Equations) -> int:
+    """The number of members whose equations are derived one by one."""
+    declared = equations.spec.family
+    assert declared is not None, equations.spec.name
+    return len(equations.spec.state) // len(declared.variables)
+
+
+def fold_step(equations: Equations, step: Step) -> tuple[Step, tuple[tuple[str, str], ...]]:
+    """A step with the lines of one member alone, and what is said of the others.
+
+    The member in the middle has all its neighbours. Rates are left out: they are those of the
+    generic member, which the document begins with.
+    """
+    declared = equations.spec.family
+    assert declared is not None, equations.spec.name
+    names = "|".join(map(re.escape, (*declared.variables, *declared.indexed)))
+    # entries of matrices have two numbers in the place of one
+    digits = r"\d+_\d+" if declared.index.of_rows else r"\d+"
+    place = re.compile(rf"(?<![A-Za-z0-9_])d?(?:{names})_({digits})(?![0-9])")
+    members = [(line, place.search(line[0].text)) for line in step.lines]
+    numbers = sorted(
+        {found[1] for _, found in members if found}, key=lambda n: [int(x) for x in n.split("_")]
+    )
+    rates = {rate(name).text for name in equations.setting.state}
+    moving = [line for line in step.lines if line[0].text in rates]
+    middle = numbers[len(numbers) // 2] if numbers else ""
+    kept = tuple(
+        line
+        for line, found in members
+        if line[0].text not in rates and (found is None or found[1] == middle)
+    )
+    words = []
+    if len(kept) + len(moving) < len(step.lines):
+        others = ", ".join(n.replace("_", " ") for n in numbers if n != middle)
+        shown = middle.replace("_", " ")
+        words.append(("shown", f"member {shown}; left out are the lines of {others}"))
+    if moving:
+        words.append(("rates", "those of the generic member, in the equations of motion above"))
+    return replace(step, lines=kept), tuple(words)
 
 
 def _show_matrices(equations: Equations, family: Family) -> Section:
@@ -102,10 +155,16 @@ def _other(family: Family) -> str:
 
 
 def _write_rates(
-    names: Names, states: Sequence[sympy.Symbol], rates: Sequence[sympy.Expr]
+    names: Names,
+    states: Sequence[sympy.Symbol],
+    rates: Sequence[sympy.Expr],
+    short: Iterator[sympy.Symbol],
 ) -> Iterator[Line]:
-    """The rates of a member."""
-    for state, value in zip(states, rates, strict=True):
+    """The rates of a member, and before them what parts of long ones are called."""
+    parts, values = abbreviate(rates, short)
+    for part, value in parts:
+        yield write_line(symbol(part.name), _write(value, names), value.as_ordered_terms(), names)
+    for state, value in zip(states, values, strict=True):
         place = names[state].text.partition("[")[2].removesuffix("]")
         left = member(state.name, place, dot=True)
         yield write_line(left, _write(value, names), value.as_ordered_terms(), names)

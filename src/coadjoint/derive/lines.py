@@ -42,6 +42,7 @@ class Section:
         vectors: The lines once more for whole vectors and matrices; empty where none was found.
         kind: What part of a chapter it is: a ``step``, ``symbols``, ``bracket`` and others.
         rows: Rows of words, the first one being the heads; empty if none.
+        theorem: What a step rests on, by name and number; empty of what is no step.
     """
 
     title: str
@@ -53,6 +54,7 @@ class Section:
     vectors: tuple[Line, ...] = ()
     kind: str = "step"
     rows: tuple[tuple[Line | str, ...], ...] = ()
+    theorem: str = ""
 
 
 def formula(field: Field, element: Element) -> Line:

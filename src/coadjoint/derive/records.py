@@ -14,6 +14,7 @@ from enum import Enum
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.setting import shape
+from coadjoint.derive.theorems import Theorem, find_theorem
 from coadjoint.exact import Element
 from coadjoint.notation import names
 from coadjoint.notation.written import Written, enclose
@@ -92,12 +93,14 @@ class Step:
         title: What is done.
         text: The general law as plain text, from the theorem and not from the spec.
         latex: The same law as LaTeX.
+        theorem: What it rests on.
         lines: Left and right sides of what it gives for this system.
     """
 
     title: str
     text: str
     latex: str
+    theorem: Theorem
     lines: tuple[tuple[Left, Element], ...] = ()
 
 
@@ -105,11 +108,23 @@ class Step:
 Lines = Mapping[str, Element] | Iterable[tuple[str | Left, Element]]
 
 
-def write_step(title: str, text: str, latex: str = "", lines: Lines = ()) -> Step:
-    """A step with its lines; the law in LaTeX is the plain text unless it is given."""
+def write_step(title: str, text: str, latex: str = "", lines: Lines = (), *, by: str) -> Step:
+    """A step with its lines; the law in LaTeX is the plain text unless it is given.
+
+    ``by`` is the key of the theorem that the step rests on, in `coadjoint.derive.theorems`.
+
+    Raises:
+        LookupError: No theorem has this key.
+    """
     pairs = lines.items() if isinstance(lines, Mapping) else lines
     written = ((symbol(a) if isinstance(a, str) else a, value) for a, value in pairs)
-    return Step(title, text, latex or text, tuple(written))
+    return Step(
+        title=title,
+        text=text,
+        latex=latex or text,
+        theorem=find_theorem(by),
+        lines=tuple(written),
+    )
 
 
 def write_rates(names: Sequence[str], values: Iterable[Element]) -> Iterator[tuple[Left, Element]]:

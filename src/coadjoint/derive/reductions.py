@@ -176,15 +176,19 @@ def _steps(
             "dx/dt = X(x, y),  dy/dt = Y(x, y)",
             r"\dot x = X(x, y), \quad \dot y = Y(x, y)",
             write_rates(tuple(restriction.rates), restriction.rates.values()),
+            by=route,
         ),
-        write_step("Section that it keeps", "y = s(x)", lines=restriction.section),
-        write_step("Hamiltonian on it", "h(x, y)", lines={"h": energy}),
+        write_step(
+            "Section that it keeps", "y = s(x)", lines=restriction.section, by="invariant-section"
+        ),
+        write_step("Hamiltonian on it", "h(x, y)", lines={"h": energy}, by="hamilton"),
         *_of_velocities(restriction),
         write_step(
             "Motion on it",
             "dx/dt = X(x, y)",
             r"\dot x = X(x, y)",
             write_rates(setting.state, rates),
+            by="invariant-section",
         ),
     )
 
@@ -192,4 +196,6 @@ def _steps(
 def _of_velocities(restriction: Restriction) -> Iterator[Step]:
     """The velocities that the spec names, on the section."""
     if restriction.velocities:
-        yield write_step("Velocities on it", "v(x, y)", lines=restriction.velocities)
+        yield write_step(
+            "Velocities on it", "v(x, y)", lines=restriction.velocities, by="invariant-section"
+        )

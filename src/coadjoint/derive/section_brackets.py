@@ -137,6 +137,7 @@ def describe_bracket(setting: Setting, induced: InducedBracket | None) -> Step:
             "No bracket on it: some x has no X = x - W phi with {phi, X} = 0, phi = y - s(x)",
             "{phi, x} is not in the range of {phi, phi}",
             r"\{\varphi, x\} \notin \mathrm{range}\, \{\varphi, \varphi\}",
+            by="dirac",
         )
     state, titles = (
         setting.state,
@@ -159,4 +160,5 @@ def describe_bracket(setting: Setting, induced: InducedBracket | None) -> Step:
         r"\{x_i, x_j\}_s = \{x_i, x_j\} - \{x_i, \varphi\} W_j, \quad "
         r"\{\varphi, \varphi\} W_j = \{\varphi, x_j\}",
         lines.items(),
+        by="dirac",
     )

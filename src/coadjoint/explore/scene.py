@@ -17,7 +17,7 @@ from coadjoint.declared import KernelContext, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
-from coadjoint.notation.names import GREEK, spell
+from coadjoint.notation.names import spell
 from coadjoint.pipeline import Rendered
 from coadjoint.render.families import FamilyContext
 from coadjoint.resources import derivations_folder
@@ -108,9 +108,9 @@ def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
     return [
         {
             "name": each.name,
-            "written": _write(each.name),
+            "written": spell(each.name),
             "components": list(each.components),
-            "letters": [_write(name) for name in each.components],
+            "letters": [spell(name) for name in each.components],
             "units": [each.unit_of(name) for name in each.components],
             "doc": docs.get(each.name, ""),
             "default": None if each.default is None else list(each.default),
@@ -121,17 +121,6 @@ def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
         }
         for each in quantities
     ]
-
-
-def _write(name: str) -> tuple[str, str]:
-    """How a page writes a name: that of the rate of a coordinate is v with the coordinate below.
-
-    >>> _write("vphi"), _write("Omega2")
-    (('v', 'φ'), ('Ω', '2'))
-    """
-    if name.startswith("v") and name[1:] in GREEK:
-        return "v", spell(name[1:])[0]
-    return spell(name)
 
 
 def _describe_methods(
@@ -390,7 +379,7 @@ def _list_indexed(spec: Spec, context: FamilyContext, size: int) -> list[dict[st
         first, own = context.index.first, each["components"]
         each["default"] = _spread(each, context, size)
         each["components"] = [f"{name}_{first + i}" for name in own for i in range(size)]
-        each["letters"] = [_write(name) for name in each["components"]]
+        each["letters"] = [spell(name) for name in each["components"]]
         each["units"] = [unit for unit in each["units"] for _ in range(size)]
         each["hidden"] = size > MOST_SLIDERS
     return found

@@ -165,7 +165,12 @@ def _is_symbol(text: str) -> bool:
 
 
 def _split_word(base: str) -> tuple[str, str]:
-    """A letter and the word below it: ``p_phi``, ``Omega_momentum``, ``I_s``."""
+    """A letter and the word below it: ``p_phi``, ``Omega_momentum``, ``I_s``.
+
+    Rates and momenta of angles need no line between: ``vphi``, ``ptheta``.
+    """
+    if base[:1] in ("v", "p") and base[1:] in GREEK:
+        return base[0], base[1:]
     head, _, rest = base.partition("_")
     plain = head.rstrip("0123456789")
     return (head, rest) if rest and _letter(plain, bold=False) is not None else (base, "")

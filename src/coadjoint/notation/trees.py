@@ -6,7 +6,7 @@ Comes in: a tree of `coadjoint.spec.core.tree`, and which of its names are vecto
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -94,7 +94,8 @@ def write_tree(
             case tree.Name(name=text):
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
-                return attach(name(text), below=[number(i) for i in indices])
+                whole = attach(name(text), below=[number(i) for i in indices])
+                return replace(whole, text=_number(text, indices, shapes.get(text, ())))
             case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
                 place = _place(part)
@@ -103,7 +104,9 @@ def write_tree(
             case tree.Entry(name=text):
                 return attach(name(text), below=below)
             case tree.Component(indices=indices):
-                return attach(bracket(below[0], ATOM), below=[number(i) for i in indices])
+                whole = bracket(below[0], ATOM)
+                made = attach(whole, below=[number(i) for i in indices])
+                return replace(made, text=f"{whole.text}_{','.join(map(str, indices))}")
             case tree.Negate():
                 return negate(below[0])
             case tree.Power(exponent=exponent):
@@ -144,6 +147,13 @@ def write_tree(
         raise AssertionError(part)
 
     return tree.fold(node, value)
+
+
+def _number(text: str, indices: Sequence[int], shape: Shape) -> str:
+    """A component as it is called where components are written out: ``Pi1``, ``M_1_10``."""
+    joint = "_" if len(indices) == 2 and max(*shape, *indices) > 9 else ""
+    lead = f"{text}_" if joint or text[-1].isdigit() else text
+    return lead + joint.join(map(str, indices))
 
 
 def _is_vector(node: tree.Node) -> bool:

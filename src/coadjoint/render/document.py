@@ -28,6 +28,8 @@ WIDTH: Final = 100
 INDENT: Final = 6
 #: Lines of a section that stay below each other; more stand side by side where they are short.
 LONG: Final = 24
+#: Characters of MathML up to which rates stand on a page twice, in the lead and in their step.
+REPEATED: Final = 20_000
 
 _LATEX_ESCAPES: Final = str.maketrans(
     {character: f"\\{character}" for character in "{}$&#_%"}
@@ -60,14 +62,41 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
        mu = dl/dxi
     <BLANKLINE>
     """
-    return _environment(form).get_template(f"document/{form}.j2").render(document=_fill(document))
+    filled = _fill(document)
+    if form == "html":
+        filled["sections"] = leave_out_repeated(filled["sections"])
+    return _environment(form).get_template(f"document/{form}.j2").render(document=filled)
 
 
 def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     """A document with everything that templates ask for, which may be empty."""
     empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
+    empty |= {"theorem": ""}
     sections = [{**empty, **section} for section in document["sections"]]
     return {"picture": "", "caption": "", **document, "sections": sections}
+
+
+def leave_out_repeated(sections: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Sections of a page, on which long rates stand once and not twice.
+
+    They are the components of the equations of motion, and what the last step gives. By vectors
+    the former are read without them; else the step refers to them.
+    """
+    made = [dict(section) for section in sections]
+    motion = next((each for each in made if each["kind"] == "motion"), None)
+    if motion is None or sum(len(line["mathml"]) for line in motion["lines"]) < REPEATED:
+        return made
+    rates = {line["mathml"] for line in motion["lines"]}
+    for step in made:
+        if step["kind"] != "step" or not rates <= {line["mathml"] for line in step["lines"]}:
+            continue
+        if motion["vectors"]:
+            motion["words"] = [*motion["words"], ("in components", f"see {step['title']}")]
+            motion["lines"] = ()
+            break
+        step["lines"] = [line for line in step["lines"] if line["mathml"] not in rates]
+        step["words"] = [*step["words"], ("rates", f"see {motion['title']}")]
+    return made
 
 
 def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
@@ -84,6 +113,8 @@ def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
             by route, and how many claims are ``proved``, and how many ``others`` there are.
     """
     filled = [_fill(chapter) for chapter in chapters]
+    for chapter in filled:
+        chapter["sections"] = leave_out_repeated(chapter["sections"])
     contents = [
         {"title": part, "chapters": list(own)}
         for part, own in groupby(filled, key=lambda chapter: chapter["part"])

@@ -150,6 +150,9 @@ def _list_moves(figure: Any, solution: Solution) -> Iterator[Move]:
         field = getattr(axes, "coadjoint_field", None)
         if field is not None:
             yield _move_field(axes, solution, *field)
+        body = getattr(axes, "coadjoint_body", None)
+        if body is not None:
+            yield _move_body(solution, body)
 
 
 def _move_along(axes: Any, time: Array, path: Array) -> Move:
@@ -175,6 +178,12 @@ def _move_field(axes: Any, solution: Solution, colours: Any, show: Callable[[int
         axes.set_title(tell_time(solution, at), fontsize=9)
 
     return move
+
+
+def _move_body(solution: Solution, draw_at: Callable[[int], None]) -> Move:
+    """A body at the sample that is nearest to the time of the film."""
+    middles = (solution.time[1:] + solution.time[:-1]) / 2
+    return lambda now: draw_at(int(np.searchsorted(middles, now)))
 
 
 def _move_over(axes: Any) -> Move:

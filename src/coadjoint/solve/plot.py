@@ -29,6 +29,7 @@ from coadjoint.solve.scenes import (
     find_paths,
     find_sphere,
 )
+from coadjoint.solve.vehicles import Vehicle, draw_vehicle, find_vehicle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,7 +80,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
     paths = find_paths(solution) if len(solution) > 1 else None
     sphere = "" if paths else find_sphere(solution)
-    strip = 0.14 if paths or sphere else 0.2  # drift is no third of a picture
+    vehicle = None if paths or sphere else find_vehicle(solution)
+    strip = 0.14 if paths or sphere or vehicle else 0.2  # drift is no third of a picture
     if sphere or (paths and paths.members.shape[1] == 3):
         figure.set_size_inches(7.2, 6.4)
     elif any(is_globe(solution, name) for name in solution.system.STATE):
@@ -90,6 +92,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
         _draw_paths(figure, grid[0], solution, paths)
     elif sphere:
         _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
+    elif vehicle:
+        _draw_vehicle(figure, grid[0], solution, vehicle)
     else:
         _draw_components(figure, grid[0], solution)
     if conserved:
@@ -182,6 +186,19 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     axes.set_title("open circle: start, filled: end", fontsize=9, color="#5b6570")
 
 
+def _draw_vehicle(figure: Any, place: Any, solution: Solution, vehicle: Vehicle) -> None:
+    """A vehicle in the plane, and the trace of the point that its place is."""
+    axes = figure.add_subplot(place)
+    lines = draw_coloured(axes, vehicle.place, solution.time)
+    _time_bar(figure, axes, lines, solution)
+    axes.coadjoint_body = draw_vehicle(axes, vehicle)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"x {unit_label(vehicle.unit)}", fontsize=9)
+    axes.set_ylabel(f"y {unit_label(vehicle.unit)}", fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.grid(alpha=0.3)
+
+
 def _limit_space(axes: Any, paths: Paths) -> None:
     """Equal scales, and a view of the plane of the motion."""
     low, high = paths.members.min(axis=(0, 2)), paths.members.max(axis=(0, 2))
@@ -189,7 +206,7 @@ def _limit_space(axes: Any, paths: Paths) -> None:
     limits = (axes.set_xlim, axes.set_ylim, *([axes.set_zlim] if len(middle) == 3 else []))
     for limit, centre in zip(limits, middle, strict=True):
         limit(centre - half, centre + half)
-    labels = [f"{_component(name)} {unit_label(paths.unit)}" for name in paths.names]
+    labels = [f"{symbol_label(name)} {unit_label(paths.unit)}" for name in paths.names]
     if len(labels) == 3:
         whole = np.concatenate(list(paths.members), axis=1)
         axes.view_init(*angles(choose_view(whole - whole.mean(axis=1, keepdims=True))))
@@ -200,13 +217,6 @@ def _limit_space(axes: Any, paths: Paths) -> None:
     axes.set_ylabel(labels[1], fontsize=9)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
-
-
-def _component(name: str) -> str:
-    """A component as a symbol with its number below."""
-    base = name.rstrip("0123456789")
-    number = name.removeprefix(base)
-    return f"{symbol_label(base)}$_{{{number}}}$" if number else symbol_label(base)
 
 
 def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
@@ -279,13 +289,15 @@ def _draw_components(figure: Any, place: Any, solution: Solution) -> None:
         if surface is not None:
             draw_map(figure, panels[n], solution, name, surface)
             continue
-        if len(quantity.components) > LINES:
+        most = LEGEND_ROWS if isinstance(solution.system, FamilySystem) else LINES
+        if len(quantity.components) > most:
             _draw_rows(figure, panels[n], solution, name, ends=n == len(quantities) - 1)
             continue
         axes = figure.add_subplot(panels[n], sharex=shared)
         shared = shared or axes
         for stroke, component in zip(_strokes(), quantity.components, strict=False):
-            axes.plot(solution.time, solution[component], linewidth=1.0, label=component, **stroke)
+            label = symbol_label(component)
+            axes.plot(solution.time, solution[component], linewidth=1.0, label=label, **stroke)
         axes.set_ylabel(f"{symbol_label(name)} {unit_label(quantity.unit)}", fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=n == len(quantities) - 1)
         columns = -(-len(quantity.components) // LEGEND_ROWS)
@@ -311,7 +323,10 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         lower = str(n + 1) * (len(parts) > 1)
         bar = figure.colorbar(colours, ax=axes, pad=0.01)
         unit = unit_label(_unit_of(quantity.unit, n, len(parts)))
-        bar.set_label(f"{symbol_label(name)}$_{{{lower}}}$ {unit}", fontsize=9)
+        if n and unit == unit_label(_unit_of(quantity.unit, n - 1, len(parts))):
+            unit = ""  # that of the panel before; panels are low
+        label = f"{symbol_label(name)}$_{{{lower}}}$" if lower else symbol_label(name)
+        bar.set_label(f"{label} {unit}".rstrip(), fontsize=9 if len(parts) < STACKED else 7)
         bar.ax.tick_params(labelsize=8)
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)

@@ -75,14 +75,15 @@ def euler_poincare(setting: Setting, route: str) -> Equations:
         integrand = m * (u * eta_s - jets.total(u) * eta) + charge * eta_s * jets.total(u, 2)
     rate = Jets(setting.field, {**jets.rows, VARIED: rows}).euler(integrand, VARIED)
     steps = (
-        write_step("Lagrangian", "l(u)", "l(u)", {"l": setting.lagrangian}),
+        write_step("Lagrangian", "l(u)", "l(u)", {"l": setting.lagrangian}, by="stationary-action"),
         write_step(
             "Momentum",
             "m = dl/du",
             r"m = \partial l / \partial u",
             write_slopes("l", [_name(setting)], [_slope(setting)]),
+            by="legendre",
         ),
-        write_step(*_tell_variation(setting), write_rates(setting.state, [rate])),
+        write_step(*_tell_variation(setting), write_rates(setting.state, [rate]), by="epdiff"),
     )
     return emit_fields(setting, route, [rate], steps, energy(setting))
 

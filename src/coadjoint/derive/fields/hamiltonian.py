@@ -33,11 +33,12 @@ def field_equations(setting: Setting, route: str) -> Equations:
     assert space is not None, setting.spec.name
     power, s = ("D_x and D_y", "x") if space.across else ("D^k = d^k/ds^k", "s")
     steps = (
-        write_step("Density of the energy", "h", "h", {"h": h}),
+        write_step("Density of the energy", "h", "h", {"h": h}, by="hamilton"),
         write_step(
             "Variational derivatives",
             *_write_euler(setting),
             write_slopes("h", setting.state, slopes),
+            by="variational-derivative",
         ),
         write_step(
             f"Bracket of the fields: factors of {power}, what stands behind D is differentiated, "
@@ -45,12 +46,14 @@ def field_equations(setting: Setting, route: str) -> Equations:
             f"{{u_i({s}), u_j({s}')}} = P_ij delta({s} - {s}')",
             rf"\{{u_i({s}), u_j({s}')\}} = P_{{ij}}\, \delta({s} - {s}')",
             _entries(setting, operator),
+            by="field-bracket",
         ),
         write_step(
             "Equations of motion",
             "du_i/dt = sum_j P_ij dh/du_j",
             r"\dot u_i = \sum_j P_{ij}\, \delta h / \delta u_j",
             write_rates(setting.state, rates),
+            by="hamilton",
         ),
     )
     return emit_fields(setting, route, rates, steps, h, operator)

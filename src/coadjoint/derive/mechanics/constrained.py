@@ -245,7 +245,9 @@ def emit_motion(
 
 def show_mass(mass: Matrix, text: str, latex: str) -> Step:
     """The step that gives the reduced mass matrix."""
-    return write_step("Reduced mass matrix", text, latex, write_entries("M", mass))
+    return write_step(
+        "Reduced mass matrix", text, latex, write_entries("M", mass), by="constraints"
+    )
 
 
 def _check_regular(

@@ -77,11 +77,13 @@ def show_momenta(setting: Setting, title: str = "Momenta") -> Step:
     """The step that gives the momenta."""
     names = [xi for xi, _, _ in setting.conjugates]
     lines = write_slopes("l", names, legendre(setting).momenta)
-    return write_step(title, "mu = dl/dxi", r"\mu = \partial l / \partial \xi", lines)
+    return write_step(
+        title, "mu = dl/dxi", r"\mu = \partial l / \partial \xi", lines, by="legendre"
+    )
 
 
 def show_velocities(setting: Setting) -> Step:
     """The step that solves for the velocities."""
     lines = legendre(setting).definitions
     law = f"xi solved from mu = dl/dxi{legendre(setting).iterations}"
-    return write_step("Legendre transform", law, r"\xi = \xi(\mu, a)", lines)
+    return write_step("Legendre transform", law, r"\xi = \xi(\mu, a)", lines, by="legendre")

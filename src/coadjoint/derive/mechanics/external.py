@@ -122,6 +122,7 @@ def add_forces(free: Equations) -> Equations:
             *((f"f_{name}", force) for name, force, _ in moved),
             *((rate(name), whole) for name, _, whole in moved),
         ),
+        by=relaxation.table.replace("_", "-") if relaxation else "forces",
     )
     exact = replace(free.exact, rates=rates, forces=added)
     return replace(free, exact=exact, steps=(*free.steps, step))

@@ -91,6 +91,7 @@ def show_noise(drift: Equations) -> Equations:
             *((f"h_{each.name}", each.hamiltonian) for each in fields),
             *(line for each in fields for line in _show_field(setting, each)),
         ),
+        by="noise",
     )
     added = zip(setting.state, ito_drift(setting), strict=True)
     ito = write_step(
@@ -98,6 +99,7 @@ def show_noise(drift: Equations) -> Equations:
         "1/2 sum_k (dg_k/dx) g_k with g_k = {x, h_k}",
         r"\frac{1}{2} \sum_k \frac{\partial g_k}{\partial x} g_k, \quad g_k = \{x, h_k\}",
         ((f"ito_{name}", value) for name, value in added),
+        by="ito",
     )
     return replace(drift, steps=(*drift.steps, hamiltonians, ito))
 

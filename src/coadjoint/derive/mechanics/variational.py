@@ -101,24 +101,33 @@ def show_extremals(setting: Setting) -> tuple[Step, ...]:
         return ()
     of, known = variational_distribution(setting), normal_extremals(setting)
     return (
-        write_step("Lagrangian", "l(xi, z)", r"l(\xi, z)", {"l": setting.lagrangian}),
+        write_step(
+            "Lagrangian",
+            "l(xi, z)",
+            r"l(\xi, z)",
+            {"l": setting.lagrangian},
+            by="stationary-action",
+        ),
         write_step(
             "Constraints, imposed before the variation",
             "left - right = 0",
             r"A \xi = b",
             ((each.name, each.residual) for each in of.equations),
+            by="normal-extremals",
         ),
         write_step(
             "Velocities that they allow",
             "xi = B(z) eta + beta(z)",
             r"\xi = B(z) \eta + \beta(z)",
             zip(of.frame.velocities, known.within, strict=True),
+            by="normal-extremals",
         ),
         write_step(
             "Legendre transform within them: normal extremals",
             "h = <mu, xi> - l, with <mu - dl/dxi, B> = 0",
             r"h = \langle \mu, \xi \rangle - l, \qquad B^T (\mu - \partial l / \partial \xi) = 0",
             [*known.definitions, ("h", known.energy)],
+            by="legendre",
         ),
     )
 

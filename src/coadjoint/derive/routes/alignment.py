@@ -83,17 +83,20 @@ def _steps(motion: Equations, v: Vector, source: Quaternion) -> tuple[Step, ...]
             "v = alpha r + chi x r,  chi . r = 0",
             r"v = \alpha r + \chi \times r, \quad \chi \cdot r = 0",
             zip(("v1", "v2", "v3"), v, strict=True),
+            by="alignment",
         ),
         write_step(
             "Force along and across r",
             "beta = r . F/r^2,  psi = r x F/r^2",
             r"\beta = r \cdot F / r^2, \quad \psi = r \times F / r^2",
             zip(("beta", "psi1", "psi2", "psi3"), source.components, strict=True),
+            by="alignment",
         ),
         write_step(
             "Riccati equation of quaternions",
             "dr/dt = v,  d[alpha, chi]/dt = [beta, psi] - [alpha, chi]^2",
             r"\dot r = v, \quad \frac{d}{dt}[\alpha, \chi] = [\beta, \psi] - [\alpha, \chi]^2",
             write_rates(motion.variables, motion.exact.rates),
+            by="alignment",
         ),
     )

@@ -180,6 +180,7 @@ def _in_own_momenta(setting: Setting) -> Equations:
         "v solved from p = dl/dv",
         r"p = \partial l / \partial v",
         solved,
+        by="legendre",
     )
     return replace(motion, steps=(transform, *_steps(variables, h, slopes, motion.exact.rates)))
 
@@ -226,19 +227,21 @@ def _pulled_steps(
     momenta = write_slopes("l", setting.velocities, known.momenta)
     contracted = r"\iota_X (dq \wedge dp) = dE, \quad p = \partial l / \partial v"
     return (
-        write_step("Momenta", "p = dl/dv", r"p = \partial l / \partial v", momenta),
-        write_step("Energy", "E = p . v - l", lines={"E": known.energy}),
+        write_step("Momenta", "p = dl/dv", r"p = \partial l / \partial v", momenta, by="legendre"),
+        write_step("Energy", "E = p . v - l", lines={"E": known.energy}, by="energy"),
         write_step(
             "Slopes of the energy at fixed velocities",
             "dE/dq",
             r"\partial E / \partial q",
             write_slopes("E", setting.positions, pull),
+            by="canonical",
         ),
         write_step(
             "Hamilton's equations in velocities",
             "M dq/dt = dE/dv,  M dv/dt = (dp/dq)^T dq/dt - (dp/dq) dq/dt - dE/dq",
             contracted,
             write_rates(setting.state, rates),
+            by="canonical",
         ),
     )
 
@@ -281,12 +284,13 @@ def _steps(
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
     return (
-        write_step("Hamiltonian", "h(q, p)", lines={"h": h}),
+        write_step("Hamiltonian", "h(q, p)", lines={"h": h}, by="hamilton"),
         write_step(
             "Derivatives of the Hamiltonian",
             "dh/dq, dh/dp",
             r"\partial h / \partial q, \quad \partial h / \partial p",
             write_slopes("h", names, (slopes[name] for name in names)),
+            by="canonical",
         ),
         write_step(
             "Hamilton's equations",
@@ -294,5 +298,6 @@ def _steps(
             r"\dot q = \partial h / \partial p, \quad "
             r"\dot p = -\partial h / \partial q + B\, \partial h / \partial p",
             write_rates(names, rates),
+            by="canonical",
         ),
     )

@@ -258,13 +258,16 @@ def _steps(body: _Body, motion: Equations) -> tuple[Step, ...]:
         q_star_p, star_latex = "p q*", "p q^*"
     lagrangian = body.setting.lagrangian
     return (
-        write_step("Lagrangian", "l(Omega, a)", r"l(\Omega, a)", {"l": lagrangian}),
-        write_step("Attitude as a quaternion", law, latex, body.seen_components),
+        write_step(
+            "Lagrangian", "l(Omega, a)", r"l(\Omega, a)", {"l": lagrangian}, by="stationary-action"
+        ),
+        write_step("Attitude as a quaternion", law, latex, body.seen_components, by="quaternions"),
         write_step(
             "Angular velocity",
             "Omega solved from Pi = dl/dOmega",
             r"\Omega = \Omega(\Pi, a)",
             motion.exact.definitions,
+            by="legendre",
         ),
         write_step(
             "Lagrange's equations for q",
@@ -272,5 +275,6 @@ def _steps(body: _Body, motion: Equations) -> tuple[Step, ...]:
             r"p = \partial L / \partial \dot q, \quad \dot p = \partial L / \partial q, \quad "
             rf"\Pi = \tfrac12 \mathrm{{Im}}({star_latex})",
             write_rates(motion.variables, motion.exact.rates),
+            by="cayley-klein",
         ),
     )

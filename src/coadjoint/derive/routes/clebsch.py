@@ -156,26 +156,34 @@ def _steps(motion: Equations, action: Element, image: Mapping[str, Element]) -> 
             f"L = <p, dq/dt> + l(xi, q) {sign} <p, rho(xi) q>",
             rf"L = \langle p, \dot q \rangle + l(\xi, q) {sign} \langle p, \rho(\xi) q \rangle",
             {"L - <p, dq/dt>": action},
+            by="clebsch",
         ),
         write_step(
             "Variation of xi: the momentum map",
             f"dl/dxi = {turn}p <> q,  <p <> q, xi> = -<p, rho(xi) q>",
             rf"\partial l / \partial \xi = {turn}p \diamond q",
             write_slopes("l", setting.velocities, (image[mu] for mu in setting.momenta)),
+            by="momentum-map",
         ),
         write_step(
-            "Velocities", "xi solved from mu = dl/dxi", r"\xi = \xi(\mu, q)", exact.definitions
+            "Velocities",
+            "xi solved from mu = dl/dxi",
+            r"\xi = \xi(\mu, q)",
+            exact.definitions,
+            by="legendre",
         ),
         write_step(
             "Variation of p: advection",
             f"dq/dt = {back}rho(xi) q",
             rf"\dot q = {back}\rho(\xi) q",
             lines[:n],
+            by="clebsch",
         ),
         write_step(
             "Variation of q: the conjugate momentum",
             f"dp/dt = dl/dq {sign} rho(xi)^T p",
             rf"\dot p = \partial l / \partial q {sign} \rho(\xi)^T p",
             lines[n:],
+            by="clebsch",
         ),
     )

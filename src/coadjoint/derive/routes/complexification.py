@@ -142,17 +142,19 @@ def _steps(
         *write_slopes("Im h", names, (zero + z.im for z in zeta)),
     )
     return (
-        write_step("Hamiltonian of the real system", "h(x)", lines={"h": h}),
+        write_step("Hamiltonian of the real system", "h(x)", lines={"h": h}, by="hamilton"),
         write_step(
             "Velocity at complex momenta L = x + i y",
             "zeta = dh/dx at x + i y",
             r"\zeta = (\partial h / \partial x)(x + i y)",
             slopes,
+            by="complexification",
         ),
         write_step(
             "Real and imaginary parts",
             f"dx/dt + i dy/dt = {turn}ad*_zeta (x + i y)",
             rf"\dot x + i \dot y = {turn}\mathrm{{ad}}^*_\zeta (x + i y)",
             write_rates(setting.state, rates),
+            by="complexification",
         ),
     )

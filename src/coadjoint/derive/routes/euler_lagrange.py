@@ -87,7 +87,7 @@ def _solve_in_kernel(known: Mechanics, forces: Sequence[Element]) -> Equations:
             r"M \dot v = \partial l / \partial q - (\partial^2 l / \partial v\,\partial q) v + f",
         )
         lines = ((f"(M dv/dt)_{n}", value) for n, value in enumerate(right, 1))
-        solved = write_step(*law, lines)
+        solved = write_step(*law, lines, by="legendre")
         *before, last = _steps(known, exact.rates, show_geometry=False)
         return (*before, solved, last)
 
@@ -161,29 +161,36 @@ def _steps(
     """The derivation as a person would write it down."""
     setting = known.setting
     steps = [
-        write_step("Lagrangian", "l(q, v)", lines={"l": known.lagrangian}),
+        write_step("Lagrangian", "l(q, v)", lines={"l": known.lagrangian}, by="stationary-action"),
         write_step(
             "Momenta",
             "p = dl/dv",
             r"p = \partial l / \partial v",
             write_slopes("l", setting.velocities, known.momenta),
+            by="legendre",
         ),
         write_step(
             "Mass matrix",
             "M_ab = d2l/dv_a dv_b",
             r"M_{ab} = \partial^2 l / \partial v_a \partial v_b",
             write_entries("M", known.mass),
+            by="euler-lagrange",
         ),
     ]
     if transform is not None:
         law = f"v solved from p = dl/dv{transform.iterations}"
-        steps.append(write_step("Velocities", law, "v = v(q, p)", transform.definitions))
+        steps.append(
+            write_step("Velocities", law, "v = v(q, p)", transform.definitions, by="legendre")
+        )
     elif show_geometry and is_natural(known):
         steps += _geometry(known)
     latex = r"E = v \cdot \partial l / \partial v - l"
-    steps.append(write_step("Energy", "E = v . dl/dv - l", latex, {"E": known.energy}))
+    steps.append(write_step("Energy", "E = v . dl/dv - l", latex, {"E": known.energy}, by="energy"))
     motion = write_rates(setting.state, rates)
-    return (*steps, write_step("Euler-Lagrange equations", _LAW, _LATEX, motion))
+    return (
+        *steps,
+        write_step("Euler-Lagrange equations", _LAW, _LATEX, motion, by="euler-lagrange"),
+    )
 
 
 def _geometry(known: Mechanics) -> list[Step]:
@@ -197,12 +204,14 @@ def _geometry(known: Mechanics) -> list[Step]:
             "Gamma_cab = (dM_ca/dq_b + dM_cb/dq_a - dM_ab/dq_c)/2",
             r"\Gamma_{cab} = \tfrac12(\partial_b M_{ca} + \partial_a M_{cb} - \partial_c M_{ab})",
             _symbols("Gamma_{}{}", first),
+            by="geodesic",
         ),
         write_step(
             "Christoffel symbols of the second kind",
             "Gamma^c_ab = (M^-1)_cd Gamma_dab,  dv_c/dt = -Gamma^c_ab v_a v_b + forces",
             r"\Gamma^c_{ab} = (M^{-1})_{cd} \Gamma_{dab}",
             _symbols("Gamma^{}_{}", second),
+            by="geodesic",
         ),
     ]
 

@@ -1,6 +1,6 @@
 r"""The Euler-Poincare route: from a reduced Lagrangian, with advected quantities.
 
-Theorem (Holm 2011, sections 9.1 and 9.1.4; Holm, Marsden and Ratiu 1998): Hamilton's principle for
+Theorem (Holm 2011, section 9.1 (9.1.4); Holm, Marsden and Ratiu 1998): Hamilton's principle for
 a left-invariant Lagrangian, with :math:`\delta\xi = \dot\eta + [\xi, \eta]` and
 :math:`\delta a = -\rho(\eta) a`, gives
 
@@ -70,6 +70,7 @@ def _derive_fields(setting: Setting, rates: tuple[Element, ...]) -> Equations:
             rf"\dot\mu = {law_latex} - \partial_s \nu, \qquad "
             rf"\dot\Xi = \partial_s \xi {turn} [\Xi, \xi]",
             write_rates(setting.state, whole),
+            by="strand",
         )
     )
     energy = close(setting, legendre(setting).energy)
@@ -117,7 +118,13 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
         setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
     )
     return (
-        write_step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", {"l": setting.lagrangian}),
+        write_step(
+            "Reduced Lagrangian",
+            "l(xi, a)",
+            r"l(\xi, a)",
+            {"l": setting.lagrangian},
+            by="euler-poincare",
+        ),
         show_momenta(setting),
         show_velocities(setting),
         write_step(
@@ -125,5 +132,6 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
             f"dmu/dt = {turned},  da/dt = {back}rho(xi) a{_tell_coordinates(setting)}",
             rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
             write_rates(setting.state, rates),
+            by="advection",
         ),
     )

@@ -90,12 +90,19 @@ def _derive_over_algebra(setting: Setting) -> Equations:
     if setting.spec.is_forced:
         turned, latex = f"{turned} + f - dR/dxi", rf"{latex} + {LATEX['f - dR/dxi']}"
     steps = (
-        write_step("Reduced Lagrangian", "l(xi, a)", r"l(\xi, a)", {"l": setting.lagrangian}),
+        write_step(
+            "Reduced Lagrangian",
+            "l(xi, a)",
+            r"l(\xi, a)",
+            {"l": setting.lagrangian},
+            by="euler-poincare",
+        ),
         write_step(
             "Momenta",
             "mu = dl/dxi",
             r"\mu = \partial l / \partial \xi",
             write_slopes("l", setting.velocities, mechanics(setting).momenta),
+            by="legendre",
         ),
         write_step(
             "Constraints where d2l/dxi2 is singular, in their order, and what they give",
@@ -103,18 +110,21 @@ def _derive_over_algebra(setting: Setting) -> Equations:
             r"n\,\partial^2 l/\partial \xi^2 = 0, \quad "
             r"n \cdot (\mu - \partial l/\partial \xi) = 0",
             of.known.lines,
+            by="first-order",
         ),
         write_step(
             "Velocities from the momenta and from constraints that last",
             "xi = xi(mu, a)",
             r"\xi = \xi(\mu, a)",
             of.velocities,
+            by="legendre",
         ),
         write_step(
             "Euler-Poincare equations and advection of what is left",
             f"dmu/dt = {turned}",
             rf"\dot\mu = {latex}",
             write_rates(names, rates),
+            by="advection",
         ),
         write_step(
             "Dirac's bracket of what is left",
@@ -122,6 +132,7 @@ def _derive_over_algebra(setting: Setting) -> Equations:
             r"\{f, g\} - \{f, \phi_i\} (C^{-1})_{ij} \{\phi_j, g\}, \quad "
             r"C_{ij} = \{\phi_i, \phi_j\}",
             [(bracket(names[i], names[j]), tensor[i][j]) for i, j in places if tensor[i][j]],
+            by="dirac",
         ),
     )
     shown = [step for step in steps if step.lines]
@@ -142,18 +153,22 @@ def _steps(
         law, latex = f"{law} - f + dR/dv", rf"{latex} - f + \partial R/\partial v"
         motion, motion_latex = law, latex
     steps = (
-        write_step("Lagrangian", "l(q, v)", lines={"l": setting.lagrangian}),
+        write_step(
+            "Lagrangian", "l(q, v)", lines={"l": setting.lagrangian}, by="stationary-action"
+        ),
         write_step(
             "Momenta",
             "p = dl/dv",
             r"p = \partial l / \partial v",
             write_slopes("l", setting.velocities, mechanics(setting).momenta),
+            by="legendre",
         ),
         write_step(
             "Velocities that momenta give",
             "v solved from p = dl/dv",
             r"v = v(q, p)",
             of.solved,
+            by="legendre",
         ),
         write_step(
             "Form of first order",
@@ -163,43 +178,50 @@ def _steps(
                 *_write_theta(of.whole),
                 ("h", of.whole.energy),
             ],
+            by="first-order",
         ),
         write_step(
             "Constraints where omega is singular, in their order, and what they give",
             "n omega = 0, n dh/dx = 0",
             r"n\,\omega = 0, \quad n \cdot \partial h = 0",
             of.lines,
+            by="first-order",
         ),
         write_step(
             "Form of first order within them",
             "L = theta(x) dx/dt - h(x)",
             r"L = \theta(x) \cdot \dot x - h(x)",
             [*_write_theta(of.form), ("h", of.form.energy)] if of.bound else [],
+            by="first-order",
         ),
         write_step(
             "Two-form",
             "omega_ij = d theta_j/dx_i - d theta_i/dx_j",
             r"\omega_{ij} = \partial_i \theta_j - \partial_j \theta_i",
             [(f"omega_{names[i]},{names[j]}", omega[i][j]) for i, j in places if omega[i][j]],
+            by="first-order",
         ),
         write_step(
             "Poisson bracket",
             "{x_i, x_j} = (omega^-1)_ij",
             r"\{x_i, x_j\} = (\omega^{-1})_{ij}",
             [(bracket(names[i], names[j]), tensor[i][j]) for i, j in places if tensor[i][j]],
+            by="symplectic",
         ),
         write_step(
             "Forces and dissipation along what moves",
             "f - dR/dv",
             LATEX["f - dR/dxi"].replace(r"\xi", "v"),
             [(f"f_{x}", f) for x, f in zip(of.whole.names, of.force, strict=False) if f],
+            by="forces",
         ),
-        write_step("Velocities", law, latex, velocities),
+        write_step("Velocities", law, latex, velocities, by="legendre"),
         write_step(
             "Equations with forces" if of.force else "Hamilton's equations",
             motion,
             motion_latex,
             write_rates(names, rates),
+            by="hamilton",
         ),
     )
     return tuple(step for step in steps if step.lines)

@@ -80,12 +80,14 @@ def _steps(
             "l_c(eta, z) = l(B eta + beta, z)",
             r"l_c(\eta, z) = l(B\eta + \beta, z)",
             {"l_c": constrained},
+            by="hamel",
         ),
         write_step(
             "Its momenta",
             "dl_c/deta",
             r"\partial l_c / \partial \eta",
             write_slopes("l_c", motion.distribution.independent, momenta),
+            by="legendre",
         ),
         show_mass(mass, "d2l_c/deta2", r"\partial^2 l_c / \partial \eta^2"),
         write_step(
@@ -94,5 +96,6 @@ def _steps(
             r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
             r"\rangle + B_k f",
             ((component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)),
+            by="hamel",
         ),
     )

@@ -232,6 +232,7 @@ def _steps(setting: Setting, action: Action, rates: tuple[Element, ...]) -> tupl
             f"L = l(xi, a) + <mu, {velocity[0]} - xi>,  {near[0]}, first order in eps",
             rf"L = l(\xi, a) + \langle \mu, {velocity[1]} - \xi \rangle, \qquad {near[1]}",
             {"L": action.integrand},
+            by="hamilton-pontryagin",
         ),
         show_momenta(setting, "Variation of xi: the Legendre relation"),
         show_velocities(setting),
@@ -240,6 +241,7 @@ def _steps(setting: Setting, action: Action, rates: tuple[Element, ...]) -> tupl
             f"{motion[0]}, that is deps/dt = xi at eps = 0",
             rf"{motion[1]}, \qquad \dot\epsilon = \xi",
             write_rates(moving, map(by_name.__getitem__, moving)),
+            by="hamilton-pontryagin",
         ),
         write_step(
             "Variation of g: the momentum equation",
@@ -247,5 +249,6 @@ def _steps(setting: Setting, action: Action, rates: tuple[Element, ...]) -> tupl
             r"\frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
             r"= \frac{\partial L}{\partial \epsilon}",
             write_rates(setting.momenta, map(by_name.__getitem__, setting.momenta)),
+            by="hamilton-pontryagin",
         ),
     )

@@ -170,18 +170,21 @@ def _steps(
             "l = T(xi) + |dq/dt + a|^2/2",
             r"l = T(\xi) + \tfrac12 |\dot q + a|^2",
             {"l": whole},
+            by="kaluza-klein",
         ),
         write_step(
             "Momenta",
             "mu = dl/dxi,  p = dl/d(dq/dt) = dq/dt + a",
             r"\mu = \partial l / \partial \xi, \quad p = \partial l / \partial \dot q = \dot q + a",
             (*write_slopes("l", setting.velocities, momenta), *solved.items()),
+            by="legendre",
         ),
         write_step(
             "Hamiltonian, quadratic",
             "h = T + |p|^2/2 - p . a",
             r"h = T + \tfrac12 |p|^2 - p \cdot a",
             {"h": energy},
+            by="legendre",
         ),
         write_step(
             "Variation of the group with dl/da = p",
@@ -189,11 +192,13 @@ def _steps(
             rf"\langle\dot\mu, \eta\rangle = {work_latex}, \quad "
             rf"\dot a = {back}\rho(\xi) a, \quad \dot p = 0",
             write_rates(motion.variables, motion.exact.rates),
+            by="advection",
         ),
         write_step(
             "Level set of the conserved momentum",
             "p = dl/da of the Lagrangian with the potential",
             r"p = \partial l / \partial a",
             zip(_cyclic(setting)[1], level, strict=True),
+            by="kaluza-klein",
         ),
     )

@@ -66,12 +66,13 @@ def _derive_fields(
 ) -> Equations:
     """The equations of fields, whose pair is a connection of zero curvature."""
     steps = (
-        write_step("Lax pair", "L, M", "L(\\lambda), M(\\lambda)", _entries(pair)),
+        write_step("Lax pair", "L, M", "L(\\lambda), M(\\lambda)", _entries(pair), by="lax"),
         write_step(
             "Zero curvature, power by power",
             f"dL/dt - dM/ds = L M - M L for every {pair.spectral}",
             r"\partial_t L - \partial_s M = L M - M L",
             write_rates(setting.state, rates),
+            by="zero-curvature",
         ),
     )
     energy = density(setting) if setting.has_energy else None
@@ -87,15 +88,16 @@ def _steps(
     """The derivation as a person would write it down."""
     texts = f"L = {pair.texts[0]},  M = {pair.texts[1]}"
     law = ("xi = dh/dmu", r"\xi = \partial h / \partial \mu")
-    velocities = write_step("Velocities", *law, definitions)
+    velocities = write_step("Velocities", *law, definitions, by="hamilton")
     return (
         *([velocities] if setting.has_energy else []),
-        write_step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair)),
+        write_step("Lax pair", texts, "L(\\lambda), M(\\lambda)", _entries(pair), by="lax"),
         write_step(
             "Lax equation, power by power",
             f"dL/dt = L M - M L for every {pair.spectral}",
             r"\dot L = L M - M L",
             write_rates(setting.state, rates),
+            by="lax",
         ),
         _integrals(setting),
     )
@@ -127,4 +129,5 @@ def _integrals(setting: Setting) -> Step:
         f"coefficients of tr L^k: {words or 'none'}",
         r"\mathrm{tr}\, L^k = \mathrm{const}",
         integrals.named,
+        by="trace-integrals",
     )

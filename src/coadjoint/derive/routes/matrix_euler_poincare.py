@@ -190,6 +190,7 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
             "tr(M^T e) = dl/dxi along each matrix e of the basis",
             r"\mathrm{tr}(M^T e) = \langle \partial l / \partial \xi, e \rangle",
             write_slopes("l", setting.velocities, legendre(setting).momenta),
+            by="matrix-euler-poincare",
         ),
         show_velocities(setting),
         write_step(
@@ -198,5 +199,6 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
             "with a",
             rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^T e) = {turned_latex}",
             write_rates(setting.state, rates),
+            by="matrix-euler-poincare",
         ),
     )

@@ -159,13 +159,14 @@ def _steps(
     wedge = sign + " x ".join(f"grad {label}" for label in factors)
     wedge_latex = sign + r" \times ".join(rf"\nabla {symbol(label).latex}" for label in factors)
     return (
-        write_step("Hamiltonian", "h(x)", lines={"h": h}),
-        write_step("Distinguished functions", "c(x)", lines=named),
-        write_step("Gradients", "grad c, grad h", r"\nabla c, \nabla h", slopes),
+        write_step("Hamiltonian", "h(x)", lines={"h": h}, by="hamilton"),
+        write_step("Distinguished functions", "c(x)", lines=named, by="nambu"),
+        write_step("Gradients", "grad c, grad h", r"\nabla c, \nabla h", slopes, by="nambu"),
         write_step(
             "Nambu's equations",
             f"dx/dt = {wedge}",
             rf"\dot x = {wedge_latex}",
             write_rates(setting.state, rates),
+            by="nambu",
         ),
     )

@@ -42,13 +42,14 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     forces = [line for law in laws for line in _lines("F", law.coordinate, law.force, setting)]
     masses = [line for law in laws for line in _lines("M", law.coordinate, law.mass, setting)]
     return (
-        write_step("Forces", "F(q, v)", lines=forces),
-        write_step("Masses", "M", lines=masses),
+        write_step("Forces", "F(q, v)", lines=forces, by="newton"),
+        write_step("Masses", "M", lines=masses, by="newton"),
         write_step(
             "Newton's law",
             "dq/dt = v,  M dv/dt = F",
             r"\dot q = v, \quad M \dot v = F",
             write_rates(setting.state, rates),
+            by="newton",
         ),
     )
 

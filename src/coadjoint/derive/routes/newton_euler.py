@@ -239,18 +239,21 @@ def _steps(
             "m = sum m,  c = sum m X,  S = sum m X X^T = (tr I/2) - I",
             r"m = \sum m, \quad c = \sum m X, \quad S = \sum m X X^T = \tfrac12 \mathrm{tr} I - I",
             lines,
+            by="angular-velocity",
         ),
         write_step(
             "Torque and force by virtual work",
             "T_j = -dU(a - theta rho(e_j) a)/dtheta",
             r"T_j = -\partial U(a - \theta \rho(e_j) a) / \partial\theta",
             works,
+            by="newton-euler",
         ),
         write_step(
             "Velocities from momenta",
             "Pi = sum m X x (V + Omega x X),  P = sum m (V + Omega x X)",
             r"\Pi = \sum m X \times (V + \Omega \times X), \quad P = \sum m (V + \Omega \times X)",
             legendre(setting).definitions,
+            by="rotation",
         ),
         write_step(
             "Newton's law, summed over the points",
@@ -259,5 +262,6 @@ def _steps(
             r"\dot\Pi = T - \sum m X \times (\Omega \times V + \Omega \times (\Omega \times X)), "
             r"\quad \dot P = F - \sum m (\Omega \times V + \Omega \times (\Omega \times X))",
             write_rates(setting.state, rates),
+            by="newton-euler",
         ),
     )

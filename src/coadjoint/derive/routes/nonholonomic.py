@@ -144,27 +144,40 @@ def _steps(
     row, row_latex = "B^T M B eta'", r"B^T M B \dot\eta"
     followed = rates_followed(setting, of)
     return (
-        write_step("Reduced Lagrangian", "l(xi, z)", r"l(\xi, z)", {"l": setting.lagrangian}),
+        write_step(
+            "Reduced Lagrangian",
+            "l(xi, z)",
+            r"l(\xi, z)",
+            {"l": setting.lagrangian},
+            by="stationary-action",
+        ),
         write_step(
             "Constraints, imposed after the variation",
             "left - right = 0",
             r"A \xi = b",
             ((each.name, each.residual) for each in of.equations),
+            by="constraints",
         ),
         write_step(
-            "Distribution", "xi = B(z) eta + beta(z)", r"\xi = B(z) \eta + \beta(z)", of.solved
+            "Distribution",
+            "xi = B(z) eta + beta(z)",
+            r"\xi = B(z) \eta + \beta(z)",
+            of.solved,
+            by="constraints",
         ),
         write_step(
             "Momenta",
             "p = dl/dxi",
             r"p = \partial l / \partial \xi",
             write_slopes("l", velocities, mechanics(setting).momenta),
+            by="legendre",
         ),
         write_step(
             "Kinematics",
             "z' = X_xi z, c = B' eta + beta'",
             r"\dot z = X_\xi z, \qquad c = \dot B \eta + \dot \beta",
             (line for line in kinematics if line[0] not in of.solved),
+            by="nonholonomic",
         ),
         show_mass(reduced, "B^T M B", "B^T M B"),
         write_step(
@@ -173,6 +186,7 @@ def _steps(
             r"k = \mathrm{ad}^*_\xi p + (\partial l/\partial a) \diamond a + f - M c"
             r" - \partial_z p \, \dot z",
             named,
+            by="nonholonomic",
         ),
         write_step(
             "Equations of motion, solved for the accelerations in the kernel",
@@ -180,24 +194,28 @@ def _steps(
             rf"{row_latex} = B^T (\mathrm{{ad}}^*_\xi p + (\partial l/\partial a) \diamond a + f"
             r" - M c - \partial_z p \, \dot z)",
             ((component(row, row_latex, n), value) for n, value in enumerate(known, 1)),
+            by="nonholonomic",
         ),
         write_step(
             "Accelerations of the other velocities, and reactions",
             "p' - F = A^T lambda",
             r"\dot p - F = A^T \lambda",
             reactions,
+            by="constraints",
         ),
         write_step(
             "Almost-Poisson bracket of the momenta M = B^T p",
             "{M_i, M_j} = -<p, [D_i, D_j]>",
             r"\{M_i, M_j\} = -\langle p, [D_i, D_j] \rangle",
             brackets,
+            by="almost-poisson",
         ),
         write_step(
             "Reconstruction, after the motion",
             "the rates of what acts on nothing",
             r"\dot g = g \xi",
             ((rate(name), value) for name, value in followed),
+            by="reconstruction",
         ),
     )
 

@@ -195,6 +195,7 @@ def _steps(
             "mu = dl/dxi",
             r"\mu = \partial l / \partial \xi",
             write_slopes("l", names, momenta),
+            by="legendre",
         ),
         write_step(
             "Variation of the motion without constraints",
@@ -202,23 +203,27 @@ def _steps(
             r"F_k: \quad \frac{d}{dt} \frac{\partial L}{\partial \dot\epsilon} "
             r"= \frac{\partial L}{\partial \epsilon}",
             zip((f"F_{name}" for name in names), forces, strict=True),
+            by="nonholonomic-hamilton-pontryagin",
         ),
         write_step(
             "Variation of the motion within the constraints",
             "dmu/dt - F - f - A^T lambda = 0",
             r"\dot\mu - F - f - A^T \lambda = 0",
             ((f"E_{name}", value) for name, value in momentum.items()),
+            by="nonholonomic-hamilton-pontryagin",
         ),
         write_step(
             "Constraints, imposed after the variation, and their rates",
             "d/dt (left - right) = 0",
             r"\frac{d}{dt}(A \xi - b) = 0",
             write_rates(equations, constraint),
+            by="nonholonomic-hamilton-pontryagin",
         ),
         write_step(
             "Rates and multipliers that these equations give",
             "dxi/dt = B deta/dt + c,  lambda",
             r"\dot\xi = B \dot\eta + c, \quad \lambda",
             given,
+            by="nonholonomic-hamilton-pontryagin",
         ),
     )

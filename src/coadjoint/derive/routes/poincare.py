@@ -1,6 +1,6 @@
 r"""Poincare's route of 1901: quasi-velocities, structure constants and vector fields.
 
-Theorem (Holm 2011, appendix D; Poincare, C. R. Acad. Sci. 132 (1901) 369): let the fields
+Theorem (Holm 2011, appendix D; Poincare, C. R. Acad. Sci. 132, 1901, p. 369): let the fields
 :math:`X_s` with :math:`[e_k, e_s] = c_{ks}^i e_i` act transitively on the configurations, with
 :math:`\dot f = \eta_s X_s f`. Then with the kinetic energy T and the force function U
 
@@ -88,20 +88,27 @@ def _steps(setting: Setting, forces: list[Element], rates: tuple[Element, ...]) 
     transform, sign = legendre(setting), "" if setting.sign == 1 else "-"
     fields = [f"X_{name}" for name in setting.algebra.basis]
     return (
-        write_step("Kinetic energy and force function", "T + U", lines={"L": setting.lagrangian}),
+        write_step(
+            "Kinetic energy and force function",
+            "T + U",
+            lines={"L": setting.lagrangian},
+            by="stationary-action",
+        ),
         write_step(
             "Momenta of the quasi-velocities",
             "p_s = dT/deta_s",
             r"p_s = \partial T / \partial \eta_s",
             write_slopes("T", setting.velocities, transform.momenta),
+            by="legendre",
         ),
         write_step(
             "Quasi-velocities",
             "eta solved from p = dT/deta",
             r"\eta = \eta(p, a)",
             transform.definitions,
+            by="legendre",
         ),
-        write_step("Forces", "X_s (T + U)", lines=zip(fields, forces, strict=True)),
+        write_step("Forces", "X_s (T + U)", lines=zip(fields, forces, strict=True), by="poincare"),
         write_step(
             "Poincare's equations",
             f"d/dt dT/deta_s = {sign}sum c_ks^i eta_k dT/deta_i + X_s (T + U),  "
@@ -110,5 +117,6 @@ def _steps(setting: Setting, forces: list[Element], rates: tuple[Element, ...]) 
             rf"{sign}\sum c_{{ks}}^i \eta_k \frac{{\partial T}}{{\partial \eta_i}} + X_s (T + U), "
             r"\qquad \dot a = \eta_s X_s a",
             write_rates(setting.state, rates),
+            by="poincare",
         ),
     )

@@ -73,19 +73,21 @@ def hamiltonian_equations(
     ]
     steps = (
         *show_extremals(setting),
-        write_step("Hamiltonian", "h(x)", lines={"h": h}),
-        write_step(*law, brackets),
+        write_step("Hamiltonian", "h(x)", lines={"h": h}, by="hamilton"),
+        write_step(*law, brackets, by=route),
         write_step(
             "Derivatives of the Hamiltonian",
             "dh/dx",
             r"\partial h / \partial x",
             write_slopes("h", setting.state, gradient.values()),
+            by="hamilton",
         ),
         write_step(
             "Hamilton's equations",
             "dx/dt = {x, h}",
             r"\dot x = \{x, h\}",
             write_rates(setting.state, rates),
+            by="hamilton",
         ),
     )
     return emit(setting, route, rates, steps, h, definitions, solves)

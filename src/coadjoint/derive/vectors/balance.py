@@ -31,8 +31,8 @@ def balance_lines(equations: Equations) -> VectorForm | None:
     """The balance of momenta under constraints, with the forces that these exert; None without one.
 
     Lagrange and d'Alembert's law is built from the algebra; it is shown only if it is the system
-    that the kernel solves, row by row, once the multipliers are put in. A route in other velocities,
-    as Hamel's, has no rates of these.
+    that the kernel solves, row by row, once the multipliers are put in. A route in other
+    velocities, as Hamel's, has no rates of these.
     """
     setting, spec = equations.setting, equations.spec
     field, names = setting.field, setting.velocities
@@ -119,10 +119,10 @@ def speeds_of(equations: Equations) -> dict[str, Element]:
     """The rates of velocities and variables, by the names of what the kernel solves for."""
     field = equations.setting.field
     rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
-    solved = {name for name, _ in equations.exact.definitions}
-    for name in (*equations.setting.velocities, *equations.variables):
-        if f"d{name}_dt" in solved:
-            rates[name] = field[f"d{name}_dt"]
+    solved = {label for label, _ in equations.exact.definitions}
+    for n in (*equations.setting.velocities, *equations.variables):
+        if f"d{n}_dt" in solved:
+            rates[n] = field[f"d{n}_dt"]
     return rates
 
 
