@@ -18,7 +18,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.render.targets.protocol import Call, Kernel
 from coadjoint.solve.formulas import Formula
 from coadjoint.solve.kernels import Kernels
-from coadjoint.solve.spectral import MEAN
+from coadjoint.solve.spectral import require_mean_zero
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -141,15 +141,8 @@ def check_plane(system: TorusSystem, state: Array) -> None:
     field = state.reshape(*system.counts, -1)
     largest = np.max(np.abs(field), axis=(0, 1))
     for u, (m, factors) in system.around.solved.items():
-        means = np.mean(field, axis=(0, 1))
-        if (0, 0) not in factors and (np.abs(means) > MEAN * largest).any():
-            mean = float(means[np.argmax(np.abs(means) - MEAN * largest)])
-            raise KernelArgumentError(
-                f"the mean of {m} of {system.name} is {mean:.6g} at the beginning; expected 0, "
-                f"since {m} is made of derivatives of {u}. Subtract the mean.",
-                found=mean,
-                expected=0.0,
-            )
+        if (0, 0) not in factors:
+            require_mean_zero(system, u, m, field.reshape(-1, field.shape[-1]))
     one = np.ones(field.shape[-1])
     waves = PlaneWaves(system.counts, one, one)
     rest = np.max(np.abs(field - waves.show(waves.transform(field))), axis=(0, 1))
