@@ -38,6 +38,28 @@ class Sphere:
         """Each row with that of the tangent; none where there is no tangent."""
         return list(zip(self.rows, self.tangent, strict=False))
 
+    @property
+    def turning(self) -> tuple[int, ...]:
+        """Rows of the momentum, by whose slopes the energy turns all vectors of the factor."""
+        return self.tangent or self.rows
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """What is reconstructed and turns with the vectors of a sphere.
+
+    Attributes:
+        sphere: The place of the sphere.
+        rows: What they turn, by places below the state.
+        is_half: Whether it turns by half the angle, as unit quaternions do.
+        square: That of the multiple of the cross product that the bracket of the sphere is.
+    """
+
+    sphere: int
+    rows: tuple[int, ...]
+    is_half: bool
+    square: float
+
 
 @dataclass(frozen=True)
 class StructuredMethod:

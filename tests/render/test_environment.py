@@ -38,7 +38,7 @@ def test_every_kernel_template_is_rendered():
     parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2", "c/methods/spheres.c.j2"}
     parts |= {"c/methods/family_steps.c.j2", "c/methods/family_kinks.c.j2"}  # of family_solver.c.j2
     parts |= {"c/methods/stopping.c.j2", "c/methods/chord.c.j2", "c/methods/arc.c.j2"}
-    parts |= {"c/methods/newton.c.j2", "c/methods/krylov.c.j2"}
+    parts |= {"c/methods/newton.c.j2", "c/methods/krylov.c.j2", "c/methods/bands.c.j2"}
     parts |= {*OTHERS["js"].files.values(), "js/family.js.j2"}  # of `coadjoint.render.scripts`
     assert {name for name in present if not name.startswith(PAGES)} == rendered | parts
     targets = {path.parent.name for path in targets_folder().glob("*/__init__.py")}

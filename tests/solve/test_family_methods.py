@@ -18,7 +18,16 @@ from coadjoint.systems import (
     sphere_vortices,
     toda_lattice,
 )
-from tests.families import CHAIN, DRAG, PEAKONS, RING, SPRINGS, write_chain, write_ring
+from tests.families import (
+    CHAIN,
+    DRAG,
+    PEAKONS,
+    RING,
+    SPRINGS,
+    VORTICES,
+    write_chain,
+    write_ring,
+)
 
 RADIUS = "dot(S[i], S[i])"
 
@@ -258,5 +267,74 @@ def test_a_wrong_step_in_c_is_seen(texts, old, new):
     assert old in text
     with load_texts({**texts, "solver.c": text.replace(old, new)}) as system:
         choice = Choice(name="spherical_midpoint", order=2)
+        with pytest.raises(CrossCheckError, match="differs from its NumPy twin"):
+            family_steps.load(system, choice, "c")
+
+
+# -- Newton's method by bands ---------------------------------------------------------------------
+
+
+def test_texts_say_how_far_members_are_coupled(ring, chain):
+    """The masses on a line read two members further, and all pairs have no bands."""
+    assert ring.series.value("BANDS") == (1, 1)
+    assert chain.series.value("BANDS") == (2, 0)
+    pairs = pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts
+    assert "BANDS" not in pairs["solver.py"]
+    assert "KRYLOV" in pairs["solver.c"]
+
+
+def test_stiff_springs_are_followed_by_bands(chain):
+    """Steps that are far too long for sweeps, in a few each, however many masses there are."""
+    made = []
+    for n in (100, 400):
+        line = chain.resize({"i": n})
+        start = np.concatenate([0.1 * np.cos(np.arange(n) / 9), np.zeros(n)])
+        given = {"parameters": {"k": np.full(n, 500.0)}, "method": "midpoint", "step": 1.0}
+        assert line.simulate(start, (0, 4), samples=1, **given).status == "NOT_SOLVED"
+        found = line.simulate(start, (0, 4), samples=1, newton=True, **given)
+        assert found.status == "OK"
+        scale = np.abs(found.state[n:]).max()
+        assert np.abs(found.change("P")).max() < 1e-12 * n * scale
+        made.append(int(found.sweeps))
+    assert max(made) <= 48
+
+
+@pytest.mark.parametrize("name", ["ring", "chain"])
+def test_bands_have_the_bits_of_numpy(name, request):
+    """By one lane, by some of a vector, and by more than one, with counts of sweeps.
+
+    Slopes are above 1, so that rows are exchanged. The masses have exponentials, of which targets
+    have their own.
+    """
+    system, source = request.getfixturevalue(name).resize({"i": 20}), np.random.default_rng(2)
+    own = {"J": 8.0} if name == "ring" else {"k": np.full(20, 50.0)}
+    method = "spherical_midpoint" if name == "ring" else "midpoint"
+    for members in (1, 3, 11):
+        start = 0.1 * source.normal(size=(system.STATE.size, members))
+        start[-20:] += 1.0 * (name == "ring")
+        given = {"method": method, "step": 0.25, "newton": True, "samples": 1, "parameters": own}
+        one, other = (system.simulate(start, (0, 1), target=to, **given) for to in ("c", "numpy"))
+        assert (one.status == "OK").all()
+        if name == "ring":
+            assert one.state.tobytes() == other.state.tobytes()
+            assert np.array_equal(one.sweeps, other.sweeps)
+        else:
+            assert np.abs(one.state - other.state).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("at == column ? -slope[l] + 1.0", "at == column ? -slope[l] + 2.0"),
+        ("factor[l] = row[l] / own[l]", "factor[l] = row[l] * own[l]"),
+        ("const size_t apart = 2 * REACH + 1,", "const size_t apart = 2 * REACH,"),
+    ],
+)
+def test_wrong_bands_in_c_are_seen(texts, old, new):
+    """Each of these changes some bit of a run."""
+    text = texts["solver.c"]
+    assert old in text
+    with load_texts({**texts, "solver.c": text.replace(old, new)}) as system:
+        choice = Choice(name="spherical_midpoint", order=2, newton=True)
         with pytest.raises(CrossCheckError, match="differs from its NumPy twin"):
             family_steps.load(system, choice, "c")

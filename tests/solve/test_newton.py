@@ -215,7 +215,7 @@ def make_wave(n):
 
 
 @pytest.mark.parametrize("method", ["midpoint", "spherical_midpoint"])
-def test_stiff_neighbours_are_followed_by_krylov_spaces(method):
+def test_stiff_neighbours_are_followed(method):
     """A wave by steps eight times longer than sweeps converge with, against DOP853."""
     ring = heisenberg_lattice.system.resize({"i": 400})
     wave = make_wave(400)

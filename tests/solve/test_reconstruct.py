@@ -417,6 +417,9 @@ def test_the_element_of_a_step_moves_the_attitude():
         ("coadjoint_mean", 100_000, False),
         ("coadjoint_mean4", 10_000, False),
         ("coadjoint_mean", 10_000, True),
+        ("spherical_midpoint", 30_000, False),
+        ("spherical_midpoint4", 10_000, False),
+        ("spherical_midpoint", 10_000, True),
     ):
         run = body.simulate({}, (0, steps / 10), method=method, newton=newton, **given)
         assert run.status == "OK"
@@ -443,3 +446,111 @@ def test_what_is_carried_along_nonlinearly_has_no_element():
         built(text).simulate(
             {}, (0, 1), method="coadjoint_mean", step=0.1, reconstruct=True, target="numpy"
         )
+
+
+#: Momenta in space of other motions by method: each turns by an element of its own form.
+SPACE = {
+    "top": (
+        "spherical_midpoint",
+        ("one",),
+        """
+title = "A top"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum", default = [0.4, -0.3, 1.2] }
+Omega = { role = "velocity" }
+Gamma = { role = "advected", representation = "vector", default = [0.6, 0, 0.8] }
+[hamiltonian]
+h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Pi1^4/8 + Gamma3 + Gamma1^2"
+[reconstruction]
+q = { attitude = "quaternion" }
+[observables]
+one = "rotate(q, Gamma)"
+""",
+    ),
+    "two bodies": (
+        "spherical_midpoint",
+        ("one", "other"),
+        """
+title = "Two bodies with a joint energy"
+routes = ["lie-poisson"]
+[algebra]
+direct_sum = ["so(3)", "so(3)"]
+[variables]
+P = { role = "momentum", block = "rotation_1", default = [0.4, -0.3, 1.2] }
+U = { role = "velocity", block = "rotation_1" }
+Q = { role = "momentum", block = "rotation_2", default = [-0.7, 0.5, 0.2] }
+V = { role = "velocity", block = "rotation_2" }
+[hamiltonian]
+h = "P1^2/2 + P2^2/4 + P3^2/6 + P1^4/8 + Q1^2/3 + Q2^2/5 + Q3^2/2 + P1*Q2/4"
+[reconstruction]
+R = { rate = "R*hat(U)", shape = [3, 3], default = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }
+q = { rate = "qmul(q, vector(0, V1, V2, V3))/2", shape = [4], default = [1, 0, 0, 0] }
+[observables]
+one = "R*P"
+other = "rotate(q, Q)"
+""",
+    ),
+    "so(4)": (
+        "isospectral_midpoint",
+        ("one",),
+        """
+title = "A body in four dimensions"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(4)"
+[variables]
+M = { role = "momentum", default = [0.4, -0.3, 1.2, 0.5, 0.2, -0.6] }
+W = { role = "velocity" }
+[hamiltonian]
+h = "M1^2/2 + M2^2/4 + M3^2/6 + M4^2/3 + M5^2/7 + M6^2/5 + M1^4/8 + M2*M3/7"
+[reconstruction]
+R = { rate = "R*B", shape = [4, 4], default = IDENTITY }
+[observables]
+one = "R*A*transpose(R)"
+[definitions]
+A = '''rows(
+    vector(0, M1, M2, M3), vector(-M1, 0, M4, M5),
+    vector(-M2, -M4, 0, M6), vector(-M3, -M5, -M6, 0))'''
+B = '''rows(
+    vector(0, W1, W2, W3), vector(-W1, 0, W4, W5),
+    vector(-W2, -W4, 0, W6), vector(-W3, -W5, -W6, 0))'''
+""",
+    ),
+}
+
+
+@needs_compiler
+@pytest.mark.parametrize("name", SPACE)
+def test_momenta_in_space_stay_by_the_element_of_a_step(name):
+    """By spherical and isospectral midpoints, with the bits of NumPy; the midpoint loses them."""
+    (method, names, text), given = SPACE[name], {"samples": 5, "reconstruct": True}
+    text = text.replace("IDENTITY", "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]")
+    system = built(text)
+
+    def drift(run):
+        assert run.status == "OK"
+        return max(np.ptp(run[each], axis=-1).max() for each in names)
+
+    assert drift(system.simulate({}, (0, 1000), method=method, step=0.1, **given)) < 2e-14
+    assert drift(system.simulate({}, (0, 100), method="midpoint", step=0.1, **given)) > 1e-5
+    one, other = (
+        system.simulate({}, (0, 5), method=method, step=0.1, target=to, **given)
+        for to in ("c", "numpy")
+    )
+    for rows in ("state", "reconstructed"):
+        assert not find_differing_bits(getattr(one, rows), getattr(other, rows)).any()
+
+
+@pytest.mark.parametrize("rate", ["vector(0, Omega1, Omega2, 2*Omega3)", "vector(0, Omega)*3"])
+def test_what_turns_otherwise_is_not_carried_by_a_sphere(rate):
+    """Rates that are no turn by the velocity; the coadjoint mean takes any linear ones."""
+    rate = rate.replace("vector(0, Omega)", "vector(0, Omega1, Omega2, Omega3)")
+    own = f'q = {{ rate = "qmul(q, {rate})/2", shape = [4], default = [1, 0, 0, 0] }}'
+    system = built(BODY.replace('q = { attitude = "quaternion" }', own))
+    given = {"t": (0, 1), "step": 0.1, "reconstruct": True, "target": "numpy"}
+    with pytest.raises(KernelArgumentError, match="it moves the state alone, and what is recon"):
+        system.simulate({}, method="spherical_midpoint", **given)
+    assert system.simulate({}, method="coadjoint_mean", **given).status == "OK"

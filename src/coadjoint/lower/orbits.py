@@ -262,6 +262,13 @@ def find_spheres(programs: Mapping[str, Program]) -> tuple[Sphere, ...]:
     return tuple(found)
 
 
+def find_scales(programs: Mapping[str, Program], spheres: Sequence[Sphere]) -> list[Fraction]:
+    """By what multiple of the cross product each of some spheres has its bracket."""
+    brackets = _Brackets(programs["bracket_vector"])
+    turning = (sphere.turning for sphere in spheres)
+    return [brackets(a, b)[c] for a, b, c in turning]
+
+
 def _refuse(function: str, *_: Fraction) -> Fraction:
     """A bracket that is linear in the state calls no functions of it."""
     raise NotLinearError(function)
@@ -276,7 +283,7 @@ def _list_spheres(place: int, n: int) -> list[tuple[Sphere, int]]:
 
 def _is_sphere(brackets: _Brackets, sphere: Sphere, rows: range) -> bool:
     """Whether the brackets of some rows are those of a factor, and vanish with all others."""
-    own, turning = sphere.rows, sphere.tangent or sphere.rows
+    own, turning = sphere.rows, sphere.turning
     scale = brackets(turning[0], turning[1]).get(turning[2])
     if not scale:
         return False

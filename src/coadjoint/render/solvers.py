@@ -16,11 +16,13 @@ from typing import Any
 from coadjoint.derive.mechanics.iteration import is_guess, slope_place
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower import normals
+from coadjoint.lower.carriers import find_carriers
 from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.orbits import (
+    find_scales,
     find_spheres,
     is_carried,
     is_nambu,
@@ -259,9 +261,10 @@ def select_programs(
     bounds = {name: known[name] for name in others if name in known}
     slopes = {JACOBIAN: known[JACOBIAN]} if JACOBIAN in known and "noise" not in known else {}
     has_action = {*ACTION} <= known.keys() and kind == SOLVER and "noise" not in known
-    action = [name for name in ASKED if name in known] if has_action else []
+    action: list[str] = [name for name in ASKED if name in known] if has_action else []
     if is_carried(known) if kind != SOLVER else is_noisy_action(known):
-        action = [*ACTION]
+        carried = (*ACTION, "sandwich") if kind != SOLVER else ACTION
+        action = [name for name in carried if name in known]
     return {
         "rates": rates,
         **{
@@ -324,7 +327,11 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
     is_followed = bracket is not None and len(programs["rates"].state) > len(state) // 2
     still = {**programs, "rhs": programs["rates"]}
     on_orbits = is_followed or (bracket is not None and not is_noisy and stays_on_orbits(still))
-    spheres = find_spheres(programs) if (on_orbits or is_noisy) and not is_followed else ()
+    spheres = find_spheres(programs) if on_orbits or is_noisy else ()
+    scales = find_scales(programs, spheres) if is_followed else ()
+    carriers = find_carriers(programs, spheres, scales) if is_followed and spheres else ()
+    if is_followed and not carriers:
+        spheres = ()
     marks = {
         "orbits": on_orbits,
         "spheres": bool(spheres) and not is_noisy,
@@ -343,6 +350,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "known": len(state) // 2 if is_followed else 0,
             "acting": [name for name in ASKED if name in programs],
             "spheres": spheres,
+            "carriers": carriers,
             "is_noisy": is_noisy,
             "near": spherical_midpoint.NEAR,
             "roundings": spherical_midpoint.ROUNDINGS,

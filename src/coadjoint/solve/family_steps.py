@@ -27,6 +27,7 @@ from coadjoint.render.targets.protocol import Call
 from coadjoint.solve.ensemble import MET, Ensemble, Inputs
 from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.kernels import say_once
+from coadjoint.solve.methods.bands import Bands
 from coadjoint.solve.methods.sequence import Maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8
@@ -184,6 +185,9 @@ class FamilyTwin(StepwiseStepper):
             functions: dict[str, Any] = {"rates": self._rates, "field": self._rates}
             functions |= {"spheres": spheres, "bracket": self._bracket, "sandwich": self._sandwich}
             functions["gradient"] = partial(self._evaluate, ("energy_gradient",))
+            if choice.newton and family.series.has("BANDS"):
+                reach, wraps = family.series.value("BANDS")
+                functions["bands"] = Bands(family.size, reach, bool(wraps))
             return Structured(
                 choice.name,
                 run.size,

@@ -135,7 +135,10 @@ def find_structure_obstacles(system: System, kind: SolverKind) -> dict[str, str]
         return dict.fromkeys(STRUCTURED, "its folder was generated without it")
     judged = {each.name for each in system.METHODS}
     backward = list_backward() - judged if judged else set()
-    alone = {each.name for each in system.METHODS if each.applies} if kind != SOLVER else set()
+    alone = set[str]()
+    if kind != SOLVER:
+        own = KernelModule(system, SOLVER.files[2])
+        alone = set(own.value("STRUCTURED") if own.has("STRUCTURED") else ())
     return {
         name: BACKWARD
         if name in known

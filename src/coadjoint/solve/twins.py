@@ -69,13 +69,15 @@ class NumpyStepper:
         self._sizes = {name: system.rows(name).size for name in functions}
         self._expansion, self._branches = None, bool(system.stepwise)
         spheres: tuple[Any, ...] = ()
-        self._held, kinks, self._spheres = None, None, spheres
+        self._held, kinks, self._spheres, self._carriers = None, None, spheres, spheres
         if not system.stepwise:
             module = KernelModule(system, choice.kind.files[2])
             self._expansion = module.function("expand")
             self._branches = bool(module.value("BRANCHES"))
             if module.has("SPHERES"):
                 self._spheres = module.value("SPHERES")
+            if module.has("CARRIERS"):
+                self._carriers = module.value("CARRIERS")
             if module.has("KINKS"):
                 self._held = module.function("find_rates")
                 kinks = partial(self._find_kinks, module.function("find_kinks"))
@@ -129,6 +131,7 @@ class NumpyStepper:
             )
         if self._choice.is_structured:
             functions: dict[str, Any] = {"rates": self._rates, "spheres": self._spheres}
+            functions["carriers"] = self._carriers
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": self._element, "bracket": self._bracket, "energy": energy}
             functions |= {"sandwich": self._sandwich, "field": self._field}
@@ -185,9 +188,7 @@ class NumpyStepper:
 
     def _field(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The bracket with the energy."""
-        return self._bracket(
-            lanes, after, state, self._evaluate(("energy_gradient",), lanes, after, state)
-        )
+        return self._bracket(lanes, after, state, self._element(lanes, after, state))
 
     def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The product of matrices of a state and of a vector."""

@@ -211,6 +211,7 @@ def render(written: Written) -> str:
                 "terms": TERMS,
                 "has_bracket": True,
                 "known": 0,
+                "carriers": (),
                 "is_noisy": False,
                 "has_newton": False,
                 "near": spherical_midpoint.NEAR,

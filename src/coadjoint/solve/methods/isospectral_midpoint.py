@@ -7,6 +7,9 @@ Mathematics 20 (2020) 889. It is a Poisson map on the dual of such an algebra an
 spectrum of W. In the coordinates of the state it is ``x + h J(X) xi`` where
 ``X = x + h/2 J(X) xi + (h/2 B) X (h/2 B)``; the last product is a function of the kernel, which on
 su(n) and sl(n) is that of a larger algebra (`coadjoint.derive.sandwich`).
+What is reconstructed, with rates that are linear in it, moves by Cayley's transform of the same
+element: by the midpoint, with the state held at X. Where it is a matrix that the matrices of the
+algebra multiply, a momentum in space stays.
 Read next: `coadjoint.solve.methods.lie_poisson`.
 """
 
@@ -14,12 +17,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoisson, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -31,6 +35,7 @@ def make(functions: Mapping[str, Any], size: float, order: int) -> IsospectralMi
         gradient=functions["gradient"],
         bracket=functions["bracket"],
         sandwich=functions["sandwich"],
+        known=functions.get("known"),
         size=size,
         order=order,
     )
@@ -44,6 +49,7 @@ class IsospectralMidpoint(LiePoisson):
         bracket: Likewise.
         sandwich: The product ``B(vector) W(state) B(vector)`` in the coordinates of the state.
         size: As of `LiePoisson`.
+        known: Rows above what is reconstructed; None for all.
         order: Likewise.
     """
 
@@ -54,15 +60,17 @@ class IsospectralMidpoint(LiePoisson):
         bracket: Bracket,
         sandwich: Bracket,
         size: float,
+        known: int | None = None,
         order: int = 2,
     ) -> None:
         super().__init__(gradient=gradient, bracket=bracket, size=size, order=order)
-        self.sandwich = sandwich
+        self.sandwich, self.known = sandwich, known
 
     def sweep(self, arc: Arc, middle: Array, kept: None) -> Sweep:
         """As `LiePoisson.sweep`."""
         lanes, after, half = arc.lanes, arc.middle, 0.5 * arc.length
         xi = self.gradient(lanes, after, middle)
-        rates = self.bracket(lanes, after, middle, xi)
-        both = self.sandwich(lanes, after, middle, half * xi)
+        rates, both = self.bracket(lanes, after, middle, xi), np.zeros(middle.shape)
+        known = slice(None) if self.known is None else slice(self.known)
+        both[known] = self.sandwich(lanes, after, middle[known], half * xi[known])
         return Sweep(arc.state + (arc.low + (half * rates + both)), arc.length * rates)

@@ -6,7 +6,8 @@ symmetric coefficients have order 4 and 6.
 
 The search for the middle begins where those of the last steps ended, continued as a parabola in the
 number of the step. Newton's method takes the place of sweeps alone where it is asked for
-(`coadjoint.solve.methods.newton`, and `coadjoint.solve.methods.krylov` for equal members). What a
+(`coadjoint.solve.methods.newton`, and for equal members `coadjoint.solve.methods.bands` and
+`coadjoint.solve.methods.krylov`). What a
 step leaves for the next one stands in its memory: rows of what rounding took of the state, and for
 each search the last offset of the middle from the state with its first and second difference.
 Comes in: where members are. Goes out: where a step of each leads.
@@ -25,6 +26,7 @@ import numpy as np
 from coadjoint.lower.compositions import COMPOSITIONS
 from coadjoint.lower.normals import SWEEPS
 from coadjoint.methods import TERMS
+from coadjoint.solve.methods import bands as banded
 from coadjoint.solve.methods import krylov, newton
 from coadjoint.solve.steps import Lanes, add_low
 
@@ -170,11 +172,13 @@ class LiePoisson:
         jacobian: The derivatives of the rates by the state, row by row, some time after lanes, for
             Newton's method; None without it.
         along: In its place, of equal members, the derivative of the rates along a vector.
+        bands: Which of these are coupled, where not all are.
         holds: Whether a sweep that changes nothing may change something again.
     """
 
     jacobian: Callable[[Lanes, Array, Array], Array] | None = None
     along: Bracket | None = None
+    bands: banded.Bands | None = None
     holds = False
 
     def __init__(
@@ -251,6 +255,8 @@ class LiePoisson:
         def apply(vector: Array) -> Array:
             return self.apply_slopes(arc, middle, following, kept, vector)
 
+        if self.bands is not None:
+            return banded.improve(middle, following, apply, self.bands)
         return krylov.improve(middle, following, apply)
 
     def prepare(self, arc: Arc, middle: Array) -> Any:

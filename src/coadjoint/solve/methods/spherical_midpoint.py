@@ -9,6 +9,8 @@ A factor of the dual of se(3), momentum Pi and vector Gamma, is one of dual numb
 ``|Gamma|^2`` and ``Pi . Gamma``. It is a Poisson map as the limit of one: with ``e^2 = d^2`` in
 place of 0 the factor is two spheres, ``Gamma + d Pi`` and ``Gamma - d Pi``, each with a multiple of
 the bracket of so(3), so that the step is the one above.
+What is reconstructed turns by the element of the same step (`coadjoint.lower.carriers`), so that a
+momentum in space stays to rounding.
 Read next: `coadjoint.solve.methods.isospectral_midpoint`.
 """
 
@@ -19,8 +21,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.lower.compositions import COMPOSITIONS
-from coadjoint.methods import Sphere
-from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
+from coadjoint.methods import Carrier, Sphere
+from coadjoint.solve.methods.lie_poisson import Arc, Gradient, LiePoisson, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -44,6 +46,8 @@ def make(functions: Mapping[str, Any], size: float, order: int) -> SphericalMidp
         field=functions["field"],
         size=size,
         spheres=tuple(Sphere(*each) for each in functions["spheres"]),
+        carriers=tuple(Carrier(*each) for each in functions.get("carriers", ())),
+        gradient=functions.get("gradient"),
         order=order,
     )
 
@@ -56,6 +60,8 @@ class SphericalMidpoint(LiePoisson):
         size: As of `LiePoisson`.
         spheres: The factors; rows in none are moved by the midpoint. Of a family of equal members a
             row is a slice, of one component of all members.
+        carriers: What turns with them, below the state.
+        gradient: The derivative of the energy, where something does.
         order: As of `LiePoisson`.
     """
 
@@ -65,10 +71,12 @@ class SphericalMidpoint(LiePoisson):
         field: Callable[[Lanes, Array, Array], Array],
         size: float,
         spheres: tuple[Sphere, ...],
+        carriers: tuple[Carrier, ...] = (),
+        gradient: Gradient | None = None,
         order: int = 2,
     ) -> None:
         self.field, self.size, self.stages = field, size, COMPOSITIONS[order]
-        self.spheres = spheres
+        self.spheres, self.carriers, self.find_element = spheres, carriers, gradient
         self.holds = any(each.tangent for each in spheres)
 
     def prepare(self, arc: Arc, middle: Array) -> list[Scale]:
@@ -87,7 +95,23 @@ class SphericalMidpoint(LiePoisson):
         following, moves = arc.state + chord, np.zeros(arc.length.shape, bool)
         for each in kept:
             moves = moves | each.apply(arc.state, chord, following)
-        return Sweep(following, arc.length * rates, moves)
+        rise = arc.length * rates
+        for own in self.carriers:
+            stretch = arc.length * kept[own.sphere].scale
+            if own.is_half:
+                stretch = self._halve(arc, middle, own, stretch)
+            for row in own.rows:
+                rise[row] = stretch * rates[row]
+                following[row] = arc.state[row] + (arc.low[row] + 0.5 * rise[row])
+        return Sweep(following, rise, moves)
+
+    def _halve(self, arc: Arc, middle: Array, carrier: Carrier, stretch: Array) -> Array:
+        """The length by which Cayley's transform turns a quaternion by half of an angle."""
+        assert self.find_element is not None, "what is carried has an element"
+        xi = self.find_element(arc.lanes, arc.middle, middle)
+        a, b, c = (xi[row] for row in self.spheres[carrier.sphere].turning)
+        square = 0.25 * stretch * stretch * (carrier.square * (a * a + b * b + c * c))
+        return np.asarray(2.0 * stretch / (1.0 + np.sqrt(1.0 + square)))
 
     def linearise(self, arc: Arc, middle: Array, following: Array, kept: list[Scale]) -> Array:
         """As `LiePoisson.linearise`, exact."""

@@ -56,6 +56,7 @@ class Structured:
         if newton:
             self.method.jacobian = functions.get("jacobian")
             self.method.along = functions.get("along")
+            self.method.bands = functions.get("bands")
 
     def try_step(self, lanes: Lanes) -> Attempt:
         """As `coadjoint.solve.steps.Method.try_step`."""

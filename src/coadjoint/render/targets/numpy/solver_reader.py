@@ -164,9 +164,13 @@ def _is_allowed(item: ast.stmt) -> bool:
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Dict()):
             return name in ("REFUSALS", "SCHEDULES", "MOVED")
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple()):
-            return name in ("KINKS", "STRUCTURED", "SPHERES") or name.startswith(
-                ("TABLE_", "STAR_")
-            )
+            return name in (
+                "KINKS",
+                "STRUCTURED",
+                "SPHERES",
+                "CARRIERS",
+                "BANDS",
+            ) or name.startswith(("TABLE_", "STAR_"))
     return False
 
 
