@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -49,13 +50,13 @@ from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import BALANCE, JACOBIAN
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
-from coadjoint.render.targets.protocol import Call
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The objects that are compiled, each once: method, target and build. The builds differ in their
@@ -213,23 +214,23 @@ def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
 
 
 def _numpy_function(subject: Subject, names: Sequence[str]) -> Function:
-    """The rows of some functions of the NumPy kernel, one below the other.
-
-    Arguments of steps are arrays in order; rung 4 has called the functions as a person does.
-    """
-    program, kernels = subject.programs[names[0]], subject.system._kernels
+    """The rows of some functions of the NumPy kernel, one below the other."""
+    program = subject.programs[names[0]]
     inputs = len(program.inputs)
 
     def function(state: Array, parameters: Array, driving: Array) -> Array:
-        own_parameters = np.ascontiguousarray(parameters)
-        given = {"inputs": np.ascontiguousarray(driving[:inputs])} if inputs else {}
-        given |= {"time": np.ascontiguousarray(driving[inputs:])} if program.time else {}
+        shared = [np.ascontiguousarray(parameters)]
+        shared += [np.ascontiguousarray(driving[:inputs])] if inputs else []
+        named = {"time": np.ascontiguousarray(driving[inputs])} if program.time else {}
         rows = []
         for name in names:
             each = subject.programs[name]
             own = np.ascontiguousarray(state[: len(each.state)])
             block = np.empty((*each.shape, state.shape[1]))
-            kernels.run(name, Call(own, own_parameters, block, given), "numpy")
+            call = getattr(subject.system, name)
+            if KERNEL_FUNCTIONS[name].below == "vector":  # which stands below the state already
+                call = partial(subject.system.evaluate, name)
+            call(own, *shared, **named, target="numpy", out=block)
             rows.append(block.reshape(-1, state.shape[1]))
         return np.concatenate(rows)
 
