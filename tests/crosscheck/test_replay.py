@@ -65,3 +65,23 @@ def test_points_outside_the_domain_are_still_refused():
     for y in (0.0, -1.0):
         with pytest.raises(OutsideDomain):
             oracle(again, "f", {"x": 1.0, "y": y})
+
+
+class Replaced(Equations):
+    """A derivative that another rule replaces, and a function that has a value where x > 0."""
+
+    def evaluate(self, function, inputs, number, call):
+        """As a `Reference`."""
+        x, y = inputs["x"], inputs["y"]
+        for _ in (x / y + y, call("log", x)):
+            pass
+        return [x * y]
+
+
+def test_what_no_output_rests_on_is_left_out_but_for_calls():
+    """A quotient by zero that nobody reads says nothing of a point, a function's domain does."""
+    again = Replayed(Replaced())
+    assert len(oracle(again, "f", {"x": 1.0, "y": 0.0})) == 1
+    assert len(again._functions["f"].steps) == 2  # the product, and the call
+    with pytest.raises(OutsideDomain):
+        oracle(again, "f", {"x": -1.0, "y": 1.0})

@@ -256,6 +256,36 @@ conserved = ["energy"]
     assert are_equal(rates["w_1"], k * r * (x2 - x1) / (1 + r**2))
 
 
+def test_forces_by_definitions_next_to_a_constraint_of_one_member():
+    """A definition names another member in each force; the one that is held has a reaction."""
+    text = """
+title = "Blocks on a belt"
+routes = ["nonholonomic"]
+[index]
+i = { size = 3 }
+[variables]
+x = { role = "coordinate", index = "i" }
+v = { role = "velocity", of = "x", index = "i" }
+[parameters]
+c = {}
+w = {}
+[definitions]
+slip = "v[i] - w"
+[lagrangian]
+l = "sum(i, v[i]^2)/2 - sum(i, (x[i+1] - x[i])^2)/2"
+[forces]
+v = "-c*slip"
+[constraints]
+rest = "v[0] == w"
+"""
+    equations = derive(read(text))
+    rates = dict(zip(equations.variables, equations.rates, strict=True))
+    c, w, x0, x1, x2, v1, v2 = sympy.symbols("c w x_0 x_1 x_2 v_1 v_2")
+    assert are_equal(rates["v_0"], sympy.Integer(0))
+    assert are_equal(rates["v_1"], x0 - 2 * x1 + x2 - c * (v1 - w))
+    assert are_equal(rates["v_2"], x1 - x2 - c * (v2 - w))
+
+
 def test_a_cart_without_an_index_and_pendulums_with_one():
     """The cart is shared: its momentum is conserved, and each pendulum pulls it."""
     text = """

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from coadjoint.declared import Quantity
 from coadjoint.derive import derive
@@ -234,6 +235,51 @@ def test_a_block_sticks_to_a_belt(tmp_path, method):
     assert abs(found.final["x"] + 1 + place) < 5e-12
     assert abs(found.final["p"] - 0.25) < 1e-12
     assert "p - w = 0" in found.message
+
+
+ROW = """
+title = "Two blocks on a belt, of which the first one rests on it"
+routes = ["nonholonomic"]
+[index]
+i = { size = 2 }
+[variables]
+x = { role = "coordinate", index = "i" }
+v = { role = "velocity", of = "x", index = "i" }
+[parameters]
+f = { positive = true, default = "0.5" }
+w = { default = "0.25" }
+[definitions]
+slip = "sign(v[1] - w)"
+[lagrangian]
+l = "sum(i, v[i]^2/2 - x[i]^2/2) - sum(i, (x[i+1] - x[i])^2/8)"
+[forces]
+v_1 = "-f*slip"
+[constraints]
+rest_0 = "v[0] == w"
+[domain]
+forward = "rest_0_reaction < f"
+backward = "rest_0_reaction > -f"
+"""
+
+
+def test_one_of_several_blocks_is_held(tmp_path):
+    """The other one slides along a cosine, until both springs pull the first one off."""
+    system = system_of_spec(tmp_path, ROW)
+    rate, push = math.sqrt(1.25), 0.5 / 1.25  # of the second one, towards which friction pushes
+
+    def place(t):
+        drift = 0.25 * 0.25 / 1.25
+        turning = (1 + push) * math.cos(rate * t) + (1 + drift) / rate * math.sin(rate * t)
+        return drift * t + push - turning
+
+    end = brentq(lambda t: 1.25 * 0.25 * t - 0.25 * place(t) - 0.5, 0, 1, xtol=1e-14)
+    found = run_both(system, [0, -1, 0.25, -1], (0, 9), rtol=1e-12, atol=1e-12)
+    assert system.STATE.components == ("x_0", "x_1", "v_0", "v_1")
+    assert found.status == "DOMAIN"
+    assert 0.3 < end < 0.6
+    assert abs(found.time_reached - end) < 1e-10
+    expected = [0.25 * end, place(end), 0.25]
+    assert np.abs(found.state[:3, -1] - expected).max() < 1e-10
 
 
 DRIVEN = """

@@ -2,8 +2,9 @@
 
 Comes in: a `Reference`. Goes out: another one of the same values. The first evaluation of a
 function is made with marks, which write down what is done to them; it does not depend on values.
-All others do the same in the same order, and what would be done twice once. Equations are evaluated
-at thousands of points, and most of that time went into finding out what to do.
+All others do the same in the same order, and what would be done twice once; what no output rests on
+is left out. Equations are evaluated at thousands of points, and most of that time went into finding
+out what to do.
 Read next: `coadjoint.crosscheck.oracle`.
 """
 
@@ -184,12 +185,13 @@ def _record(reference: Reference, function: str, inputs: Mapping[str, Any]) -> _
     for name in inputs:
         marks[name] = Mark(tape)
     found = reference.evaluate(function, marks, tape.number, tape.note)
-    read = {mark for _, arguments in tape.steps for mark in arguments}.union(found)
+    needed = _list_needed(tape, found)
+    read = {mark for _, arguments in needed for mark in arguments}.union(found)
     names = [name for name, mark in marks.items() if mark in read]
-    known = (*(marks[name] for name in names), *tape.numbers.values(), *tape.steps.values())
+    known = (*(marks[name] for name in names), *tape.numbers.values(), *needed.values())
     places = {mark: place for place, mark in enumerate(known)}
     steps = list[tuple[Any, Any, int]]()
-    for operation, arguments in tape.steps:
+    for operation, arguments in needed:
         at = [places[mark] for mark in arguments]
         one, other = (at, -1) if isinstance(operation, str | Loop) else at
         steps.append((operation, one, other))
@@ -199,3 +201,18 @@ def _record(reference: Reference, function: str, inputs: Mapping[str, Any]) -> _
         steps=steps,
         outputs=[places[mark] for mark in found],
     )
+
+
+def _list_needed(
+    tape: Tape, outputs: Sequence[Mark]
+) -> dict[tuple[Operation, tuple[Mark, ...]], Mark]:
+    """Steps that outputs rest on, and calls: those say where the equations have a value.
+
+    Derivatives of definitions that another rule replaces are half of all steps in some systems.
+    """
+    read, needed = set(outputs), []
+    for step, result in reversed(tape.steps.items()):
+        if result in read or isinstance(step[0], str):
+            read.update(step[1])
+            needed.append((step, result))
+    return dict(reversed(needed))

@@ -8,12 +8,13 @@ Read next: `coadjoint.lower.lowering`, which makes Programs of Equations.
 
 from __future__ import annotations
 
+import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
-from typing import Any, Literal, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
 from coadjoint.derive.mechanics.iteration import is_step
 from coadjoint.elementary import ELEMENTARY
@@ -400,6 +401,14 @@ def walk(node: Node) -> Iterator[Node]:
         yield from walk(child)
 
 
+#: What two operands make.
+_COMBINE: Final[dict[type, Callable[[Any, Any], Any]]] = {
+    Add: operator.add,
+    Multiply: operator.mul,
+    Divide: operator.truediv,
+}
+
+
 def evaluate(
     node: Node,
     values: Mapping[str, Value],
@@ -414,11 +423,16 @@ def evaluate(
         number: Takes an exact constant into the arithmetic.
         call: Applies an elementary function by name.
     """
+    kind = type(node)
+    if kind in _COMBINE:  # most nodes, so these come first, and by their type alone
+        left = evaluate(node.left, values, number, call)  # type: ignore[union-attr]
+        right = evaluate(node.right, values, number, call)  # type: ignore[union-attr]
+        return _COMBINE[kind](left, right)  # type: ignore[no-any-return]
+    if kind is Symbol:
+        return values[node.name]  # type: ignore[union-attr]
     match node:
         case Number(value=value):
             return number(value)
-        case Symbol(name=name):
-            return values[name]
         case Call(function=function):
             return call(function, *(evaluate(u, values, number, call) for u in children(node)))
         case Negate(operand=operand):
@@ -426,16 +440,7 @@ def evaluate(
         case Item(of=of, place=place):
             several: Any = evaluate(of, values, number, call)
             return several[place]  # type: ignore[no-any-return]
-        case Factors() | Solution():
-            return _evaluate_several(node, values, number, call)  # type: ignore[no-any-return]
-    left = evaluate(node.left, values, number, call)
-    right = evaluate(node.right, values, number, call)
-    match node:
-        case Add():
-            return left + right  # type: ignore[operator, no-any-return]
-        case Multiply():
-            return left * right  # type: ignore[operator, no-any-return]
-    return left / right  # type: ignore[operator, no-any-return]
+    return _evaluate_several(node, values, number, call)  # type: ignore[arg-type, no-any-return]
 
 
 def _evaluate_several(

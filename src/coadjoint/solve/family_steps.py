@@ -545,7 +545,8 @@ def find_stepper(
             f"steps of {system.name} do not end at the kinks of pairs of members, where "
             f"{' or '.join(system.pair_kinks)} is 0: they cross them with an error, and with fixed "
             "steps a method loses its order there. Take tolerances that fit the jump, or a sum "
-            "that is smooth.",
+            "that is smooth; or write few members out, with written_out = true in [index]: then "
+            "steps end there.",
             category=KinkWarning,
         )
     if inputs is not None:

@@ -2,7 +2,8 @@
 
 Comes in: a checked file with a table [index]. Goes out: the Spec of a few members, as any other
 spec has, with all that is known of the others in its attribute ``family``. What a generic member
-does not tell (`coadjoint.spec.looped`) is written out for all members, and is a Spec as any other.
+does not tell (`coadjoint.spec.looped`), and what asks for it, is written out for all members, and
+is a Spec as any other.
 The numbers are those from which the claims follow for every other number
 (docs/decisions/windows.md):
 
@@ -72,7 +73,8 @@ def read_windows(
     if counted and index.size is not None:
         file = count_out(source, file, index, file.index[index.name].size)
     _check(source, file, index)
-    misfit = misfit or find_misfit(file, index)
+    asked = "written_out = true asks for it" if file.index[index.name].written_out else ""
+    misfit = misfit or asked or find_misfit(file, index)
     if misfit:
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)

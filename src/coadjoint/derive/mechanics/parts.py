@@ -112,8 +112,11 @@ def _is_part(spec: Spec, definition: Definition) -> bool:
 
 
 def _parts(spec: Spec) -> list[Definition]:
-    """The definitions that forces use, directly or by way of others, in declared order."""
-    if not spec.in_frame:
+    """The definitions that forces use, directly or by way of others, in declared order.
+
+    Those of a spec with an index name members, and have another value in each formula.
+    """
+    if not spec.in_frame or spec.index:
         return []
     acting = [*spec.forces.values(), *([spec.dissipation] if spec.dissipation else [])]
     used = set[str]().union(*(_names(_tree(spec, each.text)) for each in acting))

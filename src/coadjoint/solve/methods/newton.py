@@ -53,6 +53,8 @@ def solve(matrix: Array, known: Array) -> Array:
     for j in range(size):
         for i in range(j + 1, size):
             swap = np.abs(matrix[i, j]) > np.abs(matrix[j, j])
+            if not swap.any():
+                continue
             for rows in (matrix[:, j:], known):
                 rows[j], rows[i] = (
                     np.where(swap, rows[i], rows[j]),

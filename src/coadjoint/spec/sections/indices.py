@@ -37,6 +37,11 @@ class IndexPart(Part):
     count: Annotated[str, Field(pattern=NAME_PATTERN)] | None = Field(
         None, description="what formulas call the number of members, as 'n'"
     )
+    written_out: bool = Field(
+        False,
+        description="whether all members are written out for the loaded size, as an ordinary "
+        "system, although a generic member tells the equations of all",
+    )
 
 
 def read_indices(reading: Reading, parts: Mapping[str, IndexPart]) -> tuple[Index, ...]:
