@@ -15,7 +15,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,11 +25,15 @@ import click
 import coadjoint
 from coadjoint.cli.arguments import shipped_names, spec_path
 from coadjoint.fingerprint import digest, engine_fingerprint
+from coadjoint.resources import templates_folder
 from coadjoint.spec import read_spec
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "build" / "site-made"
 SOURCE = ROOT / "build" / "site-source"
+
+#: The style of equations in documents, which has nothing to fill in.
+FORMULAS = templates_folder() / "document" / "formulas.css.j2"
 
 #: What is made of each system: the file, the command that writes it, and how else it may end: 1,
 #: where a motion stops early and is drawn as far as it goes; 2, where there is no such page of it.
@@ -52,6 +56,7 @@ class Made:
         routes: That derive it.
         folder: Where the parts are.
         parts: Those that the commands could make.
+        equations: Of its motion, as its document shows them: titles with HTML.
     """
 
     name: str
@@ -61,6 +66,7 @@ class Made:
     routes: Sequence[str]
     folder: Path
     parts: frozenset[str]
+    equations: Mapping[str, str]
 
 
 def make_parts(name: str) -> Made:
@@ -87,7 +93,32 @@ def make_parts(name: str) -> Made:
         (folder / "done").touch()
     parts = frozenset(part for part in PARTS if (folder / part).is_file())
     about = " ".join(spec.description.split())
-    return Made(name, spec.title, about, spec.source, spec.routes, folder, parts)
+    document = folder / "document.html"
+    return Made(
+        name=name,
+        title=spec.title,
+        about=about,
+        source=spec.source,
+        routes=spec.routes,
+        folder=folder,
+        parts=parts,
+        equations=find_equations(document.read_text(encoding="utf-8"))
+        if document.is_file()
+        else {},
+    )
+
+
+def find_equations(document: str) -> dict[str, str]:
+    """What a document shows of the motion, by titles: HTML without empty lines, which end it."""
+    found = re.findall(
+        r'<section class="(?:motion|members)">\n<h2>(.*?)</h2>\n(.*?)</section>',
+        document,
+        re.DOTALL,
+    )
+    return {
+        html.unescape(title): "\n".join(line for line in body.splitlines() if line.strip())
+        for title, body in found
+    }
 
 
 def make_all(names: Sequence[str]) -> Iterator[Made]:
@@ -129,14 +160,16 @@ def write_system(made: Made) -> str:
         links.append(f'<a href="../explorers/{made.name}.html">Explorer</a>')
     if links:
         lines += ["<p>" + " &middot; ".join(links) + "</p>", ""]
+    for title, body in made.equations.items():
+        lines += [f"## {title}", "", '<div class="formulas">', body, "</div>", ""]
     lines += [
+        "## Declaration",
+        "",
         f"Source: {made.source}. Routes: {', '.join(f'`{each}`' for each in made.routes)}.",
         "",
         "```python",
         f"from coadjoint.systems import {made.name}",
         "```",
-        "",
-        "## Declaration",
         "",
         "```toml",
         spec_path(made.name).read_text(encoding="utf-8").strip(),
@@ -210,6 +243,7 @@ def lay_out(systems: Sequence[Made], book: Path | None = None) -> None:
     shutil.copy(ROOT / "site" / "examples.rst", SOURCE / "examples" / "GALLERY_HEADER.rst")
     (SOURCE / "_static" / "pictures").mkdir(parents=True)
     shutil.copy(ROOT / "site" / "site.css", SOURCE / "_static" / "site.css")
+    shutil.copy(FORMULAS, SOURCE / "_static" / "formulas.css")
     for folder in ("_made/documents", "_made/explorers", "systems", "reference"):
         (SOURCE / folder).mkdir(parents=True)
     for made in systems:

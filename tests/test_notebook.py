@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive
+from coadjoint.derive.vectors import vector_form
 from coadjoint.loading import load
 from coadjoint.prove import prove
 from coadjoint.prove.examination import examine
@@ -88,6 +90,37 @@ def test_equations_have_latex_with_dots_over_letters(shown):
     """A dot over the letter alone."""
     assert r"\dot{\Pi}_1 &=" in shown["equations"].latex()
     assert r"\dot{\Pi_" not in shown["equations"].latex()
+
+
+def test_a_heavy_top_is_shown_by_its_vectors():
+    """Holm II (2011), 8.1.4: dPi/dt = Pi x Omega + m g Gamma x chi, dGamma/dt = Gamma x Omega."""
+    shown = derive(shipped("heavy_top"))._repr_latex_()
+    momentum, vertical = r"\boldsymbol{\Pi}", r"\boldsymbol{\Gamma}"
+    turn, centre = r"\boldsymbol{\Omega}", r"\boldsymbol{\chi}"
+    torque = rf"m\,g\,{vertical} \times {centre}"
+    assert rf"\dot{{{momentum}}} &= {momentum} \times {turn} + {torque} \\" in shown
+    assert rf"\dot{{{vertical}}} &= {vertical} \times {turn} \\" in shown
+    assert r"\dot{\Pi}_1" not in shown, "components stand below, in HTML alone"
+
+
+def test_without_all_vectors_components_are_shown(shown, monkeypatch):
+    """An equation that is missing is not left out: all of them stand in components."""
+    equations = shown["equations"]
+    form = vector_form(equations)
+    assert len(form.lines) > 1
+    assert form.missing == ()
+    partial = replace(form, lines=form.lines[1:], missing=("Pi",))
+    monkeypatch.setattr("coadjoint.derive.document.vector_form", lambda _: partial)
+    assert equations._repr_latex_() == f"$\\displaystyle {equations.latex()}$"
+
+
+def test_equations_stand_below_each_other_by_a_style_of_their_own(shown):
+    """Rules for a grid of sides, inside a class that nothing else of a notebook has."""
+    page = shown["equations"]._repr_html_()
+    assert page.count("<style>") == 1
+    rules, body = page.split("</style>")
+    assert re.search(r"\.formulas \{.*\.lines \{ display: grid", rules, re.DOTALL)
+    assert body.strip().startswith('<div class="formulas">')
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,17 @@ import re
 import runpy
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
 
+from coadjoint.derive import derive
+from coadjoint.derive.document import document
+from coadjoint.render.document import render_document
 from tests.conftest import FAMILIES, FIELDS, SYSTEMS
+from tests.specs import shipped
+from tests.test_notebook import Tags
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -39,6 +44,7 @@ def test_a_page_shows_what_could_be_made(site):
         routes=("canonical",),
         folder=ROOT,
         parts=frozenset(["document.html", "picture.png"]),
+        equations={"Equations of motion": "<p>by vectors</p>"},
     )
     page = site["write_system"](made)
     assert "documents/kepler.html" in page
@@ -46,7 +52,42 @@ def test_a_page_shows_what_could_be_made(site):
     assert "explorers/kepler.html" in site["write_system"](
         replace(made, parts=made.parts | {"explorer.html"})
     )
+    equations = page.index("<p>by vectors</p>")
+    assert page.index("## Equations of motion") < equations < page.index("## Declaration")
+    assert "## Equations" not in site["write_system"](replace(made, equations={}))
     assert "Kepler &lt;b&gt;" in site["write_index"]([made])
+
+
+@pytest.mark.parametrize(
+    ("name", "titles", "mark"),
+    [
+        ("rigid_body", ["Equations of motion"], "<mi>𝜫</mi><mo>&#xD7;</mo><mi>𝜴</mi>"),
+        ("toda_lattice", ["Equations of motion", "Ends"], "<mi>q</mi>"),
+    ],
+)
+def test_a_page_shows_the_equations_of_its_document(site, name, titles, mark):
+    """By vectors as MathML: the lines of the motion alone, in one block of HTML that is whole."""
+    page = render_document(asdict(document(derive(shipped(name)))), "html")
+    equations = site["find_equations"](page)
+    assert list(equations) == titles
+    body = equations["Equations of motion"]
+    assert mark in body
+    assert "\n\n" not in body, "an empty line would end the block"
+    for text in equations.values():
+        assert Tags(text).open == []
+        assert "<section" not in text
+    spoiled = page.replace('<section class="motion">', '<section class="step">')
+    assert "Equations of motion" not in site["find_equations"](spoiled)
+
+
+def test_equations_have_the_style_of_documents(site):
+    """The style is laid out as it stands: there is nothing in it to fill in."""
+    style = site["FORMULAS"].read_text(encoding="utf-8")
+    assert ".lines { display: grid" in style
+    assert not re.search(r"\{[{%#]", style)
+    assert style.splitlines()[0] in render_document(
+        asdict(document(derive(shipped("rigid_body")))), "html"
+    )
 
 
 def test_a_page_of_parts_has_one_title(site):

@@ -12,6 +12,8 @@ from dataclasses import asdict
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.notation.written import aligned
+
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
     from coadjoint.derive.equations import Equations
@@ -54,6 +56,15 @@ def show_equations(equations: Equations) -> str:
     record = asdict(document(equations))
     kinds = ("motion", "members")
     return render_fragment([part for part in record["sections"] if part["kind"] in kinds])
+
+
+def write_equations(equations: Equations) -> str:
+    """The same as LaTeX: by vectors where all of these were found, else in components."""
+    from coadjoint.derive.document import vector_lines
+
+    lines = vector_lines(equations)
+    shown = aligned(line.latex for line in lines) if lines else equations.latex()
+    return f"$\\displaystyle {shown}$"
 
 
 def show_certificate(certificate: Certificate) -> str:

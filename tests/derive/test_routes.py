@@ -144,10 +144,11 @@ def test_division_by_zero_in_a_formula_names_the_place():
 
 
 def test_equations_show_themselves_in_a_notebook():
-    """The LaTeX has the definitions and the rates."""
-    shown = derive(spec())._repr_latex_()
-    assert r"\Omega_1 &= \frac{\Pi_1}{I_1}" in shown
-    assert r"\dot{\Pi}_1 &=" in shown
+    """The LaTeX has the definitions and the rates; what a notebook shows, their vectors."""
+    equations = derive(spec())
+    assert r"\Omega_1 &= \frac{\Pi_1}{I_1}" in equations.latex()
+    assert r"\dot{\Pi}_1 &=" in equations.latex()
+    assert r"\dot{\boldsymbol{\Pi}} &=" in equations._repr_latex_()
 
 
 def test_elementary_functions_are_derived_through():

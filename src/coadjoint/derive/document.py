@@ -113,10 +113,7 @@ def _motion(equations: Equations, form: VectorForm | None, names: _Names) -> Sec
         for name, value in pairs
         if name not in solved or value == field.zero
     )
-    vectors = tuple(
-        equal(names.write(line.left), names.write(line.right))
-        for line in (form.lines if form else ())
-    )
+    vectors = _write_vectors(form, names)
     family = equations.spec.family is not None
     law = _say_what_is_left(form.missing if form else (), bool(vectors))
     return Section(
@@ -127,6 +124,20 @@ def _motion(equations: Equations, form: VectorForm | None, names: _Names) -> Sec
         vectors=vectors,
         kind="motion",
     )
+
+
+def vector_lines(equations: Equations) -> tuple[Line, ...]:
+    """The equations of motion by vectors, or none if those of some quantity were not found."""
+    form = vector_form(equations) if equations.chart is None else None
+    if form is None or form.missing:
+        return ()
+    return _write_vectors(form, _Names.of(equations.spec, form))
+
+
+def _write_vectors(form: VectorForm | None, names: _Names) -> tuple[Line, ...]:
+    """Equations between vectors as formulas."""
+    lines = () if form is None else form.lines
+    return tuple(equal(names.write(line.left), names.write(line.right)) for line in lines)
 
 
 def _is_solved(field: Field, value: Element) -> bool:

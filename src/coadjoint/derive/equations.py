@@ -29,6 +29,7 @@ from coadjoint.derive.records import Chart, Exact, Step, rate, symbol
 from coadjoint.derive.setting import STEP, Setting, vector_names
 from coadjoint.exact import Element
 from coadjoint.notation.elements import write_element
+from coadjoint.notation.written import aligned
 from coadjoint.spec import Spec
 
 
@@ -258,8 +259,9 @@ class Equations:
         field = self.setting.field
         lines = [(symbol(name), value) for name, value in self.exact.definitions]
         lines += zip(map(rate, self.variables), self.exact.rates, strict=True)
-        rows = [f"{left.latex} &= {write_element(field, value).latex}" for left, value in lines]
-        return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+        return aligned(
+            f"{left.latex} &= {write_element(field, value).latex}" for left, value in lines
+        )
 
     def __repr__(self) -> str:
         count = f"{len(self.variables)} rates"
@@ -273,4 +275,6 @@ class Equations:
 
     def _repr_latex_(self) -> str:
         """What a notebook shows that takes no HTML, and an export to LaTeX."""
-        return f"$\\displaystyle {self.latex()}$"
+        from coadjoint.notebook import write_equations
+
+        return write_equations(self)

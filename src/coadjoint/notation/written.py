@@ -6,7 +6,7 @@ brackets stand only where they are needed. Read next: `coadjoint.notation.names`
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
@@ -368,3 +368,12 @@ def attach(
         mathml = f"<msup>{mathml}{above.mathml}</msup>"
         typst = f"{typst}^({above.typst})"
     return replace(base, latex=latex, mathml=mathml, typst=typst)
+
+
+def aligned(rows: Iterable[str]) -> str:
+    r"""Rows ``left &= right`` of LaTeX as one block.
+
+    >>> aligned(["a &= b", "c &= d"])
+    '\\begin{aligned}\na &= b \\\\\nc &= d\n\\end{aligned}'
+    """
+    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"

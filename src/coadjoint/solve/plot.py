@@ -19,6 +19,7 @@ from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.labels import symbol_label, unit_label
 from coadjoint.solve.maps import draw_map, find_map, is_globe
+from coadjoint.solve.rolling_bodies import RollingBody, box_of, draw_rolling, find_rolling
 from coadjoint.solve.scenes import (
     Paths,
     angles,
@@ -79,10 +80,11 @@ def draw(solution: Solution) -> Any:
 def _draw_all(figure: Any, solution: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
     paths = find_paths(solution) if len(solution) > 1 else None
-    sphere = "" if paths else find_sphere(solution)
-    vehicle = None if paths or sphere else find_vehicle(solution)
-    strip = 0.14 if paths or sphere or vehicle else 0.2  # drift is no third of a picture
-    if sphere or (paths and paths.members.shape[1] == 3):
+    rolling = None if paths else find_rolling(solution)
+    sphere = "" if paths or rolling else find_sphere(solution)
+    vehicle = None if paths or rolling or sphere else find_vehicle(solution)
+    strip = 0.14 if paths or rolling or sphere or vehicle else 0.2  # drift is no third of a picture
+    if sphere or rolling or (paths and paths.members.shape[1] == 3):
         figure.set_size_inches(7.2, 6.4)
     elif any(is_globe(solution, name) for name in solution.system.STATE):
         figure.set_size_inches(7.2, 5.6)  # maps of the sphere are half as high as they are wide
@@ -92,6 +94,8 @@ def _draw_all(figure: Any, solution: Solution) -> None:
         _draw_paths(figure, grid[0], solution, paths)
     elif sphere:
         _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
+    elif rolling:
+        _draw_rolling(figure, grid[0], solution, rolling)
     elif vehicle:
         _draw_vehicle(figure, grid[0], solution, vehicle)
     else:
@@ -197,6 +201,27 @@ def _draw_vehicle(figure: Any, place: Any, solution: Solution, vehicle: Vehicle)
     axes.set_ylabel(f"y {unit_label(vehicle.unit)}", fontsize=9)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
+
+
+def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody) -> None:
+    """A body on its plane with the trace of its contact, all lengths to one scale."""
+    axes = figure.add_subplot(place, projection="3d")
+    lines = draw_coloured(axes, body.contact, solution.time, zorder=2, linewidth=1.6)
+    _time_bar(figure, axes, lines, solution)
+    axes.coadjoint_body = draw_rolling(axes, body)
+    low, high = box_of(body)
+    for limit, least, most in zip(
+        (axes.set_xlim, axes.set_ylim, axes.set_zlim), low, high, strict=True
+    ):
+        limit(least, most)
+    _style_space(axes, [f"{name} {unit_label(body.unit)}" for name in "xyz"])
+    axes.set_box_aspect(high - low, zoom=1.15)
+    axes.zaxis.get_major_locator().set_params(nbins=2)
+    axes.set_title(
+        "colour: trace of the contact, gray: path of the centre of mass",
+        fontsize=9,
+        color="#5b6570",
+    )
 
 
 def _limit_space(axes: Any, paths: Paths) -> None:
