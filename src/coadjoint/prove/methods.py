@@ -318,9 +318,7 @@ def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program
     return Judgement(exactly, False, decides, SWEEPS)
 
 
-def _judge_metriplectic(
-    facts: Facts, _: StructuredMethod, __: Mapping[str, Program]
-) -> Judgement:
+def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) -> Judgement:
     """Projected along discrete gradients, P moves no entropy, and G no energy.
 
     Of G that is not proved positive semidefinite nothing is said of the entropy.

@@ -359,7 +359,9 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "roundings": spherical_midpoint.ROUNDINGS,
             # names of a vector below the state, with their rows, and the functions that take one
             "vector": [*enumerate(state)][len(state) // 2 :],
-            "with_vector": [each.name for each in KERNEL_FUNCTIONS.values() if each.below == "vector"],
+            "with_vector": [
+                each.name for each in KERNEL_FUNCTIONS.values() if each.below == "vector"
+            ],
             "gradients": {
                 "NODES": average_gradient.NODES,
                 "ROUNDINGS": discrete_gradient.ROUNDINGS,

@@ -9,7 +9,7 @@ Read next: `coadjoint.solve.methods.nambu_gradient`, `coadjoint.solve.methods.me
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
