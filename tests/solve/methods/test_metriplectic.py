@@ -185,9 +185,7 @@ def test_a_step_is_undone_by_one_back(body):
 
 
 def test_friction_heats_a_bath():
-    """The entropy is a coordinate; the energy has an exponential, which NumPy and C round alike
-    up to an ulp.
-    """
+    """The entropy is a coordinate, and the energy has an exponential of it."""
     with load_texts(pipeline.render(read_spec_text(HEATING, "heating.toml")).texts) as system:
         given = {"step": STEP, "samples": 401, "target": "numpy"}
         run = system.simulate([1.5, 0.4, -1.0], (0, 100), **given)

@@ -4,7 +4,7 @@ For each function F a discrete gradient g has ``g.(y - x) = F(y) - F(x)``, x and
 step; it is found as that of the energy alone (`coadjoint.solve.methods.discrete_gradient`). What
 the rates are by these gradients decides which functions stay.
 Comes in: where members are. Goes out: the middle of a step by sweeps, and its chord.
-Read next: `coadjoint.solve.methods.nambu_gradient`, `coadjoint.solve.methods.metriplectic_gradient`.
+Read next: `coadjoint.solve.methods.metriplectic_gradient`.
 """
 
 from __future__ import annotations
