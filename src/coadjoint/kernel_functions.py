@@ -78,7 +78,8 @@ Systems whose rates are loops over a table have no such matrix.""",
         summary="Derivative of the energy by the state",
         shape="(n, *batch)",
         doc="""Only systems with an energy and a tensor in closed form have it: with
-`bracket_vector` the motion is ``rhs = bracket_vector(state, energy_gradient)`` plus forces.""",
+`bracket_vector` the motion is ``rhs = bracket_vector(state, energy_gradient)`` plus forces, and
+plus ``metric_vector(state, entropy_gradient)`` where it is metriplectic.""",
         looped="never",
     ),
     KernelFunction(
@@ -92,6 +93,28 @@ antisymmetric as well. With a double bracket it is ``P + P G P``, by which no en
 second argument is the vector, in the forms of the state; `evaluate` and `bind` take one array,
 ``(2*n, *batch)``, with the vector below the state.
 """,
+        below="vector",
+        looped="never",
+    ),
+    KernelFunction(
+        name="entropy",
+        summary="Entropy of a metriplectic motion, a number for each member",
+        shape="batch",
+        doc="""Only systems with [metriplectic] have it whose tensor and G are in closed form.""",
+        looped="never",
+    ),
+    KernelFunction(
+        name="entropy_gradient",
+        summary="Derivative of the entropy by the state",
+        shape="(n, *batch)",
+        doc="""Only systems that have `entropy` have it.""",
+        looped="never",
+    ),
+    KernelFunction(
+        name="metric_vector",
+        summary="Symmetric matrix G of a metriplectic motion at a state times a vector",
+        shape="(n, *batch)",
+        doc="""Only systems that have `entropy` have it. Arguments are as of `bracket_vector`.""",
         below="vector",
         looped="never",
     ),

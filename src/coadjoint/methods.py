@@ -149,8 +149,12 @@ ACTION: Final = ("energy_gradient", "bracket_vector")
 BALANCE: Final = (*ACTION, "energy")
 #: Functions that a motion by Nambu's bracket keeps in addition to its energy, and their gradients.
 DISTINGUISHED: Final = ("distinguished", "distinguished_gradient")
+#: The entropy of a metriplectic motion, its gradient, and the matrix that this is multiplied by.
+RELAXED: Final = ("entropy", "entropy_gradient", "metric_vector")
 #: All that methods ask of a kernel beyond its rates.
-ASKED: Final = (*BALANCE, "sandwich", *DISTINGUISHED)
+ASKED: Final = (*BALANCE, *RELAXED, "sandwich", *DISTINGUISHED)
+#: Files of methods by a discrete gradient of the energy alone, with one tensor.
+BY_ENERGY: Final = ("discrete_gradient", "average_gradient")
 #: The derivatives of the rates, by which Newton's method solves the equations of steps.
 JACOBIAN: Final = "jacobian"
 #: Those of a motion that stays on coadjoint orbits, on which the bracket acts.
@@ -331,6 +335,20 @@ _ENTRIES: Final = (
         "Journal of Computational Physics 231 (2012) 6770)",
         expects=_TENSORS,
     ),
+    StructuredMethod(
+        name="metriplectic_gradient",
+        file="metriplectic_gradient",
+        order=2,
+        needs=(*BALANCE, *RELAXED, "metriplectic"),
+        keeps="the energy, to the rounding of each step; the entropy never falls",
+        theorem="the bracket times a discrete gradient g of the energy plus G times one, s, of the "
+        "entropy, at the middle of a step, the bracket projected along s and G along g, so that "
+        "both conditions of degeneracy hold (P. J. Morrison, Physica D 18 (1986) 410; O. Gonzalez, "
+        "Journal of Nonlinear Science 6 (1996) 449; H. C. Oettinger, Journal of Non-Equilibrium "
+        "Thermodynamics 43 (2018) 89)",
+        expects="a metriplectic motion P dh + G dS alone, with P dS = 0 and G dh = 0, whose tensor "
+        "and G are in closed form",
+    ),
     *(
         StructuredMethod(
             name=f"nambu_gradient{suffix}",
@@ -442,8 +460,9 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
 
     Args:
         functions: Their names, ``kinks`` among them where the rates have some, ``orbits`` where
-            the motion stays on coadjoint orbits, ``spheres`` where these are spheres, and ``nambu``
-            where the motion is Nambu's product of gradients.
+            the motion stays on coadjoint orbits, ``spheres`` where these are spheres, ``nambu``
+            where the motion is Nambu's product of gradients, and ``metriplectic`` where it is a
+            bracket with the energy and G times the gradient of the entropy.
 
     >>> [method.name for method in list_structured(["rhs"])]
     ['midpoint', 'midpoint4', 'midpoint6', 'gauss4', 'gauss6', 'gauss8']
@@ -452,4 +471,6 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
     """
     if "noise" in functions or "kinks" in functions:
         return ()
-    return tuple(each for each in _ENTRIES if set(each.needs) <= set(functions))
+    refused = BY_ENERGY if "entropy" in functions else ()
+    able = (each for each in _ENTRIES if each.file not in refused)
+    return tuple(each for each in able if set(each.needs) <= set(functions))

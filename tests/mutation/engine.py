@@ -610,6 +610,19 @@ MUTANTS = (
         tests=("tests/solve/methods/test_gradients.py",),
     ),
     *of(
+        "solve/methods/metriplectic_gradient",
+        "find_rates: rewrite project(moved, s) -> moved",
+        "find_rates: rewrite project(s, g) -> s",
+        "project: rewrite part * along -> along",
+        tests=("tests/solve/methods/test_metriplectic.py",),
+    ),
+    *of(
+        "solve/methods/several_gradients",
+        "sweep: rewrite last - first -> first - last",
+        "sweep: rewrite 0.5 * rise -> rise",
+        tests=("tests/solve/methods/test_metriplectic.py", "tests/solve/methods/test_nambu.py"),
+    ),
+    *of(
         "derive/times_vector",
         "_apply: rewrite x * v -> -x * v",
         "divide: rewrite first + place -> place",

@@ -5,6 +5,7 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.derive.mechanics import external
+from coadjoint.derive.times_vector import find_product
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.prove import Verdict
 from tests.specs import prove_claims, spec
@@ -121,6 +122,21 @@ def test_a_double_bracket_acts_on_the_whole():
     single = '[double_bracket]\nG = "u^2*diag(vector(c, c, 0, 0))"\n[reduction]'
     found = verdicts(IN_STEP, *change, ("[reduction]", single))
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED
+
+
+def test_a_metriplectic_bracket_on_a_section_has_no_discrete_gradient():
+    """It acts on the whole system, whose tensor times a vector is none of the section."""
+    table = '[metriplectic]\nS = "1"\nG = "c"\n[reduction]'
+    undriven = ("[inputs]\nu = { default = 0 }\n", "")
+    change = (
+        undriven,
+        UNFORCED,
+        ('["canonical", "poisson"]', '["poisson"]'),
+        ('[time]\nname = "t"\n', ""),
+    )
+    found = find_product(derive(spec(IN_STEP, *change, ("[reduction]", table))))
+    assert isinstance(found, str)
+    assert "not on a section of it" in found
 
 
 #: The oscillators with momenta of coordinates, whose velocities follow, and friction by R.

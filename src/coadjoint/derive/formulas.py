@@ -19,7 +19,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.setting import vector_names
-from coadjoint.derive.times_vector import times_vector
+from coadjoint.derive.times_vector import metric_times_vector, times_vector
 from coadjoint.exact import Element
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 
@@ -135,6 +135,32 @@ def bracket_vector(equations: Equations) -> Rows | None:
         return None
     state = equations.setting.state
     lines = [(f"{{{name}, v}}", row) for name, row in zip(state, own.exact.rates, strict=True)]
+    return _rows(own, lines, state=(*state, *vector_names(len(state))))
+
+
+def entropy(equations: Equations) -> Rows | None:
+    """The entropy of a metriplectic motion, a number for each member."""
+    value = _find_entropy(equations)
+    return None if value is None else _rows(equations, [("entropy", value)], ())
+
+
+def entropy_gradient(equations: Equations) -> Rows | None:
+    """Derivatives of the entropy by the state."""
+    value, state = _find_entropy(equations), equations.setting.state
+    if value is None:
+        return None
+    slopes = equations.setting.field.gradient(value, state)
+    lines = ((f"d entropy/d {name}", slope) for name, slope in zip(state, slopes, strict=True))
+    return replace(_rows(equations, lines), may_hide_zeros=True)
+
+
+def metric_vector(equations: Equations) -> Rows | None:
+    """G of a metriplectic motion times a vector, which follows the state in the first argument."""
+    own = metric_times_vector(equations)
+    if own is None:
+        return None
+    state = equations.setting.state
+    lines = [(f"({name}, v)", row) for name, row in zip(state, own.exact.rates, strict=True)]
     return _rows(own, lines, state=(*state, *vector_names(len(state))))
 
 
@@ -278,6 +304,14 @@ def _find_distinguished(equations: Equations) -> list[tuple[str, Element]]:
         return []
     functions = [equations.close(setting.formula(each)) for each in poisson.functions]
     return [(f"c{n}", function) for n, function in enumerate(functions, 1)]
+
+
+def _find_entropy(equations: Equations) -> Element | None:
+    """The entropy, where a method asks for it."""
+    relaxation = equations.spec.relaxation
+    if relaxation is None or relaxation.S is None or metric_times_vector(equations) is None:
+        return None
+    return equations.close(equations.setting.formula(relaxation.S))
 
 
 def _slopes(equations: Equations, by: tuple[str, ...]) -> Rows:

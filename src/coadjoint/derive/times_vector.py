@@ -44,11 +44,7 @@ _COUPLED: Final = (
     "its state has velocities that are solved for, whose momenta have a tensor: that of the "
     "velocities is not in closed form"
 )
-_METRIPLECTIC: Final = (
-    "of a metriplectic motion G dh = 0 holds for the derivative of the energy, and not for a "
-    "discrete gradient, unless the energy is quadratic: then methods of Gauss keep it, and a "
-    "quadratic entropy grows"
-)
+_RESTRICTED: Final = "a metriplectic bracket acts on the whole system, and not on a section of it"
 #: Terms of the derivatives of momenta by positions beyond which a product is not written out:
 #: rolling ellipsoids have 60, and Veselova's problem on so(4) has 1900.
 TERMS: Final = 1000
@@ -63,7 +59,9 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         blocks = (range(moving), range(moving, 2 * moving))
         return (*vector_names(count), *unknowns, *(n for own in blocks for n in solver_names(own)))
     has_velocities = spec.algebra is None and not spec.having_role("momentum")
-    return vector_names(count) if has_velocities or spec.poisson is not None else ()
+    has_entropy = spec.relaxation is not None and spec.relaxation.S is not None
+    needs = has_velocities or has_entropy or spec.poisson is not None
+    return vector_names(count) if needs else ()
 
 
 def _number(word: str, count: int) -> list[str]:
@@ -77,7 +75,7 @@ def times_vector(equations: Equations) -> Equations | None:
 
     It is for motions by a route with an energy and a bracket, whose momenta do not move at a
     fixed state. The certificate proves it of each. A double bracket belongs to it: J is
-    ``P + P G P``.
+    ``P + P G P``. A metriplectic one does not: `metric_times_vector` is G times a vector.
     """
     found = find_product(equations)
     return None if isinstance(found, str) else found
@@ -88,21 +86,43 @@ def find_product(equations: Equations) -> Equations | str:
     """The same, or why there is none, as a clause."""
     setting, exact, spec = equations.setting, equations.exact, equations.spec
     tensor, relaxation = exact.poisson_tensor, spec.relaxation
-    if relaxation is not None and relaxation.S is not None:
-        return _METRIPLECTIC
+    if relaxation is not None and relaxation.S is not None and spec.reduction is not None:
+        return _RESTRICTED
     if spec.constraints and (equations.distribution is None or equations.distribution.kept):
         return _BOUND
     if exact.energy is None or tensor is None:
         return "it expects an energy, and a Poisson or almost-Poisson tensor"
     if equations.chart is not None or (relaxation and equations.distribution is not None):
         return _COUPLED
-    named = {*setting.state, *setting.parameters, *setting.driving}
-    closed = [[equations.close(entry) for entry in row] for row in tensor]
-    G = [] if relaxation is None else [list(map(equations.close, r)) for r in metric(setting)]
-    if any(setting.field.reach(entry) - named for row in (*closed, *G) for entry in row):
-        return _COUPLED
-    if equations.distribution is not None:
+    G = [] if relaxation is None or relaxation.S is not None else metric(setting)
+    if equations.distribution is not None and all(_is_seen(equations, row) for row in tensor):
         return _over_distribution(equations, tensor)
+    return _multiply(equations, tensor, G)
+
+
+@once
+def metric_times_vector(equations: Equations) -> Equations | None:
+    """``G(x) v`` of a metriplectic motion in place of the rates; None where `times_vector` is."""
+    relaxation = equations.spec.relaxation
+    if relaxation is None or relaxation.S is None or times_vector(equations) is None:
+        return None
+    found = _multiply(equations, metric(equations.setting), [])
+    return None if isinstance(found, str) else found
+
+
+def _is_seen(equations: Equations, row: Sequence[Element]) -> bool:
+    """Whether entries are functions of the state and of what is given."""
+    setting = equations.setting
+    named = {*setting.state, *setting.parameters, *setting.driving}
+    return not any(setting.field.reach(equations.close(entry)) - named for entry in row)
+
+
+def _multiply(equations: Equations, tensor: Tensor, G: Tensor) -> Equations | str:
+    """``P v``, and ``P G P v`` in addition if there is a G, with components of v in the field."""
+    setting = equations.setting
+    if not all(_is_seen(equations, row) for row in (*tensor, *G)):
+        return _COUPLED
+    closed, G = ([list(map(equations.close, row)) for row in each] for each in (tensor, G))
     vector = vector_names(len(setting.state))
     if {*vector} <= {*setting.field.names}:
         own = Exact(

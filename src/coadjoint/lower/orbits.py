@@ -15,7 +15,7 @@ from typing import Final
 
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.program import Program, run
-from coadjoint.methods import ACTION, DISTINGUISHED, Sphere
+from coadjoint.methods import ACTION, DISTINGUISHED, RELAXED, Sphere
 
 
 class NotLinearError(Exception):
@@ -161,6 +161,34 @@ def is_product(programs: Mapping[str, Program]) -> bool:
         yield from (a + -b for a, b in pairs)
 
     return vanish(find, bracket.names)
+
+
+def is_metriplectic(programs: Mapping[str, Program]) -> bool:
+    """Whether the rates are ``P dH + G dS``, P antisymmetric, ``P dS = 0`` and ``G dH = 0``.
+
+    It is asked at points modulo primes.
+
+    Args:
+        programs: The functions of a kernel by name.
+    """
+    if not {*ACTION, *RELAXED} <= programs.keys() or "noise" in programs:
+        return False
+    rates, slopes, bracket = (programs[name] for name in ("rhs", *ACTION))
+    entropy, metric = programs["entropy_gradient"], programs["metric_vector"]
+    vector = bracket.state[len(rates.state) :]
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        g, s = (run(each, at, number, call_modulo) for each in (slopes, entropy))
+        along = [at | dict(zip(vector, each, strict=True)) for each in (g, s)]
+        moved, still = (run(bracket, each, number, call_modulo) for each in along)
+        resting, relaxed = (run(metric, each, number, call_modulo) for each in along)
+        parts = zip(run(rates, at, number, call_modulo), moved, relaxed, strict=True)
+        yield from (rate + -(a + b) for rate, a, b in parts)
+        yield from (*still, *resting)
+        turned = run(bracket, at, number, call_modulo)
+        yield sum((at[v] * x for v, x in zip(vector, turned, strict=True)), number(0))
+
+    return vanish(find, {*bracket.names, *rates.names, *slopes.names, *entropy.names})
 
 
 #: Coordinates beyond which Nambu's product has too many minors: their number doubles with each.

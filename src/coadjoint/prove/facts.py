@@ -307,8 +307,17 @@ class Facts:
         """
         relaxation = self.spec.relaxation
         is_double = relaxation is not None and relaxation.S is None
-        is_proved = "G is positive semidefinite" in self._proved
-        return is_double and is_proved and is_product(self.programs)
+        return is_double and self.is_semidefinite and is_product(self.programs)
+
+    @cached_property
+    def is_semidefinite(self) -> bool:
+        """Whether G of a symmetric bracket is proved positive semidefinite."""
+        return "G is positive semidefinite" in self._proved
+
+    @property
+    def has_entropy(self) -> bool:
+        """Whether a metriplectic bracket is declared."""
+        return self.spec.relaxation is not None and self.spec.relaxation.S is not None
 
     @property
     def is_dissipative(self) -> bool:
@@ -322,8 +331,7 @@ class Facts:
         if relaxation is None or relaxation.S is None:
             return False
         value = self.equations.close(self.equations.setting.formula(relaxation.S))
-        is_proved = "G is positive semidefinite" in self._proved
-        return is_proved and self.find_degree([value]) is not None
+        return self.is_semidefinite and self.find_degree([value]) is not None
 
     @cached_property
     def is_turned_by_tensor(self) -> bool:

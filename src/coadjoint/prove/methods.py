@@ -22,6 +22,7 @@ from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program, run
 from coadjoint.methods import (
     BACKWARD,
+    BY_ENERGY,
     MAPPED,
     NOISY,
     STRUCTURED,
@@ -40,6 +41,11 @@ SWEEPS: Final = "about a dozen sweeps"
 MEAN_DEGREE: Final = 8
 #: Why a motion whose rates have corners or jumps has none of them.
 KINKED: Final = "its rates have kinks, at which explicit methods end their steps"
+#: Why a metriplectic motion has no discrete gradient of the energy alone.
+METRIPLECTIC: Final = (
+    "of a metriplectic motion G dh = 0 holds for the derivative of the energy, and not for a "
+    "discrete gradient; metriplectic_gradient projects G along that"
+)
 #: Steps of order 2 that make one of each order.
 STEPS: Final = {2: 1, 4: 5, 6: 9}
 
@@ -118,10 +124,12 @@ def _refuse(facts: Facts, method: StructuredMethod) -> str:
         return "motions with noise have methods of their own: " + ", ".join(NOISY)
     if facts.has_kinks:
         return KINKED
-    if method.file in ("discrete_gradient", "average_gradient"):
+    if method.file in BY_ENERGY or (method.file == "metriplectic_gradient" and facts.has_entropy):
         found = find_product(facts.equations)
         if isinstance(found, str):
             return found
+    if method.file in BY_ENERGY and facts.has_entropy:
+        return METRIPLECTIC
     return f"it expects {method.expects}"
 
 
@@ -310,6 +318,26 @@ def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program
     return Judgement(exactly, False, decides, SWEEPS)
 
 
+def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) -> Judgement:
+    """Projected along discrete gradients, P moves no entropy, and G no energy.
+
+    Of G that is not proved positive semidefinite nothing is said of the entropy.
+    """
+    seen = [] if facts.is_moved else facts.integrals
+    exactly = tuple(each for each in seen if each.name == "energy")
+    decides = "the motion is P dh + G dS with P dS = 0 and G dh = 0"
+    if facts.is_moved:
+        decides += "; after each step the state is moved, so that neither law is exact"
+    elif facts.is_semidefinite:
+        decides += (
+            ": a step adds h (Q s).G (Q s) to the entropy, which never falls, s its discrete "
+            "gradient, and Q the projection along that of the energy"
+        )
+    else:
+        decides += "; G is not proved positive semidefinite, and the entropy may fall"
+    return Judgement(exactly, False, decides, f"{SWEEPS}, each with ten gradients")
+
+
 _RULES: Final[Mapping[str, Rule]] = {
     "midpoint": _judge_runge_kutta,
     "gauss": _judge_runge_kutta,
@@ -320,6 +348,7 @@ _RULES: Final[Mapping[str, Rule]] = {
     "discrete_gradient": _judge_gradients,
     "average_gradient": _judge_gradients,
     "nambu_gradient": _judge_nambu,
+    "metriplectic_gradient": _judge_metriplectic,
 }
 
 
@@ -374,6 +403,9 @@ def _prefer_first(facts: Facts) -> Sequence[str]:
         pair = [each.degree for each in facts.integrals if each.name == "energy" or each.is_casimir]
         is_quadratic = all(degree is not None for degree in pair)
         return ["midpoint"] if is_quadratic else ["nambu_gradient", "discrete_gradient"]
+    if facts.has_entropy:
+        is_quadratic = any(x.name == "energy" and x.is_kept_within_steps for x in facts.integrals)
+        return [] if is_quadratic and facts.grows else ["metriplectic_gradient"]
     if facts.tensor == "linear" and facts.is_hamiltonian:
         if facts.spheres and not any(each.tangent for each in facts.spheres):
             return ["spherical_midpoint", "coadjoint_mean"]

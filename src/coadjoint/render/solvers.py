@@ -15,6 +15,7 @@ from typing import Any
 
 from coadjoint.derive.mechanics.iteration import is_guess, slope_place
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.carriers import find_carriers
 from coadjoint.lower.compositions import COMPOSITIONS
@@ -25,6 +26,7 @@ from coadjoint.lower.orbits import (
     find_scales,
     find_spheres,
     is_carried,
+    is_metriplectic,
     is_nambu,
     is_noisy_action,
     stays_on_orbits,
@@ -336,6 +338,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
         "orbits": on_orbits,
         "spheres": bool(spheres) and not is_noisy,
         "nambu": is_nambu(still),
+        "metriplectic": is_metriplectic(still),
     }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
     has_newton = bool(methods) and JACOBIAN in programs
@@ -354,8 +357,11 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "is_noisy": is_noisy,
             "near": spherical_midpoint.NEAR,
             "roundings": spherical_midpoint.ROUNDINGS,
-            # names of a vector below the state, with their rows
+            # names of a vector below the state, with their rows, and the functions that take one
             "vector": [*enumerate(state)][len(state) // 2 :],
+            "with_vector": [
+                each.name for each in KERNEL_FUNCTIONS.values() if each.below == "vector"
+            ],
             "gradients": {
                 "NODES": average_gradient.NODES,
                 "ROUNDINGS": discrete_gradient.ROUNDINGS,

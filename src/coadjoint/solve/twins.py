@@ -135,9 +135,7 @@ class NumpyStepper:
             energy = partial(self._evaluate, ("energy",))
             functions |= {"gradient": self._element, "bracket": self._bracket, "energy": energy}
             functions |= {"sandwich": self._sandwich, "field": self._field}
-            functions["values"] = partial(self._evaluate, ("energy", "distinguished"))
-            slopes = ("energy_gradient", "distinguished_gradient")
-            functions["gradients"] = partial(self._evaluate, slopes)
+            functions |= {"evaluate": self._evaluate, "metric": self._metric}
             functions["jacobian"] = self._slopes
             functions["known"] = self._system.STATE.size
             return Structured(
@@ -193,6 +191,10 @@ class NumpyStepper:
     def _sandwich(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The product of matrices of a state and of a vector."""
         return self._evaluate(("sandwich",), lanes, after, np.concatenate([state, vector]))
+
+    def _metric(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
+        """The matrix G of a metriplectic motion times a vector."""
+        return self._evaluate(("metric_vector",), lanes, after, np.concatenate([state, vector]))
 
     def _slopes(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The derivatives of the rates by the state, without what is reconstructed."""

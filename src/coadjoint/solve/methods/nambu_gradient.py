@@ -10,79 +10,40 @@ Comes in: where members are. Goes out: the middle of a step by sweeps, and its c
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.lower.compositions import COMPOSITIONS
-from coadjoint.solve.methods.average_gradient import find_excess
-from coadjoint.solve.methods.discrete_gradient import Corrected, find_factor
-from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
+from coadjoint.solve.methods.several_gradients import SeveralGradients
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
+    from coadjoint.solve.methods.lie_poisson import Arc
 
     Array = NDArray[np.float64]
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> NambuGradient:
     """The method of an order, from functions of the kernel."""
+    evaluate = functions["evaluate"]
     return NambuGradient(
-        values=functions["values"], gradients=functions["gradients"], size=size, order=order
+        values=partial(evaluate, ("energy", "distinguished")),
+        gradients=partial(evaluate, ("energy_gradient", "distinguished_gradient")),
+        size=size,
+        order=order,
     )
 
 
-class NambuGradient(LiePoisson):
-    """The product of discrete gradients.
+class NambuGradient(SeveralGradients):
+    """The product of discrete gradients of the energy and of the distinguished functions."""
 
-    Args:
-        values: The energy and the distinguished functions, ``(n - 1, N)``, at states some time
-            later.
-        gradients: Their gradients, ``((n - 1) * n, N)``, one below the other.
-        size: The step.
-        order: 2, or that of a composition.
-    """
-
-    def __init__(
-        self,
-        *,
-        values: Callable[..., Array],
-        gradients: Callable[..., Array],
-        size: float,
-        order: int = 2,
-    ) -> None:
-        self.values, self.gradients = values, gradients
-        self.size, self.stages = size, COMPOSITIONS[order]
-
-    def prepare(self, arc: Arc, middle: Array) -> Corrected:
-        """As `LiePoisson.prepare`; with a factor for each function."""
-        n, members = arc.state.shape
-        return Corrected(arc.state, np.zeros((n - 1, members)))
-
-    def sweep(self, arc: Arc, middle: Array, kept: Corrected) -> Sweep:
-        """As `LiePoisson.sweep`."""
-        n, members = middle.shape
-        chord = 2.0 * ((middle - arc.state) - arc.low)
-        square = np.zeros(members)
-        for step in chord:
-            square = square + step * step
-        ends = (arc.state, arc.state + (arc.low + chord))
-        first, last = (self.values(arc.lanes, arc.middle, end) for end in ends)
-        slopes = self.gradients(arc.lanes, arc.middle, middle)
-        excess = find_excess(self.gradients, arc, slopes, chord)
-        along = np.zeros(first.shape)
-        for i in range(n):
-            along = along + (slopes[i::n] + excess[i::n]) * chord[i]
-        missing = (last - first) - along
-        factors = find_factor(missing, np.abs(first) + np.abs(last), square)
-        kept.approach(middle)
-        kept.factor = np.where(kept.done, kept.factor, factors)
-        corrections = (kept.factor[:, np.newaxis] * chord).reshape(slopes.shape)
-        gradients = (slopes + (excess + corrections)).reshape(n - 1, n, members)
-        rise = arc.length * multiply_gradients(gradients)
-        return Sweep(arc.state + (arc.low + 0.5 * rise), rise)
+    def find_rates(self, arc: Arc, middle: Array, gradients: Array) -> Array:
+        """As `SeveralGradients.find_rates`."""
+        return multiply_gradients(gradients)
 
 
 def multiply_gradients(gradients: Array) -> Array:
