@@ -296,6 +296,7 @@ def test_a_route_that_is_not_declared_is_added_as_advised():
 
 #: Advice that is followed in other tests.
 ELSEWHERE = {
+    "Add it there, with its source": "test_theorems.py",
     "Write it as ": "test_truncated.py",
     "Correct the Lagrangian": "test_first_order.py: what contradicts itself has no other way out",
     "Solve it by hand, and write what it gives in the Lagrangian": "test_first_order.py",
