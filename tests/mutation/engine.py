@@ -636,7 +636,7 @@ MUTANTS = (
     ),
     *of(
         "solve/methods/isospectral_midpoint",
-        "sweep: rewrite half * xi -> xi",
+        "sweep: rewrite half * xi[known] -> xi[known]",
         tests=("tests/solve/methods/test_lie_poisson.py",),
     ),
     *of(

@@ -109,7 +109,11 @@ def find_rolling(solution: Solution) -> RollingBody | None:
         velocity = np.einsum("jkt,kt->jt", turned, solution[moving])
         if _moves_so(np.asarray(solution.time), contact, centre, velocity):
             surface = _find_surface(solution, (vertical, turning, moving))
-            return None if surface is None else RollingBody(contact, centre, turned, surface, unit)
+            if surface is None:
+                return None
+            return RollingBody(
+                contact=contact, centre=centre, turned=turned, surface=surface, unit=unit
+            )
     return None
 
 
