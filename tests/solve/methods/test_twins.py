@@ -124,6 +124,7 @@ def find_growth(compiled: Compiled, name: str, h: float, count: int, members: in
     return np.abs(casimirs(end + low.astype(np.longdouble)) - casimirs(x)).max(axis=1)
 
 
+@pytest.mark.usefixtures("optimized")
 @pytest.mark.parametrize(
     ("macro", "name"),
     [("COADJOINT_MEAN", "free body"),
