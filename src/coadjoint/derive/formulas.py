@@ -122,20 +122,12 @@ def energy_gradient(equations: Equations) -> Rows | None:
     energy = equations.exact.energy
     if energy is None or times_vector(equations) is None:
         return None
-    state, closed = equations.setting.state, equations.close(energy)
-    slopes = equations.setting.field.gradient(closed, state)
-    lines = ((f"d energy/d {name}", slope) for name, slope in zip(state, slopes, strict=True))
-    return replace(_rows(equations, lines), may_hide_zeros=True)
+    return _gradient(equations, "energy", equations.close(energy))
 
 
 def bracket_vector(equations: Equations) -> Rows | None:
     """The tensor times a vector, which follows the state in the first argument."""
-    own = times_vector(equations)
-    if own is None:
-        return None
-    state = equations.setting.state
-    lines = [(f"{{{name}, v}}", row) for name, row in zip(state, own.exact.rates, strict=True)]
-    return _rows(own, lines, state=(*state, *vector_names(len(state))))
+    return _times_vector(times_vector(equations), "{%s, v}")
 
 
 def entropy(equations: Equations) -> Rows | None:
@@ -146,22 +138,13 @@ def entropy(equations: Equations) -> Rows | None:
 
 def entropy_gradient(equations: Equations) -> Rows | None:
     """Derivatives of the entropy by the state."""
-    value, state = _find_entropy(equations), equations.setting.state
-    if value is None:
-        return None
-    slopes = equations.setting.field.gradient(value, state)
-    lines = ((f"d entropy/d {name}", slope) for name, slope in zip(state, slopes, strict=True))
-    return replace(_rows(equations, lines), may_hide_zeros=True)
+    value = _find_entropy(equations)
+    return None if value is None else _gradient(equations, "entropy", value)
 
 
 def metric_vector(equations: Equations) -> Rows | None:
     """G of a metriplectic motion times a vector, which follows the state in the first argument."""
-    own = metric_times_vector(equations)
-    if own is None:
-        return None
-    state = equations.setting.state
-    lines = [(f"({name}, v)", row) for name, row in zip(state, own.exact.rates, strict=True)]
-    return _rows(own, lines, state=(*state, *vector_names(len(state))))
+    return _times_vector(metric_times_vector(equations), "(%s, v)")
 
 
 def distinguished(equations: Equations) -> Rows | None:
@@ -312,6 +295,23 @@ def _find_entropy(equations: Equations) -> Element | None:
     if relaxation is None or relaxation.S is None or metric_times_vector(equations) is None:
         return None
     return equations.close(equations.setting.formula(relaxation.S))
+
+
+def _gradient(equations: Equations, name: str, value: Element) -> Rows:
+    """Derivatives of a function by the state."""
+    state = equations.setting.state
+    slopes = equations.setting.field.gradient(value, state)
+    lines = ((f"d {name}/d {x}", slope) for x, slope in zip(state, slopes, strict=True))
+    return replace(_rows(equations, lines), may_hide_zeros=True)
+
+
+def _times_vector(own: Equations | None, label: str) -> Rows | None:
+    """Rows of a tensor times a vector below the state; ``label`` has the place of a component."""
+    if own is None:
+        return None
+    state = own.setting.state
+    lines = [(label % x, row) for x, row in zip(state, own.exact.rates, strict=True)]
+    return _rows(own, lines, state=(*state, *vector_names(len(state))))
 
 
 def _slopes(equations: Equations, by: tuple[str, ...]) -> Rows:

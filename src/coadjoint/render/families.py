@@ -23,6 +23,7 @@ from coadjoint.families import (
 )
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
+from coadjoint.lower.bands import find_bands
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
@@ -608,24 +609,6 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
 def _tell_surface(index: Index) -> str:
     """On what matrices stand for functions, as a generated package declares it."""
     return f", surface={quote(index.surface)}" if index.surface else ""
-
-
-def find_bands(loops: Loops) -> dict[str, Any] | None:
-    """How far the rates couple members; None where they couple all of them."""
-    if loops.partners or loops.totals or loops.solve or loops.products or loops.member is None:
-        return None
-    reach = loops.member.reach
-    if any(read.single is not None and read.array == "state" for read in loops.member.reads):
-        return None
-    for place, part in loops.ends:
-        for read in part.reads:
-            if read.array != "state":
-                continue
-            if read.single is not None and (read.single < 0) != (place < 0):
-                return None
-            apart = (read.shift or 0) if read.single is None else read.single - place
-            reach = max(reach, abs(apart))
-    return {"reach": reach, "wraps": loops.wraps}
 
 
 def _tell_spheres(context: FamilyContext) -> str:
