@@ -10,7 +10,7 @@ from coadjoint.crosscheck.solver_exact import Solvers
 from coadjoint.crosscheck.solver_objects import (
     NOISY,
     NumpySolver,
-    compile_solver,
+    compile_solvers,
     load_numpy,
     load_solver,
 )
@@ -48,8 +48,8 @@ def made(monkeypatch):
         numpy = NumpySolver(load_numpy(files["solver.py"]), functions)
         advance = {method: {"numpy": numpy.advance(method)}}
         if folder:
-            path = compile_solver(files, folder, method, "exact")
-            advance[method]["c"] = load_solver(path, "swing")
+            path = compile_solvers(files, folder, "swing", [method], "exact")
+            advance[method]["c"] = load_solver(path, "swing", method)
         return Solvers(system, plain.recurrences_of(SWING), advance)
 
     return make

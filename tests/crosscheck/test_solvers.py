@@ -14,7 +14,7 @@ from coadjoint.crosscheck.recurrences import check_recurrences, draw_points
 from coadjoint.crosscheck.solver_exact import ExactStep, Solvers
 from coadjoint.crosscheck.solver_objects import (
     NumpySolver,
-    compile_solver,
+    compile_solvers,
     load_numpy,
     load_solver,
 )
@@ -318,9 +318,9 @@ def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exa
     strict = tuple(bound.strict for bound in context.domain)
     numpy = NumpySolver(load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
-    for method in methods if folder else ():
-        path = compile_solver(files, folder, method, build)
-        advance[method]["c"] = load_solver(path, context.name)
+    path = compile_solvers(files, folder, context.name, methods, build) if folder else None
+    for method in methods if path else ():
+        advance[method]["c"] = load_solver(path, context.name, method)
     return Solvers(system, recurrences_of(context), advance)
 
 
@@ -510,6 +510,16 @@ def test_c_and_numpy_have_the_same_bits(tmp_path, context, least):
     made = solvers(context, ("taylor", "dop853", "rk4"), tmp_path)
     equal = check_bits(made, points(made), 0.125)
     assert min(equal.values()) > least
+
+
+@needs_compiler
+def test_methods_of_one_object_that_are_mistaken_for_each_other_are_caught(tmp_path):
+    """An object has several methods, each under a name of its own."""
+    made = solvers(HEAVY_TOP, ("dop853", "rk4"), tmp_path)
+    one, other = made.advance["dop853"], made.advance["rk4"]
+    one["c"], other["c"] = other["c"], one["c"]
+    with pytest.raises(CrossCheckError, match="rung 5"):
+        check_bits(made, points(made), 0.125)
 
 
 WRONG_LIMITS_IN_C = [

@@ -69,7 +69,7 @@ def test_a_system_that_reconstructs_has_two_kinds_of_solvers():
 def test_the_ladder_climbs_the_larger_state(tmp_path):
     """Orders of four components at two points; bits of C, on constraints and in a domain."""
     with ThreadPoolExecutor(2) as pool:
-        made = start_compiling(pool, rendered(), tmp_path, ("c",), RECONSTRUCTION)
+        made = start_compiling(pool, rendered(), tmp_path, "followed", ("c",), RECONSTRUCTION)
         figures = check_solvers(subject(), rendered(), made, RECONSTRUCTION)
     assert figures.coefficients == 2 * 7 * 4
     assert min(figures.equal.values()) > 100

@@ -17,7 +17,7 @@ import signal
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
@@ -223,7 +223,13 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     return Compiler(command, *found)
 
 
-def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source = KERNEL) -> Path:
+def compile_kernel(
+    compiler: Compiler,
+    folder: Path,
+    build: str,
+    source: Source = KERNEL,
+    parts: Sequence[str] = (),
+) -> Path:
     """Compile ``kernel.c`` to ``kernel.so`` in the same folder, with the name of the build in it.
 
     Args:
@@ -231,17 +237,25 @@ def compile_kernel(compiler: Compiler, folder: Path, build: str, source: Source 
         folder: A private folder with ``kernel.c`` and ``kernel.h``, or those of another source.
         build: ``exact`` or ``fast``.
         source: What is compiled.
+        parts: Files that are compiled in its place, and read it; what calls kernels is left out.
 
     Raises:
         CompilerError: The compiler failed, hung, or made no shared object.
     """
     result = folder / f"{source.stem}.so"
-    (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
-    status, output = _attempt(compiler, folder, build, source, MACHINES[0])
+    if not parts:
+        (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
+    files = parts or (source.files[0], "build.c")
+
+    def attempt(machine: tuple[str, ...]) -> tuple[int, str]:
+        flags = compiler.flags(build, source, machine=machine)
+        return _run((*compiler.command, *flags, *files, "-o", result.name, "-lm"), folder)
+
+    status, output = attempt(MACHINES[0])
     said = _with_signal(output, status)
     if status != 0 and not errno_of(said):  # it failed itself, and met no limit
         for machine in MACHINES[1:]:
-            if _attempt(compiler, folder, build, source, machine)[0] == 0:
+            if attempt(machine)[0] == 0:
                 status = 0
                 _tell_refused(compiler, machine)
                 break
@@ -274,15 +288,6 @@ def _tell_refused(compiler: Compiler, machine: tuple[str, ...]) -> None:
 
 #: First bytes of shared objects: ELF, and Mach-O in its 64-bit and universal forms.
 _MAGIC = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
-
-
-def _attempt(
-    compiler: Compiler, folder: Path, build: str, source: Source, machine: tuple[str, ...]
-) -> tuple[int, str]:
-    """One run of the compiler; status and what it said."""
-    flags, result = compiler.flags(build, source, machine=machine), f"{source.stem}.so"
-    files = (source.files[0], "build.c")
-    return _run((*compiler.command, *flags, *files, "-o", result, "-lm"), folder)
 
 
 @contextmanager
@@ -408,12 +413,12 @@ def _timeout_error(
     command: tuple[str, ...], folder: Path, seconds: float, kind: str, advice: str
 ) -> CompilerError:
     """The compiler took too long, for a text whose size is told."""
-    sources = [folder / each for each in command if each.endswith(".c") and each != "build.c"]
-    at_work = "".join(
-        f" while it compiled {each.name} of {each.stat().st_size / 1024:.0f} KiB"
-        for each in sources
-        if each.is_file()
-    )
+    at_work = ""
+    if any(each.endswith(".c") for each in command):
+        given = (each for each in folder.glob("*.c") if each.name != "build.c")
+        size, name = max(((each.stat().st_size, each.name) for each in given), default=(0, ""))
+        # that of the system: its parts are a few lines each
+        at_work = f" while it compiled {name} of {size / 1024:.0f} KiB" if name else ""
     return CompilerError(
         f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped{at_work}. "
         f"{advice}",

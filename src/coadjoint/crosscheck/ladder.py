@@ -149,6 +149,7 @@ def crosscheck(
                 pool,
                 texts,
                 folder,
+                system.name,
                 chosen,
                 kind,
                 hold_sides(select_programs(programs.values(), kind, maps)),

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -22,6 +22,7 @@ import numpy as np
 from coadjoint.build.cache import fetch, store
 from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
+from coadjoint.build.source import Source
 from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.lower.compositions import list_schedules
@@ -112,17 +113,32 @@ class Advance(Protocol):
         ...
 
 
-def compile_solver(
-    texts: Mapping[str, str], folder: Path, method: str, build: str, what: SolverKind = SOLVER
-) -> Path:
-    """The object of a method: the exact build is not optimised, which changes no bit.
+#: A file of one method in an object of several: its macros, its functions by names of its own.
+_PART: Final = """{defines}
+#define {advance} {advance}_{method}
+#define {label} {label}_{method}
+#include "{file}"
+"""
 
-    The fast one is optimised less than that of users, which takes longer to compile.
+
+def compile_solvers(
+    texts: Mapping[str, str],
+    folder: Path,
+    system: str,
+    methods: Sequence[str],
+    build: str,
+    what: SolverKind = SOLVER,
+) -> Path:
+    """An object of some methods: the exact build is not optimised, which changes no bit.
+
+    The fast one is optimised less than that of users, which takes longer to compile. Each method is
+    compiled alone, as users have it; one run of the compiler for several costs less than many.
 
     Args:
         texts: The files of the solver in C.
         folder: A private folder, where others may be compiled at the same time.
-        method: One of `CHOICES`.
+        system: The name of the system.
+        methods: Of those that are compared.
         build: ``exact`` or ``fast``.
         what: What it integrates.
 
@@ -131,11 +147,22 @@ def compile_solver(
     """
     level = 0 if build == "exact" else 1  # sums and products are fused from there on
     every = CHOICES | NOISY | IMPLICIT | MAPS
-    compiler, kind = find_compiler(), replace(every[method], kind=what).source
-    kind = replace(kind, level=level)
-    work = folder / f"{what.stem}-{method}-{build}"
+    compiler, kind = find_compiler(), Source(what.stem, is_loops=False, level=level)
+    work = folder / f"{what.stem}-{methods[0]}-{build}"
     work.mkdir()
     sources = {file: texts[file].encode() for file in kind.files}
+    parts = dict[str, bytes]()
+    for method in methods:
+        defines = replace(every[method], kind=what).source.defines
+        marks = (each.removeprefix("-D").replace("=", " ") for each in defines)
+        parts[f"{method}.c"] = _PART.format(
+            defines="\n".join(f"#define {mark}" for mark in marks),
+            advance=f"{system}_{what.advance}",
+            label=kind.label(system),
+            method=method,
+            file=kind.files[0],
+        ).encode()
+    sources |= parts
     # of its own name: an object that is not verified yet is never one that users load
     key = find_key(compiler, {**sources, "made for": b"the cross-check"}, build, kind)
     cached = fetch(key)
@@ -143,15 +170,15 @@ def compile_solver(
         return cached
     for file, content in sources.items():
         (work / file).write_bytes(content)
-    made = compile_kernel(compiler, work, build, kind)
+    made = compile_kernel(compiler, work, build, kind, tuple(parts))
     with suppress(OSError, OutputError):
         store(key, made.read_bytes())
     return made
 
 
-def load_solver(path: Path, system: str, kind: SolverKind = SOLVER) -> Advance:
-    """The function of an object."""
-    function = ctypes.CDLL(str(path))[f"{system}_{kind.advance}"]
+def load_solver(path: Path, system: str, method: str, kind: SolverKind = SOLVER) -> Advance:
+    """The function of a method in an object."""
+    function = ctypes.CDLL(str(path))[f"{system}_{kind.advance}_{method}"]
     function.restype, function.argtypes = ctypes.c_size_t, [ctypes.c_void_p]
 
     def advance(ensemble: Ensemble, work: int, record: Record | None = None) -> int:

@@ -33,7 +33,7 @@ from coadjoint.crosscheck.solver_objects import (
     Advance,
     Function,
     NumpySolver,
-    compile_solver,
+    compile_solvers,
     list_compared,
     load_numpy,
     load_solver,
@@ -59,9 +59,11 @@ from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
-#: The objects that are compiled, each once: method, target and build. The builds differ in their
-#: flags alone, which one method shows.
-OBJECTS: Final = (*((method, "c", "exact") for method in CHOICES), ("taylor", "c-fast", "fast"))
+#: The method whose fast build is compiled as well: builds differ in flags alone, which one shows.
+FAST: Final = "taylor"
+#: Methods of the exact build in one run of a compiler: fewer runs cost less, and all in one would
+#: leave the other processors idle where one system is worked on.
+TOGETHER: Final = 4
 #: What compilers are making, by method and target.
 Compiling = Mapping[tuple[str, str], "Future[Path]"]
 
@@ -91,6 +93,7 @@ def start_compiling(
     pool: Executor,
     texts: Mapping[str, str],
     folder: Path,
+    system: str,
     targets: Iterable[str],
     kind: SolverKind = SOLVER,
     programs: Mapping[str, Program] | None = None,
@@ -101,18 +104,22 @@ def start_compiling(
         pool: Who compiles.
         texts: The files of the system by name.
         folder: Where.
+        system: The name of the system.
         targets: What is compared.
         kind: What the solvers integrate.
         programs: As `select_programs` has them, with kinks; None for what all systems have alone.
     """
     spared = {*CHOICES, *MAPS}.difference(COMPILED_MAPS)
     others = (name for name in list_compared(programs or {}) if name not in spared)
-    objects = (*OBJECTS, *((method, "c", "exact") for method in others))
-    return {
-        (method, target): pool.submit(compile_solver, texts, folder, method, build, kind)
-        for method, target, build in objects
-        if target in targets
-    }
+    exact = [*CHOICES, *others]
+    objects = {"c-fast": ("fast", [[FAST]])}
+    objects["c"] = ("exact", [exact[n : n + TOGETHER] for n in range(0, len(exact), TOGETHER)])
+    made = dict[tuple[str, str], "Future[Path]"]()
+    for target, (build, groups) in objects.items():
+        for methods in groups if target in targets else ():
+            path = pool.submit(compile_solvers, texts, folder, system, methods, build, kind)
+            made |= {(method, target): path for method in methods}
+    return made
 
 
 def check_solvers(
@@ -198,7 +205,7 @@ def _load(
     """What advances members, by method and target."""
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}
     for (method, target), made in compiling.items():
-        advance[method][target] = load_solver(made.result(), system, kind)
+        advance[method][target] = load_solver(made.result(), system, method, kind)
     return advance
 
 
