@@ -1,19 +1,22 @@
-"""The second file of every compiled object: two functions that call a kernel with packed arguments.
+"""The file that is compiled: a source, and two functions that call it with packed arguments.
 
-Comes in: nothing. Goes out: C text, in which ``BUILD`` is replaced by the name of the build.
+Comes in: nothing. Goes out: C text, in which ``SOURCE`` and ``BUILD`` are replaced by names.
 Read next: `coadjoint.build.compiler`, which compiles it, and `coadjoint.build.library`.
 """
 
 from typing import Final
 
-#: Names in the second file of every object: of its build, and of the two ways to call a kernel.
+#: Names in every object: of its build, and of the two ways to call a kernel.
 LABEL: Final = "coadjoint_build"
 CALL: Final = "coadjoint_call"
 CALL_AT: Final = "coadjoint_call_at"
-#: That file. Converting one argument takes ctypes less time than converting seven or more, so that
-#: arguments are packed: function, number of arrays, members, then place and stride of each array,
-#: the state first and the result last (docs/decisions/loading.md has the figures).
-SUPPORT: Final = """#include <stddef.h>
+#: That file. It includes the source, since one file takes the compiler less time than two
+#: (docs/decisions/compiler.md). Converting one argument takes ctypes less time than converting
+#: seven or more, so that arguments are packed: function, number of arrays, members, then place and
+#: stride of each array, the state first and the result last (docs/decisions/loading.md).
+SUPPORT: Final = """#include "SOURCE"
+
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 

@@ -244,8 +244,9 @@ def compile_kernel(
     """
     result = folder / f"{source.stem}.so"
     if not parts:
-        (folder / "build.c").write_text(SUPPORT.replace("BUILD", build), encoding="ascii")
-    files = parts or (source.files[0], "build.c")
+        text = SUPPORT.replace("SOURCE", source.files[0]).replace("BUILD", build)
+        (folder / "build.c").write_text(text, encoding="ascii")
+    files = parts or ("build.c",)
 
     def attempt(machine: tuple[str, ...]) -> tuple[int, str]:
         flags = compiler.flags(build, source, machine=machine)
