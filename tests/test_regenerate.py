@@ -74,21 +74,15 @@ LONG = {
 
 #: Systems whose kernels loop over members or points.
 LOOPED = (*FAMILIES, *FIELDS)
-#: One system for each kind of derivation and of text, of those that take little time.
+#: One system for each kind of text, of those that take little time: bodies, constraints, forces,
+#: canonical coordinates, equal members, a field. `.ci/run` does the same for every system.
 SAMPLE = (
-    "c3_oscillators",
     "chaplygin_sleigh",
-    "guiding_centre",
-    "heavy_top",
+    "heavy_top_damped",
     "kapitza_top",
-    "landau_lifshitz_gilbert",
-    "nambu_body",
     "rigid_body_attitude",
-    "rolling_disk_vertical",
     "se2_pendulum",
-    "so4_body",
     "sp2_strand",
-    "stochastic_rigid_body",
     "toda_lattice",
 )
 
@@ -100,7 +94,7 @@ def check_rows(specs, complete):
     came before in a process.
     """
     outcome = check(specs, ROOT / "generated", jobs=2, complete=complete)
-    assert len(outcome.rows) == len(specs) >= 13
+    assert len(outcome.rows) == len(specs) >= 7
     assert not outcome.failures
     for row in outcome.rows:
         assert row.proved == row.claims >= (6 if row.system in LOOPED else 7)

@@ -15,9 +15,11 @@ from tests.specs import RIGID_BODY
 
 @pytest.fixture(scope="session", autouse=True)
 def cache(tmp_path_factory):
-    """A cache that holds nothing of the user's."""
+    """A cache that holds nothing of the user's, of all processes that run these tests."""
+    folder = tmp_path_factory.getbasetemp()
+    shared = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("COADJOINT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("COADJOINT_CACHE", str(shared / "cache-of-commands"))
         yield
 
 

@@ -25,10 +25,7 @@ from tests.programs import PENDULUM, program
 from tests.specs import RIGID_BODY, spec
 
 TARGETS = tuple(BUILDS)
-pytestmark = [
-    pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine"),
-    pytest.mark.usefixtures("optimized"),
-]
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 #: Everything but the version is refused.
 FAILS_ON_KERNELS = '[ "$1" = --version ] && exec {real} --version\nexit 1'
 #: A macro that shortens every loop, behind the definitions of the template.
@@ -70,7 +67,7 @@ def spoiled(rendered, file, good, bad):
     return dataclasses.replace(rendered, texts=texts)
 
 
-def test_the_rigid_body_passes_every_rung(rendered):
+def test_the_rigid_body_passes_every_rung(rendered, optimized):
     """All targets, every rung passed, and a count for each of them."""
     report = pipeline.verify(rendered)
     assert report.passed

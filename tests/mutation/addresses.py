@@ -239,5 +239,17 @@ def rebuild(tree: ast.AST, old: ast.AST, new: ast.AST) -> ast.AST:
 
 
 def source_with(tree: ast.Module, edit: Edit) -> str:
-    """The source of a tree with one edit."""
-    return ast.unparse(ast.fix_missing_locations(rebuild(tree, edit.old, edit.new)))
+    """The source of a tree with one edit; what it does not touch is written once for all edits."""
+    texts, places = _statements(tree)
+    changed = rebuild(tree.body[places[id(edit.old)]], edit.old, edit.new)
+    return "\n".join(
+        ast.unparse(ast.fix_missing_locations(changed)) if k == places[id(edit.old)] else text
+        for k, text in enumerate(texts)
+    )
+
+
+@cache
+def _statements(tree: ast.Module) -> tuple[list[str], dict[int, int]]:
+    """The statements of a module as text, and in which of them each node stands."""
+    places = {id(node): k for k, each in enumerate(tree.body) for node in ast.walk(each)}
+    return [ast.unparse(each) for each in tree.body], places
