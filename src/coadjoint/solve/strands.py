@@ -123,7 +123,7 @@ def transport(connection: Array, length: Any, side: str = "left") -> Array:
     if side == "left":
         points = np.swapaxes(points, -1, -2)  # the transpose of psi stands on the right
     h = np.asarray(length)[..., np.newaxis, np.newaxis] / count
-    steps = _exponentiate(_magnus([h * _shift(points, node) for node in NODES]))
+    steps = find_steps([h * _shift(points, node) for node in NODES])
     frames = np.empty((count + 1, *points.shape[1:]))
     frames[0] = np.eye(points.shape[-1])
     for n, step in enumerate(steps):
@@ -131,6 +131,15 @@ def transport(connection: Array, length: Any, side: str = "left") -> Array:
     if side == "left":
         frames = np.swapaxes(frames, -1, -2)
     return np.moveaxis(frames, (-2, -1, 0), (0, 1, 2))
+
+
+def find_steps(nodes: list[Array]) -> Array:
+    """Solutions of ``dpsi/ds = X psi`` over steps from 1, by Magnus's expansion of order 6.
+
+    Args:
+        nodes: X at each of `NODES`, times the length of the step, ``(..., n, n)`` each.
+    """
+    return _exponentiate(_magnus(nodes))
 
 
 def _shift(points: Array, part: float) -> Array:
