@@ -46,13 +46,13 @@ _NAMES: Final = {
 _DIGITS: Final = 14
 
 
-def write_lattice(spec: Spec, bodies: int = 16) -> str:
+def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     """The spec of a lattice of rigid bodies whose limit is a strand, as text.
 
     Args:
         spec: A strand on so(3), left invariant, around a circle or between free ends, whose energy
             per length is the sum of a function of momenta and a polynomial of strains.
-        bodies: How many there are by default; at least 1.
+        bodies: How many there are by default; as many as the strand has points if left out.
 
     Returns:
         The text of a spec with an index, which `coadjoint.read_spec` and `coadjoint.load` read from
@@ -67,10 +67,27 @@ def write_lattice(spec: Spec, bodies: int = 16) -> str:
     Source:
         Demoures, Gay-Balmaz and Ratiu, Discrete and Continuous Dynamical Systems S 9 (2016) 1061.
     """
-    if bodies < 1:
-        message = f"{spec.path}: the lattice has {bodies} bodies; expected at least 1. Write 16."
-        raise SpecError(message, path=str(spec.path), found=bodies)
-    return "\n\n".join(_Lattice(read_strand(spec), bodies).sections()) + "\n"
+    strand = read_strand(spec)
+    count = _count_points(spec) if bodies is None else bodies
+    if count < 1:
+        message = f"{spec.path}: the lattice has {count} bodies; expected at least 1. Write 16."
+        raise SpecError(message, path=str(spec.path), found=count)
+    return "\n\n".join(_Lattice(strand, count).sections()) + "\n"
+
+
+def _count_points(spec: Spec) -> int:
+    """How many points the strand has.
+
+    Raises:
+        SpecError: That is chosen when it is loaded.
+    """
+    assert spec.space is not None, spec.name
+    if spec.space.size is None:
+        name = spec.space.name
+        hint = f"Write it, coadjoint new NAME --lattice-of {spec.name} --bodies 16, or load the "
+        problem = "[space] has no number of points, and no number of bodies is given"
+        raise refuse(spec, problem, "a number", f"{hint}spec with sizes={{{name!r}: 16}}.")
+    return spec.space.size
 
 
 class _Lattice:
@@ -231,12 +248,15 @@ class _Lattice:
     def _write_potential(self) -> str:
         """The potential as a formula in x and S."""
         x, S, terms = self.names["first"], self.names["second"], list[str]()
-        for exponents, factor in sorted(self.strand.potential.items(), reverse=True):
+        listed = sorted(self.strand.potential.items(), key=lambda each: (sum(each[0]), each[0]))
+        for exponents, factor in listed:
             left, pairs = pair_components(exponents)
             parts = [f"{x}[{n + 1}]" for n in left]
             parts += [f"{S}[{m + 1}, {n + 1}]" for m, n in pairs]
-            terms.append("*".join([f"({self.write(factor)})", *parts]))
-        return " + ".join(terms)
+            text = self.write(factor)
+            whole = f"({text})" if " " in text else text
+            terms.append("*".join([whole, *parts]) if parts else whole)
+        return " + ".join(terms).replace("+ -", "- ")
 
     # -- observables and claims -----------------------------------------------------------
 
