@@ -167,7 +167,9 @@ def _list_monomials(
     except ValueError as error:
         problem = f"its energy is no polynomial in the strains: {error}"
         hint = "Write the first terms of its series."
-        raise refuse(spec, problem, "a polynomial of strains, such as dot(Xi, Xi)^2", hint) from error
+        raise refuse(
+            spec, problem, "a polynomial of strains, such as dot(Xi, Xi)^2", hint
+        ) from error
     if min(powers, default=0) < 0:
         problem = f"its energy is no polynomial in the strains: {first} stands in a denominator"
         raise refuse(spec, problem, "a polynomial of strains, such as dot(Xi, Xi)^2")

@@ -54,8 +54,6 @@ def find_starts(strand: Strand, bodies: int) -> Starts:
     """
     spec, space = strand.spec, strand.spec.space
     assert space is not None, spec.name
-    if any(each.default is None for each in spec.parameters):
-        return Starts()
     first = Fraction(1, 2 * bodies) if space.has_ends else Fraction(0)
     momenta = attitudes = None
     if strand.momentum.name in spec.profiles:

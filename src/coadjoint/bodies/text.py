@@ -12,15 +12,16 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from coadjoint.bodies.energy import Strand, pair_components, read_strand, refuse
 from coadjoint.bodies.starts import Starts, find_starts
 from coadjoint.derive.interpret import entries
-from coadjoint.errors import SpecError
+from coadjoint.errors import LimitError, SpecError
 from coadjoint.exact import Element
 from coadjoint.exact.text import element_text
-from coadjoint.spec import Spec
+from coadjoint.spec import Spec, read_spec_text
 from coadjoint.spec.core.components import kept_places, matrix_size
 
 if TYPE_CHECKING:
@@ -72,7 +73,27 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     if count < 1:
         message = f"{spec.path}: the lattice has {count} bodies; expected at least 1. Write 16."
         raise SpecError(message, path=str(spec.path), found=count)
-    return "\n\n".join(_Lattice(strand, count).sections()) + "\n"
+    text = "\n\n".join(_Lattice(strand, count).sections()) + "\n"
+    _check_size(spec, text, count)
+    return text
+
+
+def _check_size(spec: Spec, text: str, bodies: int) -> None:
+    """What is written can be read.
+
+    Raises:
+        SpecError: The energy or the numbers at the beginning are longer than those of a spec may be.
+    """
+    try:
+        read_spec_text(text, Path("lattice.toml"))
+    except LimitError as error:
+        if "EXPRESSION_NODES" in str(error):
+            problem = "its energy has too many terms of strains (EXPRESSION_NODES)"
+            hint = "Leave out terms of the highest degree."
+            raise refuse(spec, problem, "a shorter polynomial", hint) from error
+        problem = f"its spec would be too long with where each of {bodies} bodies begins"
+        hint = f"Write fewer, and give {bodies} a state of their own: resize({{'i': {bodies}}})."
+        raise refuse(spec, problem, "some hundred bodies at most", hint) from error
 
 
 def _count_points(spec: Spec) -> int:
@@ -248,8 +269,10 @@ class _Lattice:
     def _write_potential(self) -> str:
         """The potential as a formula in x and S."""
         x, S, terms = self.names["first"], self.names["second"], list[str]()
-        listed = sorted(self.strand.potential.items(), key=lambda each: (sum(each[0]), each[0]))
-        for exponents, factor in listed:
+        # by degrees, and the first components first
+        known = self.strand.potential
+        for exponents in sorted(known, key=lambda each: (sum(each), [-n for n in each])):
+            factor = known[exponents]
             left, pairs = pair_components(exponents)
             parts = [f"{x}[{n + 1}]" for n in left]
             parts += [f"{S}[{m + 1}, {n + 1}]" for m, n in pairs]

@@ -108,7 +108,9 @@ def load_system(
     return load_folder(folder).with_derivatives(derivatives)
 
 
-def complete_system(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+def complete_system(
+    _context: click.Context, _parameter: click.Parameter, incomplete: str
+) -> list[str]:
     """What a shell may complete: names of shipped systems, and specs in the folder at hand."""
     folder, _, begun = incomplete.rpartition("/")
     lead = f"{folder}/" if folder else ""
