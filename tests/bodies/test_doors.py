@@ -147,7 +147,7 @@ def test_numbers_of_bodies_are_checked():
     with pytest.raises(SpecError, match="0 bodies; expected at least 1"):
         coadjoint.write_lattice(strand(), 0)
     unsized = strand(("size = 256, ", ""))
-    with pytest.raises(SpecError, match="no number of points.*--bodies 16"):
+    with pytest.raises(SpecError, match=r"no number of points.*--bodies 16"):
         coadjoint.write_lattice(unsized)
     assert "size = 16" in coadjoint.write_lattice(unsized, 16)
 

@@ -1,12 +1,15 @@
 """Links in the place of strains: their limits, and which strands have such an energy."""
 
 import re
+from pathlib import Path
 
 import pytest
 import sympy
 
+from coadjoint.bodies import write_lattice
 from coadjoint.bodies.energy import pair_components, read_strand
 from coadjoint.errors import SpecError
+from coadjoint.spec import read_spec_text
 from tests.bodies.lattices import STIFF, lattice_of, strand
 from tests.specs import prove_claims, shipped
 
@@ -31,7 +34,7 @@ def squares(U, sign=1):
 
 @pytest.mark.parametrize(("sign", "holds"), [(1, True), (-1, False)])
 def test_links_tend_to_strains_and_their_products(sign, holds):
-    """Of exp(a hat(Xi)), by its series: both differ by the order a^2, with another sign by 1/a^2."""
+    """Of exp(a hat(Xi)), by its series: up to the order a^2; with another sign not at all."""
     U, term = sympy.eye(3), sympy.eye(3)
     for n in range(1, 6):
         term = (term * a * hat(Xi) / n).expand()
@@ -131,11 +134,6 @@ def test_the_advice_of_free_ends_is_followed():
 )
 def test_the_certificate_proves_jacobi_and_the_total_momentum(old, new, holds):
     """For every number of bodies; a link as seen from space loses the momentum alone."""
-    from pathlib import Path
-
-    from coadjoint.bodies import write_lattice
-    from coadjoint.spec.reader import read_spec_text
-
     text = write_lattice(strand(), 16).replace(old, new)
     certificate = prove_claims(read_spec_text(text, Path("lattice.toml")))
     verdicts = {each.statement: each.verdict for each in certificate.claims}

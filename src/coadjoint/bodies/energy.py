@@ -120,9 +120,8 @@ def _check_strand(spec: Spec) -> None:
         problem = "it is right invariant, and so its strains are not turns in body axes"
         raise refuse(spec, problem, 'invariance = "left"')
     if spec.space.ends == "clamped":
-        hint = "No body of a lattice is held: declare a ring, or a chain whose last bodies are "
-        problem = "its ends are clamped"
-        raise refuse(spec, problem, 'ends = "periodic" or "free"', f"{hint}heavy.")
+        problem, hint = "its ends are clamped", "No body of a lattice is held."
+        raise refuse(spec, problem, 'ends = "periodic" or "free"', hint)
     if others:
         hint = f"{by_hand} spin_chain_lattice does, and give each an advected quantity."
         problem = f"{others[0]!r} is advected along the strand"
@@ -162,17 +161,16 @@ def _list_monomials(
         yield (), potential
         return
     first, *others = strains
+    expected = "a polynomial of strains, such as dot(Xi, Xi)^2"
     try:
         powers = field.coefficients(potential, first)
     except ValueError as error:
         problem = f"its energy is no polynomial in the strains: {error}"
         hint = "Write the first terms of its series."
-        raise refuse(
-            spec, problem, "a polynomial of strains, such as dot(Xi, Xi)^2", hint
-        ) from error
+        raise refuse(spec, problem, expected, hint) from error
     if min(powers, default=0) < 0:
         problem = f"its energy is no polynomial in the strains: {first} stands in a denominator"
-        raise refuse(spec, problem, "a polynomial of strains, such as dot(Xi, Xi)^2")
+        raise refuse(spec, problem, expected)
     for power, factor in powers.items():
         for exponents, value in _list_monomials(spec, field, factor, others):
             yield (power, *exponents), value

@@ -3,12 +3,14 @@ r"""Where bodies begin: momenta of the profile, and attitudes that its strain tu
 From the attitude 1 of the first body, :math:`\partial_s R = R\,\hat\Xi` is solved from body to body
 by Magnus's steps of order 6. Around a ring this closes where the holonomy is 1 alone.
 
-Comes in: the Spec of a strand, and how many bodies there are. Goes out: their momenta and attitudes.
+Comes in: the Spec of a strand, and how many bodies there are. Goes out: their momenta and
+attitudes.
 Read next: `coadjoint.bodies.text`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
@@ -70,9 +72,9 @@ def find_starts(strand: Strand, bodies: int) -> Starts:
     return Starts(momenta, attitudes)
 
 
-def _evaluate(strand: Strand, name: str, places: object) -> Array:
+def _evaluate(strand: Strand, name: str, places: Iterable[Fraction]) -> Array:
     """A field at parts of the way, a row for each."""
-    rows = [evaluate_profile(strand.spec, name, part) for part in places]  # type: ignore[attr-defined]
+    rows = [evaluate_profile(strand.spec, name, part) for part in places]
     return np.array(rows, dtype=float)
 
 
@@ -91,8 +93,7 @@ def _find_frames(strand: Strand, bodies: int, first: Fraction) -> Array:
         strains = _evaluate(strand, strand.strain.name, (s + h * Fraction(node) for s in begins))
         nodes.append(float(h * length[0]) * _hat(strains).transpose(0, 2, 1))
     frames = [np.eye(3)]
-    steps = find_steps(nodes) if begins else []
-    for step in steps:
+    for step in find_steps(nodes) if begins else ():  # none of a single body
         frames.append(step @ frames[-1])
     # by columns: the transpose of R follows from the left
     found = np.array(frames[::pieces]).transpose(0, 2, 1)

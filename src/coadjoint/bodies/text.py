@@ -73,16 +73,17 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     if count < 1:
         message = f"{spec.path}: the lattice has {count} bodies; expected at least 1. Write 16."
         raise SpecError(message, path=str(spec.path), found=count)
-    text = "\n\n".join(_Lattice(strand, count).sections()) + "\n"
-    _check_size(spec, text, count)
+    lattice = _Lattice(strand, count)
+    text = "\n\n".join(lattice.sections()) + "\n"
+    _check_size(spec, text, {lattice.place: count})
     return text
 
 
-def _check_size(spec: Spec, text: str, bodies: int) -> None:
+def _check_size(spec: Spec, text: str, sizes: Mapping[str, int]) -> None:
     """What is written can be read.
 
     Raises:
-        SpecError: The energy or the numbers at the beginning are longer than those of a spec may be.
+        SpecError: The energy, or the numbers at the beginning, are longer than a spec may be.
     """
     try:
         read_spec_text(text, Path("lattice.toml"))
@@ -91,8 +92,9 @@ def _check_size(spec: Spec, text: str, bodies: int) -> None:
             problem = "its energy has too many terms of strains (EXPRESSION_NODES)"
             hint = "Leave out terms of the highest degree."
             raise refuse(spec, problem, "a shorter polynomial", hint) from error
+        (bodies,) = sizes.values()
         problem = f"its spec would be too long with where each of {bodies} bodies begins"
-        hint = f"Write fewer, and give {bodies} a state of their own: resize({{'i': {bodies}}})."
+        hint = f"Write fewer, and give so many a state of their own: system.resize({dict(sizes)})."
         raise refuse(spec, problem, "some hundred bodies at most", hint) from error
 
 
@@ -119,8 +121,8 @@ class _Lattice:
         assert space is not None, spec.name
         self.strand, self.spec, self.bodies, self.length = strand, spec, bodies, space.length
         self.is_open = space.has_ends
-        taken = {each.name for each in (strand.momentum, *spec.parameters, *spec.observables)}
-        taken -= {self.length}
+        taken = {strand.momentum.name, *(each.name for each in spec.parameters)} - {self.length}
+        taken |= {each.name for each in spec.observables}
         self.names = {use: self._choose(use, names, taken) for use, names in _NAMES.items()}
         self.place = self.names["index"]
         self.distance = self.names["distance"]

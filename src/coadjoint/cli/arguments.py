@@ -147,7 +147,7 @@ def complete_algebra(
     """Named algebras, then what `system_argument` completes."""
     from coadjoint.algebra.catalogue import CATALOGUE
 
-    return [word for word in CATALOGUE if word.startswith(incomplete)] + _complete(
+    return [word for word in CATALOGUE if word.startswith(incomplete)] + complete_system(
         _context, _parameter, incomplete
     )
 
