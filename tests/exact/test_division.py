@@ -5,6 +5,7 @@ from random import Random
 import pytest
 from sympy import QQ, grevlex, ring
 
+from coadjoint.exact.denominators import remove_factor
 from coadjoint.exact.division import find_remainder
 
 R, *SYMBOLS = ring("x, y, z, w", QQ, grevlex)
@@ -47,3 +48,21 @@ def test_nothing_is_left_of_a_multiple():
     assert find_remainder(p + w, [f]) == w
     assert (dict(p), find_remainder(w, [])) == (before, w)
     assert find_remainder(R.zero, [f]) == 0
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_factors_are_removed_as_often_as_they_divide(seed):
+    """In the order lex: powers of a factor from a product, none from its neighbour."""
+    lex, *symbols = ring("x, y, z, w", QQ)
+    random = Random(seed)
+    factor, other = (lex.from_dict(dict(polynomial(random, 5, 2))) + symbols[0] for _ in range(2))
+    count = random.randint(1, 3)
+    p = factor**count * other
+    before = dict(p)
+    most, left = remove_factor(p, factor)
+    assert most >= count
+    assert left * factor**most == p
+    assert left.div(factor)[1] != 0
+    assert remove_factor(p, factor, 1) == (1, p.quo(factor))
+    assert remove_factor(p + symbols[3] ** 20, factor)[0] == 0
+    assert dict(p) == before
