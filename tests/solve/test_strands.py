@@ -230,7 +230,7 @@ def test_connections_of_the_pair_have_its_entries_at_the_values():
         np.testing.assert_allclose(matrix, hat((Xi + lam * Pi) / (1 - lam**2)), atol=1e-14)
 
 
-def test_a_chain_with_ends_has_its_strain_alone():
+def test_a_chain_with_ends_has_connections_of_its_strain_alone():
     """From one end to the other; nothing goes around it, of which a trace of L were conserved."""
     chain = emitted("spin_chain_chiral")
     open_space = replace(chain.spec.space, ends="fixed")
