@@ -141,3 +141,11 @@ def test_the_certificate_proves_jacobi_and_the_total_momentum(old, new, holds):
     assert verdicts[jacobi] == "proved"
     (kept,) = (v for s, v in verdicts.items() if s.startswith("J is conserved"))
     assert (kept == "proved") == holds
+
+
+def test_what_the_strand_keeps_in_body_axes_stays():
+    """Of spheres the total angular momentum in body axes, by the lattice's own certificate."""
+    declared = lattice_of(shipped("spin_chain_chiral"))
+    assert [each.formula.text for each in declared.conserved] == ["energy", "J", "M"]
+    certificate = prove_claims(declared)
+    assert certificate.holds, str(certificate)
