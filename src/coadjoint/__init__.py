@@ -27,6 +27,7 @@ from coadjoint.errors import (
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra, algebra_by_name
+    from coadjoint.bodies import write_lattice
     from coadjoint.bounded import derive_bounded, prove_bounded, read_bounded
     from coadjoint.derive import Equations, derive
     from coadjoint.loading import load
@@ -59,6 +60,7 @@ __all__ = [
     "prove_bounded",
     "read_bounded",
     "read_spec",
+    "write_lattice",
 ]
 
 #: Module of each public name that is loaded on first use.
@@ -79,6 +81,7 @@ _HOMES = {
     "prove_bounded": "coadjoint.bounded",
     "read_bounded": "coadjoint.bounded",
     "read_spec": "coadjoint.spec",
+    "write_lattice": "coadjoint.bodies",
 }
 
 

@@ -153,6 +153,26 @@ def explore_bounded(
     return str(_run("coadjoint.bounded:page_record", argument, seconds, memory)["text"])
 
 
+def lattice_bounded(
+    path: str | PathLike[str],
+    bodies: int | None = None,
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: float | None = None,
+    memory: int = WORKER_BYTES,
+) -> str:
+    """The spec of the lattice of a strand, made in a bounded child.
+
+    Other arguments and errors are those of `derive_bounded`; ``bodies`` is how many there are, by
+    default as many as the strand has points.
+
+    Returns:
+        The text of `coadjoint.write_lattice`.
+    """
+    argument = {"path": fspath(path), "bodies": bodies, "sizes": dict(sizes)}
+    return str(_run("coadjoint.bounded:lattice_record", argument, seconds, memory)["text"])
+
+
 def _run(
     target: str, argument: Mapping[str, Any], seconds: float | None, memory: int
 ) -> dict[str, Any]:
@@ -307,3 +327,14 @@ def page_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     stages = ("derive", "lower", "prove", "render")
     rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
     return {"text": render_page(spec, rendered)}
+
+
+@prepared_by("coadjoint.bodies")
+def lattice_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """The lattice of a strand, as plain JSON values; runs in a bounded child."""
+    from coadjoint.bodies import write_lattice
+    from coadjoint.spec import read_spec
+
+    report_progress("derive", 0, 1)
+    spec = read_spec(Path(argument["path"]), argument["sizes"])
+    return {"text": write_lattice(spec, argument["bodies"])}

@@ -81,7 +81,7 @@ class Index:
 
 
 class Connection:
-    """A connection without curvature along a circle, of which there are transports and a holonomy.
+    """A connection without curvature along a circle or line, of which there are transports.
 
     Args:
         name: The strain of a strand; of a Lax pair L and a number in the place of its spectral
@@ -90,13 +90,20 @@ class Connection:
         length: The parameter that is the length of the circle.
         size: Rows of its matrix.
         entries: Those that are not 0, by row and column: texts in fields and parameters.
+        has_ends: Whether it goes from one end of a line to the other, and not around a circle.
     """
 
     def __init__(
-        self, name: str, side: str, length: str, size: int, entries: Mapping[tuple[int, int], str]
+        self,
+        name: str,
+        side: str,
+        length: str,
+        size: int,
+        entries: Mapping[tuple[int, int], str],
+        has_ends: bool = False,
     ) -> None:
         self.name, self.side, self.length = name, side, length
-        self.size, self.entries = size, entries
+        self.size, self.entries, self.has_ends = size, entries, has_ends
 
 
 class PrincipalSymbol:

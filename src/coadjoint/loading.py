@@ -14,7 +14,8 @@ from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 
-from coadjoint.build.cache import cache_folder, note_use
+from coadjoint.bounded import lattice_bounded
+from coadjoint.build.cache import cache_folder, note_use, replace_file
 from coadjoint.errors import check_type
 from coadjoint.fingerprint import digest
 from coadjoint.regenerate import Progress, is_written_out, regenerate
@@ -41,7 +42,9 @@ def load(
         sizes: How many members an index counts, by its name: ``{"i": 1000}``. Where kernels loop
             over the members they are the same for all sizes; else each size is derived.
         derivatives: Those of fields along space: ``"differences"``, of the order that the spec
-            says, or ``"fourier"``, as in `System.with_derivatives`.
+            says, or ``"fourier"``, as in `System.with_derivatives`. With ``"lattice"`` a strand on
+            so(3) becomes the lattice of as many bodies as it has points, with attitudes in the
+            place of strains: the system of the spec that `coadjoint.write_lattice` writes.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all. By default they
@@ -58,6 +61,9 @@ def load(
     """
     check_type("load", path, (str, PathLike), 'the path of a spec, "my.toml"')
     source = Path(path)
+    if derivatives == "lattice":
+        source = _keep_lattice(source, sizes, seconds)
+        sizes, derivatives = MappingProxyType({}), "differences"
     # One folder for each place of a spec, so that equal names of different people do not collide.
     place = str(source.resolve())
     if sizes and is_written_out(source, sizes, seconds):
@@ -76,6 +82,19 @@ def load(
     chosen = {} if own else sizes
     system = system.resize(chosen) if chosen or lacks_size(system) else system
     return system.with_derivatives(derivatives)
+
+
+def _keep_lattice(strand: Path, sizes: Mapping[str, int], seconds: float | None) -> Path:
+    """The spec of the lattice of a strand, in the cache.
+
+    Raises:
+        CoadjointError: What `coadjoint.write_lattice` raises.
+    """
+    text = lattice_bounded(strand, sizes=sizes, seconds=seconds)
+    folder = cache_folder() / f"lattice-{digest([str(strand.resolve()), dict(sizes)])[:16]}"
+    path = folder / f"{strand.stem[:23]}_lattice.toml"  # a name has at most 31 letters
+    replace_file(path, text.encode("utf-8"))
+    return path
 
 
 @contextmanager

@@ -45,6 +45,23 @@ def test_waves_stand_between_ends(strand):
     assert np.log2(errors[0] / errors[1]) > {2: 1.9, 4: 3.0}[order]
 
 
+def test_the_holonomy_turns_with_the_ends(strand):
+    """About the third axis by phi(L) - phi(0): 2 cos(w t) between free ends, 0 between clamped."""
+    system, ends, order = strand
+    state = np.zeros((6, 65))
+    state[2], state[5] = standing_wave(ends, 65, 0.0)
+    options = {"method": "dop853", "target": "numpy", "samples": 4, "rtol": 1e-9}
+    found = system.resize({"s": 65}).simulate(state.ravel(), (0, 3), **options)
+    frames = found.frames()
+    assert frames.shape == (3, 3, 65, 4)
+    angle = np.arctan2(frames[1, 0, -1], frames[0, 0, -1])
+    w = 3 * np.pi / L * np.sqrt(K3 / I3)
+    known = -2 * np.cos(w * found.time) if ends == "free" else 0 * found.time
+    np.testing.assert_allclose(angle, known, atol={2: 2e-2, 4: 1e-3}[order])
+    with pytest.raises(KernelArgumentError, match=r"has ends.*frames\(\)\[:, :, -1\]"):
+        found.traces()
+
+
 def test_the_energy_is_kept_for_any_fields(strand):
     """Its rate is 0 at random fields; the midpoint keeps it to rounding."""
     system, _, _ = strand

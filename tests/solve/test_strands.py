@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
 
 from coadjoint.algebra.matrices import take_image
 from coadjoint.derive import derive
@@ -66,6 +67,41 @@ def test_transport_solves_its_equation(side):
     assert np.abs(other[..., -1] - known).max() > 0.05
     turned = np.einsum("ijs,kjs->iks", frames, frames)
     np.testing.assert_allclose(turned, np.eye(3)[..., None] + 0 * turned, atol=1e-13)
+
+
+def between_ends(count):
+    """The strain of R(s) = Rz(f) Rx(g), and R(0)^T R(s), at points of a line; not periodic."""
+    s = np.linspace(0, LENGTH, count)
+    f, df, g, dg = np.sin(s / 3), np.cos(s / 3) / 3, s**2 / 40, s / 20
+    R = Rotation.from_euler("ZX", np.column_stack([f, g])).as_matrix()
+    known = np.einsum("ij,sik->jks", R[0], R)
+    return np.array([dg, df * np.sin(g), df * np.cos(g)]), known
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_transport_between_ends_has_order_six(side):
+    """Next to attitudes in closed form; of a circle it is another one."""
+    errors = []
+    for count in (17, 33):
+        Xi, known = between_ends(count)
+        known = known if side == "left" else known.transpose(1, 0, 2)
+        X = hat(Xi) if side == "left" else hat(-Xi)
+        frames = transport(X, LENGTH, side, has_ends=True)
+        assert frames.shape == (3, 3, count)
+        errors.append(np.abs(frames - known).max())
+        around = transport(X, LENGTH, side)[..., :count]
+        assert np.abs(around - known).max() > 1e-2
+    assert errors[1] < 1e-6
+    assert np.log2(errors[0] / errors[1]) > 5.5
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_few_points_have_a_polynomial_of_their_own(count):
+    """Of a strain that is linear along the line, about one axis: half the square."""
+    s = np.linspace(0, 2.0, count)
+    frames = transport(hat(np.array([s, 0 * s, 0 * s])), 2.0, has_ends=True)
+    angle = np.arctan2(frames[2, 1], frames[1, 1])
+    np.testing.assert_allclose(angle, s**2 / 2, atol=1e-14)
 
 
 def test_a_uniform_strain_is_an_exponential():
@@ -194,13 +230,16 @@ def test_connections_of_the_pair_have_its_entries_at_the_values():
         np.testing.assert_allclose(matrix, hat((Xi + lam * Pi) / (1 - lam**2)), atol=1e-14)
 
 
-def test_a_chain_with_ends_has_no_connections():
-    """Nothing goes around it."""
+def test_a_chain_with_ends_has_connections_of_its_strain_alone():
+    """From one end to the other; nothing goes around it, of which a trace of L were conserved."""
     chain = emitted("spin_chain_chiral")
     open_space = replace(chain.spec.space, ends="fixed")
     assert open_space.has_ends
     spec = replace(chain.spec, space=open_space)
-    assert find_connections(SimpleNamespace(setting=chain.setting, spec=spec)) == ()
+    (found,) = find_connections(SimpleNamespace(setting=chain.setting, spec=spec))
+    assert (found.name, found.has_ends) == ("Xi", True)
+    around = find_connections(chain)
+    assert [each.has_ends for each in around] == [False] * 3
 
 
 def test_matrices_that_are_no_numbers_have_no_connections():

@@ -71,7 +71,10 @@ def spec_path(system: str) -> Path:
 
 
 def load_system(
-    system: str, seconds: int | None = None, sizes: Mapping[str, int] = MappingProxyType({})
+    system: str,
+    seconds: int | None = None,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    derivatives: str = "differences",
 ) -> System:
     """The system of a word: a shipped one, or that of a spec, built if it has changed.
 
@@ -79,17 +82,20 @@ def load_system(
         system: The word.
         seconds: Processor time that deriving may take; see `coadjoint.budget.allowed_seconds`.
         sizes: How many members an index counts, by its name.
+        derivatives: Those of fields along space; see `coadjoint.load`.
 
     Raises:
         CoadjointError: The spec is not in order, or the shipped system has not been generated.
     """
     path = spec_path(system)
-    if is_path(system) or sizes:
+    if is_path(system) or sizes or derivatives == "lattice":
         from coadjoint.cli.output import progress_bars
         from coadjoint.loading import load
 
         with progress_bars() as progress:
-            return load(path, sizes=sizes, seconds=seconds, progress=progress)
+            return load(
+                path, sizes=sizes, derivatives=derivatives, seconds=seconds, progress=progress
+            )
     from coadjoint.solve.folders import load_folder
 
     folder = systems_folder() / path.stem
@@ -99,10 +105,12 @@ def load_system(
             f"Run `coadjoint regenerate {path.stem}`.",
             found=path.stem,
         )
-    return load_folder(folder)
+    return load_folder(folder).with_derivatives(derivatives)
 
 
-def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+def complete_system(
+    _context: click.Context, _parameter: click.Parameter, incomplete: str
+) -> list[str]:
     """What a shell may complete: names of shipped systems, and specs in the folder at hand."""
     folder, _, begun = incomplete.rpartition("/")
     lead = f"{folder}/" if folder else ""
@@ -112,7 +120,7 @@ def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: 
 
 
 #: The argument ``SYSTEM|SPEC`` of a command.
-system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=_complete)
+system_argument = click.argument("system", metavar="SYSTEM|SPEC", shell_complete=complete_system)
 
 
 def complete_route(
@@ -139,7 +147,7 @@ def complete_algebra(
     """Named algebras, then what `system_argument` completes."""
     from coadjoint.algebra.catalogue import CATALOGUE
 
-    return [word for word in CATALOGUE if word.startswith(incomplete)] + _complete(
+    return [word for word in CATALOGUE if word.startswith(incomplete)] + complete_system(
         _context, _parameter, incomplete
     )
 

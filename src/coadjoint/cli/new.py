@@ -1,6 +1,7 @@
 """Command ``new``: a commented spec to start from.
 
-Comes in: a name. Goes out: a file that loads, proves and runs as it stands, for its owner to edit.
+Comes in: a name, and a strand whose lattice of bodies it is to be. Goes out: a file that loads,
+proves and runs as it stands, for its owner to edit.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from typing import Final
 
 import click
 
+from coadjoint.cli.arguments import complete_system, seconds_option, spec_path
 from coadjoint.cli.output import say
 from coadjoint.errors import OutputError, SpecError
 
@@ -53,8 +55,20 @@ conserved = ["energy"]
 
 @click.command("new")
 @click.argument("name")
-def command(name: str) -> None:
-    """Write NAME.toml, a commented spec to start from."""
+@click.option(
+    "--lattice-of",
+    "strand",
+    metavar="SYSTEM|SPEC",
+    shell_complete=complete_system,
+    help="A strand on so(3), whose lattice of rigid bodies with attitudes is written.",
+)
+@click.option("--bodies", type=click.IntRange(1), help="How many. Default: 16.")
+@seconds_option
+def command(name: str, strand: str | None, bodies: int | None, seconds: int | None) -> None:
+    """Write NAME.toml, a commented spec to start from.
+
+    With --lattice-of it is the spec of the lattice of rigid bodies whose limit a strand is.
+    """
     from coadjoint.spec.core.names import system_refusal
 
     name = name.removesuffix(".toml")
@@ -62,10 +76,17 @@ def command(name: str) -> None:
     if refusal is not None:
         problem, expected, hint = refusal
         raise SpecError(f"{problem}; expected {expected}. {hint}".rstrip(), found=name)
+    if strand is None and bodies is not None:
+        raise click.UsageError("--bodies is of a lattice; expected --lattice-of with it.")
     path = Path(f"{name}.toml")
+    text = STARTER.format(name=name)
+    if strand is not None and not path.exists():
+        from coadjoint.bounded import lattice_bounded
+
+        text = lattice_bounded(spec_path(strand), bodies or 16, seconds=seconds)
     try:
         with path.open("x", encoding="utf-8") as file:
-            file.write(STARTER.format(name=name))
+            file.write(text)
     except FileExistsError:
         message = f"{path}: the file already exists and was not changed. Choose another name."
         raise SpecError(message, path=str(path), found=name) from None

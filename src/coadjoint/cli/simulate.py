@@ -135,10 +135,11 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
 )
 @click.option(
     "--derivatives",
-    type=click.Choice(["differences", "fourier"]),
+    type=click.Choice(["differences", "fourier", "lattice"]),
     default="differences",
     show_default=True,
-    help="Derivatives of fields along space. By fourier, methods of SciPy alone apply.",
+    help="Derivatives of fields along space. By fourier, methods of SciPy alone apply; a strand "
+    "as a lattice is one of bodies with attitudes.",
 )
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write, e.g. top.png.")
 @click.option(
@@ -191,7 +192,7 @@ def command(
         raise click.UsageError(
             "--plot, --animate and --trace are of one trajectory; expected no --members."
         )
-    loaded = load_system(system, seconds, sizes).with_derivatives(derivatives)
+    loaded = load_system(system, seconds, sizes, derivatives)
     asked.check_axes(loaded, followed=members is None and bool(loaded.RECONSTRUCTED))
     if trace is not None:
         from coadjoint.solve.trace import check_traced  # which needs NumPy

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import reduce
-from operator import le, mul, sub
+from heapq import heapify, heappop, heappush
+from operator import add, le, mul, neg, sub
 from typing import TYPE_CHECKING, Any
 
 from sympy.polys.rings import PolyElement, PolyRing
@@ -153,14 +154,29 @@ def _quotient(p: PolyElement, factor: PolyElement) -> PolyElement | None:
         return p.quo_term((factor.LM, factor.LC))
     if not (_divides(factor.LM, max(p)) and _divides(min(factor), min(p))):
         return None
-    quotient, rest = p.ring.zero, p
-    while rest:
-        lead = max(rest)
-        if not _divides(factor.LM, lead):
+    leading, scale = factor.LT
+    others = [(monomial, value) for monomial, value in factor.items() if monomial != leading]
+    quotient, rest = p.ring.zero, dict(p)
+    heap = [tuple(map(neg, monomial)) for monomial in rest]  # the largest one comes first
+    heapify(heap)
+    while heap:
+        lead = tuple(map(neg, heappop(heap)))
+        value = rest.pop(lead, None)
+        if value is None:  # it was cancelled
+            continue
+        if not _divides(leading, lead):
             return None
-        step = tuple(map(sub, lead, factor.LM)), rest[lead] / factor.LC
-        quotient[step[0]] = step[1]
-        rest = rest - factor.mul_term(step)
+        step, times = tuple(map(sub, lead, leading)), value / scale
+        quotient[step] = times
+        for monomial, other in others:
+            place = tuple(map(add, monomial, step))
+            if place not in rest:
+                rest[place] = -times * other
+                heappush(heap, tuple(map(neg, place)))
+            elif new := rest[place] - times * other:
+                rest[place] = new
+            else:
+                del rest[place]
     return quotient
 
 

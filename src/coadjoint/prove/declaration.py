@@ -260,14 +260,15 @@ def tell_wave(first: Equations) -> tuple[str, ...]:
 def find_connections(first: Equations) -> tuple[Connection, ...]:
     """The strain of a strand, then L of a declared pair for each of its values.
 
-    Not with ends, and not where matrices of the algebra have parameters or are not known.
+    Not where matrices of the algebra have parameters or are not known, and of a pair not between
+    ends, where no trace is conserved.
 
     Raises:
         DerivationError: L has a pole at a value.
     """
     setting, spec = first.setting, first.spec
     field, space = setting.field, spec.space
-    if space is None or space.has_ends:
+    if space is None:
         return ()
     found = list[Connection]()
     strains = [each for each in spec.variables if each.strain]
@@ -281,8 +282,9 @@ def find_connections(first: Equations) -> tuple[Connection, ...]:
                 sums.setdefault(place, []).append(field[name] * value)
         entries = {place: element_text(field, field.sum(own)) for place, own in sums.items()}
         rows = size(matrices)
-        found.append(Connection(strain.name, spec.invariance, space.length, rows, entries))
-    if spec.lax is not None:
+        own = (strain.name, spec.invariance, space.length, rows, entries)
+        found.append(Connection(*own, has_ends=space.has_ends))
+    if spec.lax is not None and not space.has_ends:
         for value in spec.lax.values:
             parts = find_matrix_at(setting, value)
             entries = {place: element_text(field, x) for place, x in parts.items()}

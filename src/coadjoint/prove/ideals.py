@@ -28,6 +28,7 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.division import find_remainder
 from coadjoint.exact.element import numerator
 from coadjoint.exact.irreducible import FACTORED, all_factors
 from coadjoint.exact.signs import Signs, is_factor
@@ -116,7 +117,7 @@ class Ideal:
         terms: dict[tuple[int, ...], Any] = {}
         top = numerator(combined)
         for outer, inner in self._coefficients(top).items():
-            for exponents, value in inner.rem(self._basis).terms():
+            for exponents, value in find_remainder(inner, self._basis).terms():
                 whole = list(outer)
                 for place, exponent in zip(self._places, exponents, strict=True):
                     whole[place] = exponent

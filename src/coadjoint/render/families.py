@@ -621,7 +621,8 @@ def _tell_connection(connection: Connection) -> list[str]:
     """A connection, as a generated package declares it."""
     names = map(quote, (connection.name, connection.side, connection.length))
     entries = (f"{place}: {quote(text)}" for place, text in connection.entries.items())
-    return [*names, str(connection.size), "{" + ", ".join(entries) + "}"]
+    ends = ["True"] * connection.has_ends
+    return [*names, str(connection.size), "{" + ", ".join(entries) + "}", *ends]
 
 
 def _tell_texts(record: Spectral | PrincipalSymbol | Torus | None) -> dict[str, Any]:

@@ -358,6 +358,7 @@ class Solution:
         """The group elements along a strand, ``(n, n, N + 1, *batch, T)``, from 1 at s = 0 on.
 
         The last one is the holonomy, whose trace is conserved up to the order of the differences.
+        Between ends there are N of them, and the holonomy is conserved where they are clamped.
 
         Raises:
             KernelArgumentError: The system is no strand.

@@ -249,6 +249,15 @@ def use_derivatives(system: System, derivatives: str) -> System:
     Raises:
         KernelArgumentError: Another name, or a system without fields.
     """
+    if derivatives == "lattice":
+        raise KernelArgumentError(
+            f"{system.name} is asked for as a lattice of bodies, which is another system, with "
+            "attitudes in its state; expected 'differences' or 'fourier'. Load its spec as one, "
+            f"coadjoint.load(path, derivatives='lattice'), or write its spec, "
+            f"coadjoint new NAME --lattice-of {system.name}.",
+            found=derivatives,
+            expected=["differences", "fourier"],
+        )
     if derivatives not in ("differences", "fourier"):
         raise KernelArgumentError(
             f"derivatives are {derivatives!r}; expected 'differences' or 'fourier'.",

@@ -1,4 +1,4 @@
-r"""Group elements along a strand: what its strains turn into, and the holonomy of a circle.
+r"""Group elements along a strand: what its strains turn into, and the holonomy.
 
 A strain is :math:`\Xi = g^{-1} \partial_s g`, or :math:`(\partial_s g) g^{-1}` where the motion is
 right invariant. So :math:`\psi(s) = g(0)^{-1} g(s)` solves :math:`\partial_s \psi = \psi\, \Xi`, or
@@ -7,10 +7,12 @@ length L this is the holonomy M. Zero curvature makes :math:`\partial_t M = [M, 
 the trace of each power of M is an integral: exactly of the fields, and of N points up to the order
 of their differences.
 
-Between two points the field is that of its Fourier series, and the step is Magnus's of order 6 at
-three points of Gauss. For the matrices of a group it is in the group but for rounding.
+Between two points of a circle the field is that of its Fourier series, and on a line with ends the
+polynomial through the six nearest points. The step is Magnus's of order 6 at three points of Gauss.
+For the matrices of a group it is in the group but for rounding. Between ends M turns with both,
+:math:`\partial_t M = M\,\Omega(L) - \Omega(0)\,M`, and stands still where they are clamped.
 The same holds of L of a Lax pair of fields for each number in the place of its spectral parameter.
-Comes in: a Solution of fields around a circle, or matrices at points. Goes out: transports, traces.
+Comes in: a Solution of fields along a line, or matrices at points. Goes out: transports, traces.
 Read next: `coadjoint.solve.solution`.
 
 Source:
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: Points of the polynomial that stands for a field between ends.
+NEAREST: Final = 6
 #: Gauss's points in a step of length 1.
 NODES: Final = (0.5 - 15**0.5 / 10, 0.5, 0.5 + 15**0.5 / 10)
 
@@ -42,7 +46,8 @@ def find_frames(solution: Solution) -> Array:
     """The group elements at all points of a strand by that at its first point.
 
     Returns:
-        ``(n, n, N + 1, *batch, T)``: at s = 0, L/N, ..., L; the last one is the holonomy.
+        ``(n, n, N + 1, *batch, T)``: at s = 0, L/N, ..., L of a circle, and
+        ``(n, n, N, *batch, T)`` at the N points between ends. The last one is the holonomy.
 
     Raises:
         KernelArgumentError: The system is no strand, or has no matrices.
@@ -64,9 +69,16 @@ def find_traces(solution: Solution) -> dict[str, Array]:
     """The traces of the holonomies of all connections, ``(*batch, T)`` each, by their names.
 
     Raises:
-        KernelArgumentError: The system has none.
+        KernelArgumentError: The system has none around a circle.
     """
     system = solution.system
+    if any(each.has_ends for each in system.connections):
+        raise KernelArgumentError(
+            f"{system.name} has ends, between which the trace of the holonomy is not conserved; "
+            "expected fields around a circle. The holonomy itself is solution.frames()[:, :, -1].",
+            found=system.name,
+            expected="fields around a circle",
+        )
     if not system.connections:
         raise KernelArgumentError(
             f"{system.name} has no connection around a circle; expected a strand, or a Lax pair of "
@@ -99,31 +111,35 @@ def _find_transports(solution: Solution, connection: Connection) -> Array:
         flat = {x: np.broadcast_to(known[x], (own, *shape)).reshape(-1) for x in formula.names}
         value, _ = formula.evaluate(flat)
         matrix[place] = np.broadcast_to(value, (matrix[place].size,)).reshape(own, *shape)
-    return transport(matrix, length, connection.side)
+    return transport(matrix, length, connection.side, has_ends=connection.has_ends)
 
 
-def transport(connection: Array, length: Any, side: str = "left") -> Array:
-    """The solution of ``dpsi/ds = psi X``, or of ``X psi`` on the right, from 1 along a circle.
+def transport(
+    connection: Array, length: Any, side: str = "left", *, has_ends: bool = False
+) -> Array:
+    """The solution of ``dpsi/ds = psi X``, or of ``X psi`` on the right, from 1 along a line.
 
     Args:
         connection: X at N equally spaced points of the circle, ``(n, n, N, ...)``.
         length: Of the circle; a number, or an array over the last axes.
         side: ``left`` or ``right``: on which side psi stands.
+        has_ends: Whether the first and the last point are ends of a line of this length.
 
     Returns:
-        ``(n, n, N + 1, ...)``.
+        ``(n, n, N + 1, ...)``, or ``(n, n, N, ...)`` between ends.
 
     >>> turning = np.zeros((2, 2, 8))
     >>> turning[0, 1], turning[1, 0] = -1, 1
     >>> bool(np.allclose(transport(turning, 2 * np.pi)[..., -1], np.eye(2)))
     True
     """
-    count = connection.shape[2]
     points = np.moveaxis(connection, (0, 1, 2), (-2, -1, 0))  # (N, ..., n, n)
+    count = len(points) - has_ends
+    shift = _interpolate if has_ends else _shift
     if side == "left":
         points = np.swapaxes(points, -1, -2)  # the transpose of psi stands on the right
     h = np.asarray(length)[..., np.newaxis, np.newaxis] / count
-    steps = _exponentiate(_magnus([h * _shift(points, node) for node in NODES]))
+    steps = find_steps([h * shift(points, node) for node in NODES])
     frames = np.empty((count + 1, *points.shape[1:]))
     frames[0] = np.eye(points.shape[-1])
     for n, step in enumerate(steps):
@@ -131,6 +147,15 @@ def transport(connection: Array, length: Any, side: str = "left") -> Array:
     if side == "left":
         frames = np.swapaxes(frames, -1, -2)
     return np.moveaxis(frames, (-2, -1, 0), (0, 1, 2))
+
+
+def find_steps(nodes: list[Array]) -> Array:
+    """Solutions of ``dpsi/ds = X psi`` over steps from 1, by Magnus's expansion of order 6.
+
+    Args:
+        nodes: X at each of `NODES`, times the length of the step, ``(..., n, n)`` each.
+    """
+    return _exponentiate(_magnus(nodes))
 
 
 def _shift(points: Array, part: float) -> Array:
@@ -142,6 +167,19 @@ def _shift(points: Array, part: float) -> Array:
     waves = waves.reshape(-1, *[1] * (points.ndim - 1))
     shifted: Array = fft.irfft(fft.rfft(points, axis=0) * waves, n=count, axis=0)
     return shifted
+
+
+def _interpolate(points: Array, part: float) -> Array:
+    """A field between ends, a part of a step behind each point but the last, by polynomials."""
+    steps, width = len(points) - 1, min(NEAREST, len(points))
+    first = np.clip(np.arange(steps) - width // 2 + 1, 0, len(points) - width)
+    place = np.arange(steps) + part - first
+    found = np.zeros((steps, *points.shape[1:]))
+    for k in range(width):
+        others = (m for m in range(width) if m != k)
+        weight = np.prod([(place - m) / (k - m) for m in others], axis=0)
+        found += np.reshape(weight, (-1, *[1] * (points.ndim - 1))) * points[first + k]
+    return found
 
 
 def _magnus(nodes: list[Array]) -> Array:

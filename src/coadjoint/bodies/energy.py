@@ -1,0 +1,190 @@
+r"""The energy of a strand, split into momenta and strains, and with links in the place of these.
+
+A link that turns by t about the unit vector c is
+:math:`U = \cos t + \sin t\,\hat c + (1 - \cos t)\, c c^T` (Rodrigues). So two expressions that are
+linear in its entries tend to the strain :math:`\Xi = c\,t/a` and to its products,
+
+.. math:: x = \operatorname{axial}(U)/a = c \sin(t)/a, \qquad
+    S = (U + U^T + (1 - \operatorname{tr} U))/a^2 = 2 c c^T (1 - \cos t)/a^2,
+
+both up to the order a^2. V is a polynomial: of each of its monomials pairs of components become
+entries of S, and a component that is left over one of x. So :math:`\Xi \cdot K \Xi/2` becomes
+:math:`c \cdot K c\,(1 - \cos t)/a^2`, which grows up to half a turn, and a term of degree 4 is of
+degree 2 in the entries of U. How components are paired does not matter for rotations, since S has
+rank 1 there: a rotation of body axes that leaves V as it is leaves its lattice, too.
+
+Comes in: the Spec of a strand. Goes out: T as an element, and V by its monomials.
+Read next: `coadjoint.bodies.text`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from coadjoint.algebra.catalogue import algebra_by_name
+from coadjoint.derive import Equations, derive
+from coadjoint.errors import SpecError
+from coadjoint.exact import Element, Field
+from coadjoint.spec import Spec
+from coadjoint.spec.model import Variable
+
+
+@dataclass(frozen=True)
+class Strand:
+    """A strand on so(3) and its energy.
+
+    Attributes:
+        spec: Its declaration.
+        equations: By one of its routes.
+        momentum: Its angular momentum per length.
+        strain: What its attitude turns by along it.
+        kinetic: The part of the energy per length that depends on momenta.
+        potential: The other part: the factor of each monomial of strains, by their exponents.
+    """
+
+    spec: Spec
+    equations: Equations
+    momentum: Variable
+    strain: Variable
+    kinetic: Element
+    potential: dict[tuple[int, ...], Element]
+
+    @property
+    def field(self) -> Field:
+        """The exact field of its equations."""
+        return self.equations.setting.field
+
+
+def refuse(spec: Spec, problem: str, expected: str, hint: str = "") -> SpecError:
+    """Why a spec has no lattice here."""
+    message = f"{spec.path}: no lattice of bodies is written of this: {problem}; expected "
+    return SpecError(
+        f"{message}{expected}. {hint}".rstrip(),
+        path=str(spec.path),
+        found=problem,
+        expected=expected,
+        hint=hint,
+    )
+
+
+def read_strand(spec: Spec) -> Strand:
+    """A strand with its energy.
+
+    Raises:
+        SpecError: It has no lattice of bodies, with the reason.
+        DerivationError: Its energy cannot be derived.
+    """
+    _check_strand(spec)
+    (momentum,) = spec.having_role("momentum")
+    (strain,) = (each for each in spec.variables if each.strain)
+    route = "lie-poisson" if "lie-poisson" in spec.routes else spec.routes[0]
+    equations = derive(spec, route)
+    field = equations.setting.field
+    assert equations.exact.energy is not None, "a strand has an energy"
+    energy = equations.close(equations.exact.energy)
+    _check_names(spec, field, energy, (*momentum.components, *strain.components))
+    potential = field.substitute(energy, dict.fromkeys(momentum.components, field.zero))
+    kinetic = energy - potential
+    if any(field.gradient(kinetic, strain.components)):
+        problem = "its energy has a term of momenta and strains together"
+        hint = "Momenta are those of bodies, and strains stand between them."
+        raise refuse(spec, problem, "a function of momenta and one of strains, added", hint)
+    monomials = dict(_list_monomials(spec, field, potential, strain.components))
+    return Strand(
+        spec=spec,
+        equations=equations,
+        momentum=momentum,
+        strain=strain,
+        kinetic=kinetic,
+        potential=monomials,
+    )
+
+
+def _check_strand(spec: Spec) -> None:
+    """What can be seen before anything is derived.
+
+    Raises:
+        SpecError: It is no strand on so(3) of momenta and a strain alone.
+    """
+    strains = [each for each in spec.variables if each.strain]
+    others = [each.name for each in spec.having_role("advected") if not each.strain]
+    by_hand = "Declare such bodies by [index], as"
+    if spec.space is None or spec.algebra is None or not strains:
+        problem = "it has no strain"
+        raise refuse(spec, problem, 'a strand: [space], and a variable with role = "strain"')
+    if spec.algebra != algebra_by_name("so(3)"):
+        hint = f"{by_hand} elastic_chain does on se(3)."
+        raise refuse(spec, f"it is a strand on {spec.algebra.name}", "one on so(3)", hint)
+    if spec.invariance != "left":
+        problem = "it is right invariant, and so its strains are not turns in body axes"
+        raise refuse(spec, problem, 'invariance = "left"')
+    if spec.space.ends == "clamped":
+        problem, hint = "its ends are clamped", "No body of a lattice is held."
+        raise refuse(spec, problem, 'ends = "periodic" or "free"', hint)
+    if others:
+        hint = f"{by_hand} spin_chain_lattice does, and give each an advected quantity."
+        problem = f"{others[0]!r} is advected along the strand"
+        raise refuse(spec, problem, "momenta and a strain alone", hint)
+    momenta = spec.having_role("momentum")
+    if [each.block for each in momenta] != [(0, 1, 2)] or strains[0].shape != (3,):
+        problem = "its momentum or its strain is no vector along the whole algebra"
+        raise refuse(spec, problem, "one momentum and one strain, without blocks")
+
+
+def _check_names(spec: Spec, field: Field, energy: Element, own: Sequence[str]) -> None:
+    """The energy names momenta, strains and parameters other than the length.
+
+    Raises:
+        SpecError: It names a derivative or the length.
+    """
+    assert spec.space is not None, spec.name
+    known = {*own, *(n for each in spec.parameters for n in each.components)}
+    foreign = sorted(field.reach(energy) - known - field.adjoined.keys())
+    if foreign:
+        problem = f"its energy names {foreign[0]}"
+        raise refuse(spec, problem, "an energy of momenta and strains, without derivatives")
+    if spec.space.length in field.reach(energy):
+        problem = f"its energy names the length {spec.space.length}"
+        raise refuse(spec, problem, "an energy per length that does not depend on it")
+
+
+def _list_monomials(
+    spec: Spec, field: Field, potential: Element, strains: Sequence[str]
+) -> Iterator[tuple[tuple[int, ...], Element]]:
+    """The factor of each monomial of strains, by their exponents.
+
+    Raises:
+        SpecError: The potential is no polynomial in them.
+    """
+    if not strains:
+        yield (), potential
+        return
+    first, *others = strains
+    expected = "a polynomial of strains, such as dot(Xi, Xi)^2"
+    try:
+        powers = field.coefficients(potential, first)
+    except ValueError as error:
+        problem = f"its energy is no polynomial in the strains: {error}"
+        hint = "Write the first terms of its series."
+        raise refuse(spec, problem, expected, hint) from error
+    if min(powers, default=0) < 0:
+        problem = f"its energy is no polynomial in the strains: {first} stands in a denominator"
+        raise refuse(spec, problem, expected)
+    for power, factor in powers.items():
+        for exponents, value in _list_monomials(spec, field, factor, others):
+            yield (power, *exponents), value
+
+
+def pair_components(exponents: Sequence[int]) -> tuple[list[int], list[tuple[int, int]]]:
+    """The components of x and the entries of S that a monomial of strains becomes.
+
+    >>> pair_components([3, 1, 0])
+    ([], [(0, 0), (0, 1)])
+    >>> pair_components([0, 0, 3])
+    ([2], [(2, 2)])
+    """
+    listed = [place for place, exponent in enumerate(exponents) for _ in range(exponent)]
+    left = listed[-1:] if len(listed) % 2 else []
+    paired = listed[: len(listed) - len(left)]
+    return left, list(zip(paired[::2], paired[1::2], strict=True))

@@ -1,0 +1,108 @@
+r"""Where bodies begin: momenta of the profile, and attitudes that its strain turns into.
+
+From the attitude 1 of the first body, :math:`\partial_s R = R\,\hat\Xi` is solved from body to body
+by Magnus's steps of order 6. Around a ring this closes where the holonomy is 1 alone.
+
+Comes in: the Spec of a strand, and how many bodies there are. Goes out: their momenta and
+attitudes.
+Read next: `coadjoint.bodies.text`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from coadjoint.derive.fields.profiles import evaluate_profile
+from coadjoint.solve.strands import NODES, find_steps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from coadjoint.bodies.energy import Strand
+
+    Array = NDArray[np.float64]
+
+#: Steps along the strand, at least.
+STEPS: Final = 64
+#: How far from 1 the holonomy of a ring that closes may be, by rounding and by the error of steps.
+CLOSED: Final = 1e-8
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Where bodies begin.
+
+    Attributes:
+        momenta: ``(N, 3)``, or None without a profile.
+        attitudes: ``(N, 3, 3)``, or None where bodies stand alike.
+        gap: How far the holonomy of the strain is from 1, where that keeps a ring from closing.
+    """
+
+    momenta: Array | None = None
+    attitudes: Array | None = None
+    gap: float = 0.0
+
+
+def find_starts(strand: Strand, bodies: int) -> Starts:
+    """Momenta and attitudes of bodies, at equal distances, at defaults of the parameters.
+
+    Bodies of an open chain are in the middle of equal pieces.
+    """
+    spec, space = strand.spec, strand.spec.space
+    assert space is not None, spec.name
+    first = Fraction(1, 2 * bodies) if space.has_ends else Fraction(0)
+    momenta = attitudes = None
+    if strand.momentum.name in spec.profiles:
+        places = (first + Fraction(n, bodies) for n in range(bodies))
+        momenta = _evaluate(strand, strand.momentum.name, places)
+    if strand.strain.name not in spec.profiles:
+        return Starts(momenta)
+    frames = _find_frames(strand, bodies, first)
+    gap = 0.0 if space.has_ends else float(np.abs(frames[-1] - np.eye(3)).max())
+    if gap > CLOSED:
+        return Starts(momenta, None, gap)
+    if np.abs(frames - np.eye(3)).max() > CLOSED:
+        attitudes = frames[:-1]
+    return Starts(momenta, attitudes)
+
+
+def _evaluate(strand: Strand, name: str, places: Iterable[Fraction]) -> Array:
+    """A field at parts of the way, a row for each."""
+    rows = [evaluate_profile(strand.spec, name, part) for part in places]
+    return np.array(rows, dtype=float)
+
+
+def _find_frames(strand: Strand, bodies: int, first: Fraction) -> Array:
+    """Attitudes of all bodies, and of one more behind the last, ``(N + 1, 3, 3)``."""
+    spec, space = strand.spec, strand.spec.space
+    assert space is not None, spec.name
+    (length,) = (each.default for each in spec.parameters if each.name == space.length)
+    assert length is not None, space.length
+    pieces = ceil(STEPS / bodies)
+    last = bodies - 1 if space.has_ends else bodies  # a chain has one link less than a ring
+    h = Fraction(1, bodies * pieces)
+    begins = [first + n * h for n in range(last * pieces)]
+    nodes = []
+    for node in NODES:
+        strains = _evaluate(strand, strand.strain.name, (s + h * Fraction(node) for s in begins))
+        nodes.append(float(h * length[0]) * _hat(strains).transpose(0, 2, 1))
+    frames = [np.eye(3)]
+    for step in find_steps(nodes) if begins else ():  # none of a single body
+        frames.append(step @ frames[-1])
+    # by columns: the transpose of R follows from the left
+    found = np.array(frames[::pieces]).transpose(0, 2, 1)
+    return np.concatenate([found, found[-1:]]) if space.has_ends else found
+
+
+def _hat(vectors: Array) -> Array:
+    """Matrices of cross products, ``(N, 3, 3)``."""
+    x, y, z = vectors.T
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.array(rows).transpose(2, 0, 1)

@@ -1,0 +1,49 @@
+"""Lattices of strands: specs of both, and numbers of their generic bodies."""
+
+from pathlib import Path
+
+import numpy as np
+import sympy
+
+from coadjoint.bodies import write_lattice
+from coadjoint.derive import derive
+from coadjoint.derive.indexed import derive_family
+from coadjoint.spec.reader import read_spec_text
+from tests.specs import shipped
+
+CHAIN = shipped("spin_chain").path.read_text(encoding="utf-8")
+STIFF = "- dot(Xi, diag(K)*Xi)/2"
+
+
+def strand(*changes, name="chain"):
+    """The spin chain with some pieces replaced, each of which is there."""
+    text = CHAIN
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return read_spec_text(text, Path(f"{name}.toml"))
+
+
+def lattice_of(declared, bodies=16):
+    """The lattice of a strand, read."""
+    return read_spec_text(write_lattice(declared, bodies), Path("lattice.toml"))
+
+
+def family_of(declared):
+    """The motion of the generic body of a spec."""
+    return derive_family(derive(declared, "lie-poisson"))
+
+
+def compile_rates(family, modules="numpy"):
+    """A function of states ``(12, N)`` of a ring and of parameters: rates of all bodies."""
+    shifts = sorted({n for _, n in family.neighbours})
+    near = [family.neighbours.get((x, n), sympy.Dummy()) for n in shifts for x in family.states]
+    given = [*family.states, *near, *family.shared]
+    function = sympy.lambdify(given, family.rates, modules=modules)
+
+    def rates(state, parameters):
+        around = [row for n in shifts for row in np.roll(state, -n, axis=1)]
+        found = function(*state, *around, *parameters)
+        return np.array([np.broadcast_to(row, state.shape[1:]) for row in found])
+
+    return rates

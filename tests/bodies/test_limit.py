@@ -1,0 +1,94 @@
+"""Lattices of strands tend to these: generic bodies against the field's equations and waves."""
+
+from random import Random
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+
+from coadjoint.derive import derive
+from coadjoint.solve.strands import transport
+from tests.bodies.lattices import STIFF, compile_rates, family_of, lattice_of, strand
+from tests.derive.test_lattice_limit import PI, STRAIN, a, curve
+from tests.fields import precessing_wave
+from tests.specs import shipped
+
+
+def test_the_lattice_of_the_spin_chain_is_the_shipped_one():
+    """The same rates of the generic body, from the energy of the strand and from a spec by hand."""
+    found, known = (
+        family_of(lattice_of(shipped("spin_chain"))),
+        family_of(shipped("spin_chain_lattice")),
+    )
+    assert (found.states, found.neighbours) == (known.states, known.neighbours)
+    pairs = zip(found.rates, known.rates, strict=True)
+    assert [sympy.expand(one - other) for one, other in pairs] == [0] * 12
+
+
+def test_another_lattice_is_another():
+    """With a term of degree 4 rates of momenta differ."""
+    found = family_of(lattice_of(strand((STIFF, f"{STIFF} - Xi[1]^4/24"))))
+    known = family_of(shipped("spin_chain_lattice"))
+    pairs = zip(found.rates, known.rates, strict=True)
+    assert sum(sympy.expand(one - other) != 0 for one, other in pairs) == 3
+
+
+MORE = {
+    "quartic": " - dot(Xi, Xi)^2/4",
+    "odd": " - Xi[3]/2 - Xi[1]*Xi[2]/3 - Xi[1]*Xi[2]*Xi[3]",
+    "cubic": " - Xi[2]^3/5",
+}
+
+
+@pytest.mark.parametrize("kind", MORE)
+def test_rates_tend_to_those_of_the_strand(kind):
+    """Of momenta at rational strains with their slopes, to 50 digits: with order 2.
+
+    Against the strand without the term the difference does not become less.
+    """
+    declared = strand((STIFF, STIFF + MORE[kind]))
+    rates = compile_rates(family_of(lattice_of(declared)), modules="mpmath")
+    with mpmath.workdps(50):
+        right, wrong = (_differences(rates, of) for of in (declared, strand()))
+    assert all(3.9 < one / other < 4.1 for one, other in right)
+    assert all(abs(other) < 0.01 for _, other in right)
+    assert any(0.9 < one / other < 1.1 for one, other in wrong)
+
+
+def _differences(rates, of):
+    """Rates of the generic body less those of a strand, at two distances, by component."""
+    equations, random = derive(of, "lie-poisson"), Random(3)
+    values = {x: mpmath.mpf(random.randint(-9, 9)) / 7 for row in [*STRAIN, PI] for x in row}
+    given = {sympy.Symbol(f"{n}{k}"): mpmath.mpf(k + 1) for n in "IK" for k in (1, 2, 3)}
+    function = sympy.lambdify([*values, *given], equations.rates[:3], modules="mpmath")
+    known = function(*values.values(), *given.values())
+    errors = []
+    for distance in (mpmath.mpf(1) / 1000, mpmath.mpf(1) / 2000):
+        state = np.zeros((12, 3), dtype=object)
+        state[9:] = np.array([[values[x]] for x in PI])
+        for n in (-1, 0, 1):
+            matrix = sympy.lambdify([a, *values], list(curve(n * a)), modules="mpmath")
+            state[:9, n + 1] = matrix(distance, *values.values())
+        found = rates(state, [*given.values(), distance])[9:, 1]
+        errors.append([one - other for one, other in zip(found, known, strict=True)])
+    return list(zip(*errors, strict=True))
+
+
+def wave_error(rates_of, N):
+    """How far rates of momenta are from those of the precessing wave, next to bodies inside."""
+    s = np.arange(N) * 10.0 / N
+    fields, rates = precessing_wave(s, 0.0)
+    Pi, (x, y, z) = fields[:3], fields[3:]
+    o = np.zeros(N)
+    R = transport(np.array([[o, -z, y], [z, o, -x], [-y, x, o]]), 10.0)[..., :N]
+    found = rates_of(np.vstack([R.reshape(9, N), Pi]), [10.0 / N])
+    return np.abs(found[9:] - rates[:3])[:, 1:-1].max()
+
+
+def test_rates_tend_to_those_of_the_precessing_wave():
+    """Of the chiral model, known in closed form: with order 2 (the strain closes no ring)."""
+    rates = compile_rates(family_of(lattice_of(shipped("spin_chain_chiral"))))
+    errors = [wave_error(rates, N) for N in (32, 64, 128)]
+    assert errors[-1] < 1e-2
+    np.testing.assert_allclose(np.log2(errors[1] / errors[2]), 2, atol=0.1)
