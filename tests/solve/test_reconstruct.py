@@ -223,6 +223,25 @@ def test_c_and_numpy_reconstruct_the_same_bits():
     assert (short.status == "OK").all()
 
 
+def test_auto_with_a_step_follows_the_place_by_the_default_of_the_system():
+    """A sleigh goes by its default, of order 4, and so does its place; DOP853 says where it is."""
+    run = {"t": (0, 4), "samples": 5, "reconstruct": True}
+    known = chaplygin_sleigh.simulate([1, 1], method="dop853", rtol=1e-13, **run)
+    errors = []
+    for step in (0.1, 0.05):
+        found = [
+            chaplygin_sleigh.simulate([1, 1], method="auto", step=step, target=each, **run)
+            for each in (("numpy", "c") if COMPILER else ("numpy",))
+        ]
+        assert all(each.method == "gauss4" and each.settings["step"] == step for each in found)
+        assert all(each.settings["chosen"].startswith("the default") for each in found)
+        assert len({each.reconstructed.tobytes() for each in found}) == 1
+        assert all(each.drift["energy"] < 1e-14 for each in found)
+        errors.append(np.abs(found[0].reconstructed - known.reconstructed).max())
+    assert errors[1] < 1e-6
+    assert 3.7 < np.log2(errors[0] / errors[1]) < 4.3
+
+
 def test_a_place_beyond_a_terminal_event_is_not_there():
     """What is reconstructed ends where the state does, and events may name it."""
     speeds = np.array([1.5, 0.4])

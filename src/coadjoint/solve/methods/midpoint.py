@@ -43,5 +43,6 @@ class Midpoint(LiePoisson):
 
     def sweep(self, arc: Arc, middle: Array, kept: None) -> Sweep:
         """As `LiePoisson.sweep`."""
-        rise = arc.length * self.rates(arc.lanes, arc.middle, middle)
-        return Sweep(arc.state + (arc.low + 0.5 * rise), rise, False)
+        rates = self.rates(arc.lanes, arc.middle, middle)
+        following = arc.state + (arc.low + 0.5 * arc.length * rates)
+        return Sweep(following, arc.length * rates, False)
