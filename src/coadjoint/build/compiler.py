@@ -72,6 +72,9 @@ _GNU = (
 #: GCC fuses a product and a sum with the first alone of all that the second level has in addition.
 #: It sees less there, so that it takes rows that loops fill for uninitialised.
 _FUSING = ("-fexpensive-optimizations", "-Wno-maybe-uninitialized")
+#: What is run for some points alone, and fused, needs none of the first level's other long passes
+#: (docs/decisions/compiler.md has the figures): as many operations are fused without them.
+_HASTY = ("-fno-tree-loop-optimize", "-fno-tree-dse", "-fno-dse", "-fira-region=one")
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
 #: What a driver says of a program that ran out of processor time.
@@ -110,7 +113,8 @@ class Compiler:
         lowest = int(build == "fast")  # without optimisation nothing is fused
         level = min(source.level, max(_allowed_level(), lowest))
         fusing = _FUSING if self.is_gnu and level == 1 else ()
-        suited = (f"-O{level}", *fusing, *own, *machine)
+        hasty = _HASTY if fusing and source.level == 1 else ()  # users who ask for it have loops
+        suited = (f"-O{level}", *fusing, *hasty, *own, *machine)
         return (*_FLAGS, *suited, BUILDS[build], *source.defines, *_SHARED)
 
 

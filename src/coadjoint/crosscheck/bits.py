@@ -91,7 +91,7 @@ def compare_chunks(subject: Subject) -> int:
     """
     size = find_chunk(count_unknowns(subject.programs.values())) + 1
     points = subject.points
-    compared = _compare_chunks(subject, points.families(77, size)["random"])
+    compared = _compare_chunks(subject, points.draw("random", 77, size))
     if not compared and subject.inside.size:
         compared = _compare_chunks(subject, points.draw_around(subject.inside, 77, size))
     return compared

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from coadjoint.crosscheck.points import Batch, move_to_cancellation
+from coadjoint.crosscheck.points import FAMILIES, Batch, move_to_cancellation
 from coadjoint.crosscheck.subject import Subject
 
 #: Points that are drawn, for each that is asked for, to find some at which a function has a value.
@@ -30,12 +30,12 @@ def hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]
     They end in the middle of a vector register, as the sizes are odd.
     """
     size = share | 1
-    for family in subject.points.families(seed=0, count=1):
+    for family in FAMILIES:
         yield _draw(subject, function, family, 0, size)
     start = _draw(subject, function, "random", 1, size)
     for seed, names in ((2, ("parameters",)), (4, start.driving)):
         if names:  # time and inputs of driven systems alone
-            batch = subject.points.families(seed, size)["random"].repeat(start, *names)
+            batch = subject.points.draw("random", seed, size).repeat(start, *names)
             others = partial(_draw_others, subject, "random", like=(start, *names))
             yield _complete(subject, function, batch, others).share(*names)
     yield move_to_cancellation(
@@ -45,7 +45,7 @@ def hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]
 
 def _draw(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
     """A batch of a family, as many of its members as possible with a value."""
-    batch = subject.points.families(seed, size)[family]
+    batch = subject.points.draw(family, seed, size)
     return _complete(subject, function, batch, partial(_draw_others, subject, family))
 
 
@@ -58,7 +58,7 @@ def _draw_others(subject: Subject, family: str, count: int, like: Any = ()) -> B
         count: How many of each.
         like: Another batch, and what its first member gives to all.
     """
-    more = subject.points.families(seed=3, count=count)[family]
+    more = subject.points.draw(family, seed=3, count=count)
     if subject.inside.size:
         more = more.join(subject.points.draw_around(subject.inside, seed=3, count=count))
     return more.repeat(*like) if like else more

@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 Evaluate = Callable[["Batch"], Array]
 
 SEED: Final = 20110707
+#: Families of finite points.
+FAMILIES: Final = ("random", "nearly equal", "integers", "huge and tiny")
 #: Batches that end in the middle of any vector register, and the single member.
 ODD_SIZES: Final = (1, 2, 3, 7, 8, 15, 17, 1001)
 
@@ -129,17 +131,14 @@ class Points:
 
     def families(self, seed: int, count: int) -> Mapping[str, Batch]:
         """Finite points with results in range, ``count`` of each family."""
-        makers = {
-            "random": self._random,
-            "nearly equal": self._nearly_equal,
-            "integers": self._integers,
-            "huge and tiny": self._huge_and_tiny,
-        }
-        shape = (self._rows, count)
-        return {
-            name: self._batch(maker(np.random.default_rng([SEED, seed, number]), shape))
-            for number, (name, maker) in enumerate(makers.items())
-        }
+        return {family: self.draw(family, seed, count) for family in FAMILIES}
+
+    def draw(self, family: str, seed: int, count: int) -> Batch:
+        """Points of one of `FAMILIES`, the same as among all of them."""
+        makers = (self._random, self._nearly_equal, self._integers, self._huge_and_tiny)
+        number = FAMILIES.index(family)
+        generator = np.random.default_rng([SEED, seed, number])
+        return self._batch(makers[number](generator, (self._rows, count)))
 
     def draw_around(self, centres: Array, seed: int, count: int) -> Batch:
         """Points near some others, at distances of six decades.

@@ -198,7 +198,7 @@ def draw_points(subject: Subject, count: int, time: float = 0.5) -> Batch:
     Raises:
         CrossCheckError: The rates have a value at none.
     """
-    batch = subject.points.families(seed=7, count=count)["random"].take(slice(0, None, 2))
+    batch = subject.points.draw("random", seed=7, count=count).take(slice(0, None, 2))
     if subject.inside.size:
         batch = subject.points.draw_around(subject.inside, seed=7, count=count).join(batch)
     if "time" in batch.arrays:
