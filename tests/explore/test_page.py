@@ -12,12 +12,11 @@ import pytest
 from coadjoint.errors import KernelArgumentError
 from coadjoint.explore.page import SCRIPTS, assemble, render_page
 from coadjoint.explore.scene import describe_scene
-from coadjoint.pipeline import render
 from coadjoint.render.scripts import render_script
 from coadjoint.resources import derivations_folder, templates_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec
-from tests.specs import RIGID_BODY
+from tests.specs import RIGID_BODY, render_claims
 
 HOSTILE = '</script><img src=x onerror=alert(1)>\\"<!-- & {{ 7*7 }}'
 #: What loads something, or makes code of text.
@@ -37,7 +36,7 @@ def write(path, text):
 def page_of(path):
     """The page of a spec, and what it is told."""
     spec = read_spec(path)
-    rendered = render(spec)
+    rendered = render_claims(spec)
     return render_page(spec, rendered), describe_scene(spec, rendered)
 
 
@@ -83,7 +82,7 @@ def test_a_page_asks_for_nothing(top):
 def test_the_page_has_the_generated_functions_and_names_for_what_it_shows(top):
     """The kernel in it is that of the target, and controls have labels."""
     page, scene = top
-    rendered = render(read_spec(derivations_folder() / "heavy_top.toml"))
+    rendered = render_claims(read_spec(derivations_folder() / "heavy_top.toml"))
     assert render_script(rendered.context) in page
     assert scene["kind"] == "body"
     assert scene["methods"][0]["name"] == "splitting4"
@@ -143,7 +142,7 @@ def test_what_is_drawn_follows_from_the_records(tmp_path, name, kind, known):
         re.sub(r"^title\s*=.*$", 'title = "Other"', text, count=1, flags=re.M),
     )
     spec = read_spec(path)
-    rendered = render(spec)
+    rendered = render_claims(spec)
     scene = describe_scene(spec, rendered)
     assert scene["kind"] == kind
     for key, table in known.items():
@@ -154,14 +153,14 @@ def test_what_is_drawn_follows_from_the_records(tmp_path, name, kind, known):
 def test_members_begin_at_the_defaults_of_the_spec_and_at_none_of_another_number():
     """Blocks of components, member after member; of another number there are no defaults."""
     spec = read_spec(derivations_folder() / "point_vortices.toml")
-    scene = describe_scene(spec, render(spec))
+    scene = describe_scene(spec, render_claims(spec))
     x, y = (each["default"] for each in scene["tables"]["state"])
     np.testing.assert_allclose(np.array(x) ** 2 + np.array(y) ** 2, 1.0)
     assert scene["members"] == len(x) == 6
     (strength,) = scene["tables"]["parameters"]
     assert strength["components"] == [f"Gamma_{k}" for k in range(6)]
     assert strength["default"] == [1.0] * 6
-    rendered = render(spec)
+    rendered = render_claims(spec)
     context = rendered.family.context
     larger = replace(context, index=replace(context.index, size=7))
     other = describe_scene(spec, replace(rendered, family=replace(rendered.family, context=larger)))
@@ -174,7 +173,7 @@ def test_members_begin_at_the_defaults_of_the_spec_and_at_none_of_another_number
 def test_spins_repeat():
     """Eight declared spins are those of a thousand members, component after component."""
     spec = read_spec(derivations_folder() / "heisenberg_lattice.toml")
-    (spins,) = describe_scene(spec, render(spec))["tables"]["state"]
+    (spins,) = describe_scene(spec, render_claims(spec))["tables"]["state"]
     found = np.array(spins["default"]).reshape(3, 1000)
     np.testing.assert_allclose((found**2).sum(axis=0), 1.0)
     np.testing.assert_array_equal(found[:, 3], found[:, 803])
@@ -193,14 +192,14 @@ def test_what_is_no_line_of_members_is_refused(name, reason):
     """A plane and matrices would be drawn as members that they are not."""
     spec = read_spec(derivations_folder() / f"{name}.toml")
     with pytest.raises(KernelArgumentError, match=f"has no page to explore: .*{reason}"):
-        describe_scene(spec, render(spec))
+        describe_scene(spec, render_claims(spec))
 
 
 def test_noise_is_refused_with_a_way_on():
     """The message names the system, the reason and another command."""
     spec = read_spec(derivations_folder() / "stochastic_rigid_body.toml")
     with pytest.raises(KernelArgumentError) as caught:
-        describe_scene(spec, render(spec))
+        describe_scene(spec, render_claims(spec))
     message = str(caught.value)
     assert "stochastic_rigid_body has no page to explore: it has noise" in message
     assert "coadjoint simulate stochastic_rigid_body" in message
@@ -225,7 +224,7 @@ def test_steps_of_the_page_are_those_of_the_library(top):
     """Every method of the page ends where that of `System.simulate` ends, to rounding."""
     racer = pytest.importorskip("py_mini_racer", reason="mini-racer is not installed").MiniRacer()
     _, scene = top
-    rendered = render(read_spec(derivations_folder() / "heavy_top.toml"))
+    rendered = render_claims(read_spec(derivations_folder() / "heavy_top.toml"))
     page = assemble(scene, render_script(rendered.context))
     code = element(page, "<script>", "const scene =")  # the kernel, numerics and drawing
     start, h, count = np.array([0.3, -0.2, 5.0, 0.3, 0.0, 0.9]), 0.01, 200

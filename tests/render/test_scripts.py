@@ -8,14 +8,13 @@ import pytest
 from coadjoint.crosscheck.parse_back import check_text
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError, OutputError
-from coadjoint.pipeline import render
 from coadjoint.render.scripts import JS, list_scripted, render_family_script, render_script
 from coadjoint.render.targets.js.printer import name_text
 from coadjoint.render.targets.protocol import Call
 from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec
-from tests.specs import RIGID_BODY
+from tests.specs import RIGID_BODY, render_claims
 
 POINTS = 10_000
 #: Functions of one argument on what they are compared at.
@@ -68,7 +67,7 @@ def compare(system, kernel, functions, *, exact):
 def test_kernels_equal_those_of_numpy(name, exact):
     """Bits are those of NumPy where functions beyond sqrt are not called; else within a bound."""
     engine()
-    rendered = render(read_spec(derivations_folder() / f"{name}.toml"))
+    rendered = render_claims(read_spec(derivations_folder() / f"{name}.toml"))
     text = render_script(rendered.context)
     for program in list_scripted(rendered.context):
         assert check_text(program, JS, text, name) > 0
@@ -92,7 +91,7 @@ def test_kernels_equal_those_of_numpy(name, exact):
 def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
     """So do loops over members, in blocks and without, with sums over pairs and solutions."""
     js = engine()
-    rendered = render(read_spec(derivations_folder() / f"{name}.toml"))
+    rendered = render_claims(read_spec(derivations_folder() / f"{name}.toml"))
     js.eval(render_family_script(rendered.family.context))
     rng = np.random.default_rng(8)
     with load_texts(rendered.texts) as loaded:
@@ -135,7 +134,7 @@ def test_words_of_the_language_are_names_of_a_spec(tmp_path):
         .replace('"dot(Omega, diag(I)*Omega)/2"', '"new*dot(Omega, diag(I)*Omega)/2"')
         .replace('"dot(Pi, inverse(diag(I))*Pi)/2"', '"dot(Pi, inverse(diag(I))*Pi)/(2*new)"')
     )
-    rendered = render(read_spec(path))
+    rendered = render_claims(read_spec(path))
     text = render_script(rendered.context)
     assert "const new$ = parameters[" in text
     assert check_text(rendered.programs["rhs"], JS, text, "sample") > 0
@@ -154,7 +153,7 @@ def test_another_text_is_noticed(tmp_path, old, new):
     """Operands that change places, another row and a further statement fail rung 3."""
     path = tmp_path / "sample.toml"
     path.write_text(RIGID_BODY)
-    rendered = render(read_spec(path))
+    rendered = render_claims(read_spec(path))
     text = render_script(rendered.context)
     assert old in text
     with pytest.raises(CrossCheckError, match=r"kernel\.js"):
@@ -167,7 +166,7 @@ def test_a_folder_without_the_file_says_what_to_do(tmp_path):
     path = tmp_path / "sample.toml"
     path.write_text(RIGID_BODY)
     with (
-        load_texts(render(read_spec(path)).texts) as system,
+        load_texts(render_claims(read_spec(path)).texts) as system,
         pytest.raises(OutputError, match=r"kernel\.js"),
     ):
         JS.load(system, "js", lambda: None)
