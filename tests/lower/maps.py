@@ -82,8 +82,15 @@ def follow(step, name, state, parameters, h, steps):
 
 def exact_motion(name, state, parameters, time):
     """The motion of the textbook."""
+    return _follow_exactly(name, tuple(state), tuple(parameters), time)
+
+
+@cache
+def _follow_exactly(name, state, parameters, time):
+    """Several methods begin at one point."""
     rates = textbook.RATES[name]
-    return list(mp.odefun(lambda t, x: rates(list(x), parameters), 0, state, tol=1e-30)(time))
+    motion = mp.odefun(lambda t, x: rates(list(x), parameters), 0, list(state), tol=1e-30)
+    return list(motion(time))
 
 
 def measure_order(step, name, state, parameters, steps, time=1):
