@@ -13,11 +13,13 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive
+from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.vectors import vector_form
 from coadjoint.files import read_certificate
 from coadjoint.loading import load
 from coadjoint.prove import prove
 from coadjoint.prove.examination import examine
+from coadjoint.prove.record import motion_record
 from coadjoint.spec import read_spec
 from coadjoint.systems import chaplygin_sleigh, heavy_top, rigid_body
 from tests.specs import shipped
@@ -128,6 +130,15 @@ def test_a_system_shows_its_motion_as_its_equations_do():
     assert r"\left(m\,{a}^{2} + I\right)\,\dot{\omega} &= -m\,a\,v\,\omega \\" in shown
 
 
+def test_long_sums_of_a_motion_are_shown(tmp_path):
+    """Those in several lines, whose cells have a style, are MathML that a certificate may hold."""
+    (part,) = map(motion_record, motion_sections(derive(shipped("so5_body"))))
+    assert any("<mtable" in line["mathml"] for line in part["lines"])
+    path = tmp_path / "certificate.json"
+    path.write_text(json.dumps({"motion": [part]}))
+    assert read_certificate(path)["motion"] == [part]
+
+
 def test_a_system_is_shown_without_the_engine():
     """No SymPy, no pydantic, and no NumPy beyond what the package loads itself."""
     script = (
@@ -148,6 +159,8 @@ def test_a_system_is_shown_without_the_engine():
         {"mathml": "<math><script>f()</script></math>"},
         {"mathml": '<math><mi onclick="f()">x</mi></math>'},
         {"mathml": "<math><mi>x</mi></math><img src=x>"},
+        {"mathml": '<math><mi href="x">x</mi></math>'},
+        {"mathml": '<math><mi style="background: url(x)">x</mi></math>'},
         {"latex": 3},
         {"text": None},
     ],

@@ -108,9 +108,9 @@ def read_certificate(path: Path) -> dict[str, Any]:
     return certificate
 
 
-#: Elements without a script, an address or a style but that of a size, and text between them.
+#: Elements without a script, a link or an address, whatever their styles, and text between them.
 _MATHML: Final = re.compile(
-    r"<math>(?:</?m[a-z]+(?: [a-z]+=\"(?:[a-z0-9.-]*|font-size: [0-9.]+em)\")*/?>"
+    r"<math>(?:</?m[a-z]+(?: (?!href|on|style)[a-z]+=\"[a-z0-9.-]*\"| style=\"[a-z0-9.:; -]*\")*/?>"
     r"|&(?:#x[0-9A-F]+|lt|gt|amp);|[^<>&])*</math>"
 )
 

@@ -72,11 +72,11 @@ def certificate_json(
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
     if sections := list(motion):
-        record["motion"] = [_show_motion(each) for each in sections]
+        record["motion"] = [motion_record(each) for each in sections]
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"
 
 
-def _show_motion(section: Section) -> dict[str, Any]:
+def motion_record(section: Section) -> dict[str, Any]:
     """A section of the motion without Typst; components too long for a notebook are left out."""
     vectors, lines = (
         [{"text": line.text, "latex": line.latex, "mathml": line.mathml} for line in part]
