@@ -20,6 +20,7 @@ from coadjoint.derive.records import Left, Step, member, rate, symbol
 from coadjoint.derive.truncated import tell_motion
 from coadjoint.families import Family
 from coadjoint.notation.elements import write_sympy
+from coadjoint.notation.texts import write_text
 from coadjoint.notation.trees import write_sum
 from coadjoint.notation.written import add, literal, multiply
 
@@ -120,7 +121,7 @@ def _show_matrices(family: Family) -> Section:
     """The equations of matrices of any number of rows."""
     rows = family.index.name
     odd = "" if family.index.allows(family.small + 1) else " and odd"
-    lines = (equal(literal(left), literal(right)) for left, right in tell_motion(family))
+    lines = (equal(write_text(left), write_text(right)) for left, right in tell_motion(family))
     return Section(
         title="Equations of motion",
         law=f"matrices of {rows} rows counted from 0, {rows} >= {family.small}{odd}, with what "
