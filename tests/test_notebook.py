@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -10,12 +13,15 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.derive import derive
+from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.vectors import vector_form
+from coadjoint.files import read_certificate
 from coadjoint.loading import load
 from coadjoint.prove import prove
 from coadjoint.prove.examination import examine
+from coadjoint.prove.record import motion_record
 from coadjoint.spec import read_spec
-from coadjoint.systems import rigid_body
+from coadjoint.systems import chaplygin_sleigh, heavy_top, rigid_body
 from tests.specs import shipped
 
 
@@ -110,8 +116,62 @@ def test_without_all_vectors_components_are_shown(shown, monkeypatch):
     assert len(form.lines) > 1
     assert form.missing == ()
     partial = replace(form, lines=form.lines[1:], missing=("Pi",))
-    monkeypatch.setattr("coadjoint.derive.document.vector_form", lambda _: partial)
+    monkeypatch.setattr("coadjoint.derive.motion.vector_form", lambda _: partial)
     assert equations._repr_latex_() == f"$\\displaystyle {equations.latex()}$"
+
+
+def test_a_system_shows_its_motion_as_its_equations_do():
+    """Of the package alone: by vectors, as LaTeX and as a page; by components without vectors."""
+    assert heavy_top.system._repr_latex_() == derive(shipped("heavy_top"))._repr_latex_()
+    page = heavy_top.system._repr_html_()
+    assert page.count('<div class="lead">') == 1
+    assert page.index("Equations of motion") < page.index("State")
+    shown = chaplygin_sleigh.system._repr_latex_()
+    assert r"\left(m\,{a}^{2} + I\right)\,\dot{\omega} &= -m\,a\,v\,\omega \\" in shown
+
+
+def test_long_sums_of_a_motion_are_shown(tmp_path):
+    """Those in several lines, whose cells have a style, are MathML that a certificate may hold."""
+    (part,) = map(motion_record, motion_sections(derive(shipped("so5_body"))))
+    assert any("<mtable" in line["mathml"] for line in part["lines"])
+    path = tmp_path / "certificate.json"
+    path.write_text(json.dumps({"motion": [part]}))
+    assert read_certificate(path)["motion"] == [part]
+
+
+def test_a_system_is_shown_without_the_engine():
+    """No SymPy, no pydantic, and no NumPy beyond what the package loads itself."""
+    script = (
+        "import sys\nfrom coadjoint.systems import heavy_top\nbefore = set(sys.modules)\n"
+        "assert '<math' in heavy_top.system._repr_html_()\n"
+        "assert heavy_top.system._repr_latex_()\n"
+        "print({'sympy', 'pydantic'} & set(sys.modules), 'numpy' in set(sys.modules) - before)"
+    )
+    run = subprocess.run(
+        [sys.executable, "-P", "-c", script], capture_output=True, text=True, check=True
+    )
+    assert run.stdout == "set() False\n"
+
+
+@pytest.mark.parametrize(
+    "spoiled",
+    [
+        {"mathml": "<math><script>f()</script></math>"},
+        {"mathml": '<math><mi onclick="f()">x</mi></math>'},
+        {"mathml": "<math><mi>x</mi></math><img src=x>"},
+        {"mathml": '<math><mi href="x">x</mi></math>'},
+        {"mathml": '<math><mi style="background: url(x)">x</mi></math>'},
+        {"latex": 3},
+        {"text": None},
+    ],
+)
+def test_a_motion_that_is_no_formula_is_not_shown(tmp_path, spoiled):
+    """What a damaged certificate holds in the place of MathML does not reach a page."""
+    path, line = tmp_path / "c.json", {"text": "x", "latex": "x", "mathml": "<math></math>"}
+    for own, count in ((line, 1), (line | spoiled, 0)):
+        part = {"title": "Motion", "law": "", "vectors": [], "lines": [own]}
+        path.write_text(json.dumps({"motion": [part]}))
+        assert len(read_certificate(path).get("motion", ())) == count
 
 
 def test_equations_stand_below_each_other_by_a_style_of_their_own(shown):

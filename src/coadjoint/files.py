@@ -11,6 +11,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -100,7 +101,33 @@ def read_certificate(path: Path) -> dict[str, Any]:
             isinstance(entry.get(part), str) for entry in certificate[key] for part in needed
         ):
             certificate.pop(key, None)
+    if not _is_list_of(certificate.get("motion"), dict) or not all(
+        map(_is_motion, certificate["motion"])
+    ):
+        certificate.pop("motion", None)
     return certificate
+
+
+#: Elements without a script, a link or an address, whatever their styles, and text between them.
+_MATHML: Final = re.compile(
+    r"<math>(?:</?m[a-z]+(?: (?!href|on|style)[a-z]+=\"[a-z0-9.-]*\"| style=\"[a-z0-9.:; -]*\")*/?>"
+    r"|&(?:#x[0-9A-F]+|lt|gt|amp);|[^<>&])*</math>"
+)
+
+
+def _is_motion(section: Mapping[str, Any]) -> bool:
+    """Whether a part of the equations of motion is words and formulas that a page can show."""
+    formulas = [section.get("vectors"), section.get("lines")]
+    return all(isinstance(section.get(key), str) for key in ("title", "law")) and all(
+        _is_list_of(lines, dict)
+        and all(
+            is_table_of_texts(line)
+            and {"text", "latex", "mathml"} <= line.keys()
+            and _MATHML.fullmatch(line["mathml"])
+            for line in lines or ()
+        )
+        for lines in formulas
+    )
 
 
 def is_table_of_texts(value: Any) -> bool:

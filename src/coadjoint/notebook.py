@@ -50,17 +50,15 @@ def show_spec(spec: Spec) -> str:
 
 def show_equations(equations: Equations) -> str:
     """The equations of motion, by vectors as far as these were found."""
-    from coadjoint.derive.document import document
+    from coadjoint.derive.motion import motion_sections
     from coadjoint.render.document import render_fragment
 
-    record = asdict(document(equations))
-    kinds = ("motion", "members")
-    return render_fragment([part for part in record["sections"] if part["kind"] in kinds])
+    return render_fragment([asdict(each) for each in motion_sections(equations)])
 
 
 def write_equations(equations: Equations) -> str:
     """The same as LaTeX: by vectors where all of these were found, else in components."""
-    from coadjoint.derive.document import vector_lines
+    from coadjoint.derive.motion import vector_lines
 
     lines = vector_lines(equations)
     shown = aligned(line.latex for line in lines) if lines else equations.latex()
@@ -107,13 +105,27 @@ def _write_bracket(algebra: LieAlgebra, i: int, j: int) -> str:
 
 
 def show_system(system: System) -> str:
-    """A system: its state, its parameters and what it observes."""
+    """A system: its equations of motion, its state, its parameters and what it observes."""
+    from coadjoint.render.document import render_fragment
+
     parts = [f"<p><b>{escape(system.title)}</b> ({escape(system.name)})</p>"]
+    if motion := system.certificate.get("motion"):
+        parts.append(render_fragment(motion))
     for label in ("STATE", "PARAMETERS", "INPUTS", "OBSERVABLES"):
         quantities = getattr(system, label)
         if quantities:
             parts.append(f"<p>{label.capitalize()}</p>{quantities._repr_html_()}")
     return "".join(parts)
+
+
+def write_system(system: System) -> str | None:
+    """The equations of motion as LaTeX, by vectors where these were found; None without any."""
+    lines = [
+        line["latex"]
+        for part in system.certificate.get("motion", ())
+        for line in (part["vectors"] or part["lines"])
+    ]
+    return f"$\\displaystyle {aligned(lines)}$" if lines else None
 
 
 def show_solution(solution: Solution) -> str:

@@ -24,6 +24,7 @@ from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.derive.fields.grid import Grid, make_grid
 from coadjoint.derive.fields.torus import TorusGrid, make_torus
 from coadjoint.derive.indexed import derive_family
+from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.reference import Reference
 from coadjoint.families import Family
 from coadjoint.lower.check import check_programs, check_sizes
@@ -113,7 +114,7 @@ def render(spec: Spec, progress: Progress = lambda stage: None) -> Rendered:
     maps = lower_maps(first, programs["rhs"])
     facts, methods = judge_methods(first, certificate, programs, maps)
     context = kernel_context(first, programs, certificate.count(Verdict.SUPPORTED), maps, methods)
-    record = certificate_json(spec, certificate, facts.as_record(), methods)
+    record = certificate_json(spec, certificate, facts.as_record(), methods, motion_sections(first))
     texts = {**render_system(context), "certificate.json": record}
     return Rendered(
         equations=first,
@@ -160,7 +161,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
         context = tell_torus(context, grid)
     elif grid is not None:
         context = tell_fields(context, grid)
-    record = certificate_json(spec, certificate, facts.as_record(), methods)
+    record = certificate_json(spec, certificate, facts.as_record(), methods, motion_sections(first))
     texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member
     assert member is not None, spec.name

@@ -2,31 +2,27 @@
 
 Comes in: Equations. Goes out: a `Document` with every formula as text, LaTeX and MathML. Names are
 those of the spec, which the reader has restricted; titles and sources are free text that the writer
-of a format must escape. Read next: `coadjoint.render.document`.
+of a format must escape. Read next: `coadjoint.derive.motion`, whose
+sections a document begins with; `coadjoint.render.document`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from coadjoint.derive.charts import declared_charts
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.generic import fold_step, show_members
+from coadjoint.derive.generic import count_written, fold_step
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
-from coadjoint.derive.records import Emitted, Step, is_of_kernel, rate, symbol
+from coadjoint.derive.motion import Names, find_form, list_motion
+from coadjoint.derive.records import Emitted, Step, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.theorems import find_theorem
-from coadjoint.derive.vectors import VectorForm, vector_form
-from coadjoint.derive.vectors.vocabulary import value_shape
-from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact import element_text
 from coadjoint.notation.names import unit
-from coadjoint.notation.trees import write_tree
-from coadjoint.notation.written import Written
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
-from coadjoint.spec.core.components import Shape
 from coadjoint.spec.model import Definition, Reconstructed
 
 #: Components of a state beyond which its bracket is no matrix that a page holds.
@@ -55,13 +51,9 @@ class Document:
 def document(equations: Equations) -> Document:
     """The document of a derivation: what was found, how, and what is emitted with it."""
     spec = equations.spec
-    form = vector_form(equations) if equations.chart is None else None
-    names = _Names.of(spec, form)
-    sections = [_motion(equations, form, names)]
-    if spec.family is not None:
-        generic, *others = show_members(equations)
-        whole = f"{sections[0].law}; {generic.law}" if sections[0].vectors else generic.law
-        sections = [replace(sections[0], law=whole, lines=generic.lines), *others]
+    form = find_form(equations)
+    names = Names.of(spec, form)
+    sections = list_motion(equations, form, names)
     sections.append(_symbols(equations, names))
     if spec.definitions:
         sections.append(_definitions(spec.definitions, names))
@@ -80,81 +72,6 @@ def document(equations: Equations) -> Document:
     )
 
 
-@dataclass(frozen=True)
-class _Names:
-    """How the names of a system are written."""
-
-    shapes: Mapping[str, Shape]
-    written: Mapping[str, Written]
-
-    @classmethod
-    def of(cls, spec: Spec, form: VectorForm | None) -> _Names:
-        """Of a spec, and of the vectors that were found in its equations."""
-        quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
-        shapes = {each.name: value_shape(each) for each in quantities}
-        shapes |= {each.name: each.shape for each in spec.definitions if each.shape}
-        if spec.family is not None:
-            for name, shape in list(shapes.items()):
-                shapes.setdefault(name.rpartition("_")[0], shape)
-        return cls({**shapes, **(form.shapes if form else {})}, form.written if form else {})
-
-    def write(self, node: tree.Node) -> Written:
-        """A tree."""
-        return write_tree(node, self.shapes, self.written)
-
-
-def _motion(equations: Equations, form: VectorForm | None, names: _Names) -> Section:
-    """The equations of motion: by vectors as far as they were found, and in components."""
-    field, rates = equations.setting.field, equations.exact.rates
-    pairs = list(zip(equations.variables, rates, strict=True))
-    solved = [name for name, value in pairs if value == field.zero or _is_solved(field, value)]
-    lines = tuple(
-        formula_line(field, rate(name), value)
-        for name, value in pairs
-        if name not in solved or value == field.zero
-    )
-    vectors = _write_vectors(form, names)
-    family = equations.spec.family is not None
-    law = _say_what_is_left(form.missing if form else (), bool(vectors))
-    return Section(
-        title="Equations of motion",
-        law=law,
-        law_latex="",
-        lines=() if family else lines,
-        vectors=vectors,
-        kind="motion",
-    )
-
-
-def vector_lines(equations: Equations) -> tuple[Line, ...]:
-    """The equations of motion by vectors, or none if those of some quantity were not found."""
-    form = vector_form(equations) if equations.chart is None else None
-    if form is None or form.missing:
-        return ()
-    return _write_vectors(form, _Names.of(equations.spec, form))
-
-
-def _write_vectors(form: VectorForm | None, names: _Names) -> tuple[Line, ...]:
-    """Equations between vectors as formulas."""
-    lines = () if form is None else form.lines
-    return tuple(equal(names.write(line.left), names.write(line.right)) for line in lines)
-
-
-def _is_solved(field: Field, value: Element) -> bool:
-    """Whether a rate is what the kernel solves for, a symbol by itself."""
-    return any(is_of_kernel(name) and field[name] == value for name in field.reach(value))
-
-
-def _say_what_is_left(missing: Sequence[str], some: bool) -> str:
-    """What a reader is told of the vector form."""
-    if some and missing:
-        listed = ", ".join(dict.fromkeys(missing))
-        return f"by vectors where that form was found; those of {listed} in components alone"
-    if some:
-        return "by vectors, each line found equal to its components in exact arithmetic"
-    return "in components"
-
-
 def _principle(equations: Equations) -> Section:
     """The theorem that the route follows."""
     route = equations.route
@@ -162,12 +79,14 @@ def _principle(equations: Equations) -> Section:
     others = [each for each in equations.spec.routes if each != route]
     if others:
         words.append(("proved equal to", ", ".join(others)))
+    if equations.spec.family is not None:
+        words.append(("steps", f"those of {count_written(equations)}"))
     return Section(
         title="Principle", law="", law_latex="", lines=(), words=tuple(words), kind="principle"
     )
 
 
-def _symbols(equations: Equations, names: _Names) -> Section:
+def _symbols(equations: Equations, names: Names) -> Section:
     """Every name with its meaning and its unit."""
     spec, emitted = equations.spec, equations.exact.emitted
     rows = _list_symbols(spec, names, emitted if spec.family is None else ())
@@ -178,19 +97,19 @@ def _symbols(equations: Equations, names: _Names) -> Section:
 
 def symbol_rows(spec: Spec) -> list[tuple[Line | str, ...]]:
     """The names of a spec with meaning and unit, under their heads."""
-    return _list_symbols(spec, _Names.of(spec, None), ())
+    return _list_symbols(spec, Names.of(spec, None), ())
 
 
 def write_formulas(spec: Spec) -> list[Line]:
     """The Lagrangian and the Hamiltonian of a spec."""
-    names, given = _Names.of(spec, None), (("l", spec.lagrangian), ("h", spec.hamiltonian))
+    names, given = Names.of(spec, None), (("l", spec.lagrangian), ("h", spec.hamiltonian))
     return [
         equal(symbol(name), names.write(each.sums or each.tree)) for name, each in given if each
     ]
 
 
 def _list_symbols(
-    spec: Spec, names: _Names, emitted: Sequence[Emitted]
+    spec: Spec, names: Names, emitted: Sequence[Emitted]
 ) -> list[tuple[Line | str, ...]]:
     """Names, as they are written, with meaning and unit."""
     declared: list[Declared | Reconstructed] = [*spec.variables, *spec.parameters, *spec.inputs]
@@ -265,7 +184,7 @@ def _bracket(equations: Equations) -> Iterator[Section]:
     )
 
 
-def _observables(equations: Equations, names: _Names) -> Iterator[Section]:
+def _observables(equations: Equations, names: Names) -> Iterator[Section]:
     """Observables and Casimirs as they are declared, and the values of momentum maps."""
     spec, field = equations.spec, equations.setting.field
     lines = [
@@ -311,7 +230,7 @@ def _chart(chart: Equations) -> Iterator[Section]:
     yield from (_section(chart, step) for step in chart.steps)
 
 
-def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
+def _definitions(definitions: Sequence[Definition], names: Names) -> Section:
     """The short names of a spec; the steps below show what they stand for in its place."""
     lines = tuple(
         equal(symbol(each.name), names.write(each.tree))
@@ -331,7 +250,7 @@ def _definitions(definitions: Sequence[Definition], names: _Names) -> Section:
     )
 
 
-def _section(equations: Equations, step: Step, names: _Names | None = None) -> Section:
+def _section(equations: Equations, step: Step, names: Names | None = None) -> Section:
     """A step; of equal members that of one, with energies as the sums that the spec declares."""
     field, spec = equations.setting.field, equations.spec
     words: tuple[tuple[str, str], ...] = ()

@@ -20,6 +20,7 @@ from coadjoint.derive.records import Left, Step, member, rate, symbol
 from coadjoint.derive.truncated import tell_motion
 from coadjoint.families import Family
 from coadjoint.notation.elements import write_sympy
+from coadjoint.notation.texts import write_text
 from coadjoint.notation.trees import write_sum
 from coadjoint.notation.written import add, literal, multiply
 
@@ -30,9 +31,9 @@ def show_members(equations: Equations) -> Iterator[Section]:
     """The equations that are the same for every number of members."""
     family = derive_family(equations)
     if family.matrices is not None:
-        yield _show_matrices(equations, family)
+        yield _show_matrices(family)
         return
-    i, written = family.index.name, count_written(equations)
+    i = family.index.name
     kind = "a ring" if family.index.periodic else "an open chain" if family.ends else "a system"
     names = _name_around(family, i, {n: f"{i}{n:+d}" for n in _list_shifts(family)})
     taken = {each.name for each in (*names, *family.shared)} | {each.name for each in family.time}
@@ -46,8 +47,7 @@ def show_members(equations: Equations) -> Iterator[Section]:
     pairs = [_write_pairs(names, each.symbol, each.term, family) for each in family.pair_sums]
     yield Section(
         title=f"Equations of member {i}",
-        law=f"{kind} of N members, N >= {family.small}; the steps that follow are those of "
-        f"{written} members{told}",
+        law=f"{kind} of N members, N >= {family.small}{told}",
         law_latex="",
         lines=(*rates, *pairs),
     )
@@ -73,11 +73,14 @@ def _write_ends(family: Family, short: Iterator[sympy.Symbol]) -> Iterator[Line]
         yield from _write_rates(_name_at(family, end), [*own], [*own.values()], short)
 
 
-def count_written(equations: Equations) -> int:
-    """The number of members whose equations are derived one by one."""
+def count_written(equations: Equations) -> str:
+    """How many members, or rows of matrices, have equations that are derived one by one."""
     declared = equations.spec.family
     assert declared is not None, equations.spec.name
-    return len(equations.spec.state) // len(declared.variables)
+    count = len(equations.spec.state)
+    if declared.index.of_rows:
+        return f"{declared.index.find_size(count)} rows"
+    return f"{count // len(declared.variables)} members"
 
 
 def fold_step(equations: Equations, step: Step) -> tuple[Step, tuple[tuple[str, str], ...]]:
@@ -114,16 +117,15 @@ def fold_step(equations: Equations, step: Step) -> tuple[Step, tuple[tuple[str, 
     return replace(step, lines=kept), tuple(words)
 
 
-def _show_matrices(equations: Equations, family: Family) -> Section:
+def _show_matrices(family: Family) -> Section:
     """The equations of matrices of any number of rows."""
-    rows, count = family.index.name, len(equations.spec.state)
+    rows = family.index.name
     odd = "" if family.index.allows(family.small + 1) else " and odd"
-    lines = (equal(literal(left), literal(right)) for left, right in tell_motion(family))
+    lines = (equal(write_text(left), write_text(right)) for left, right in tell_motion(family))
     return Section(
         title="Equations of motion",
         law=f"matrices of {rows} rows counted from 0, {rows} >= {family.small}{odd}, with what "
-        f"has no neighbour left out; the steps that follow are those of "
-        f"{family.index.find_size(count)} rows",
+        "has no neighbour left out",
         law_latex="",
         lines=tuple(lines),
     )

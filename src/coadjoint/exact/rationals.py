@@ -354,6 +354,10 @@ class Rationals:
             for monomial, coefficient in quotient.numer.terms()
         )
 
+    def count_terms(self, element: Element) -> int:
+        """The number of `terms`, none of which is made."""
+        return sum(len(quotient.numer) for quotient in element.parts)
+
     def partial_fractions(self, element: Element) -> list[Element]:
         """Single quotients whose sum is the element, their addends cancelled; zero alone for zero.
 

@@ -19,8 +19,8 @@ from markupsafe import Markup
 
 from coadjoint.explore.scene import describe_scene
 from coadjoint.pipeline import Rendered
-from coadjoint.render.environment import make_environment
 from coadjoint.render.scripts import render_family_script, render_script
+from coadjoint.render.strict import make_environment
 from coadjoint.resources import templates_folder
 from coadjoint.spec import Spec
 

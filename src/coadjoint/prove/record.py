@@ -11,8 +11,9 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
+from coadjoint.derive.lines import Section
 from coadjoint.derive.setting import Declared
 from coadjoint.methods import JudgedMethod
 from coadjoint.prove.certificate import Certificate
@@ -20,12 +21,16 @@ from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
+#: Characters of MathML beyond which components beside vectors are too long for a notebook.
+LONGEST_MOTION: Final = 20_000
+
 
 def certificate_json(
     spec: Spec,
     certificate: Certificate,
     facts: Mapping[str, object] = MappingProxyType({}),
     methods: Iterable[JudgedMethod] = (),
+    motion: Iterable[Section] = (),
 ) -> str:
     """The certificate with the spec's free text, for programs and documents.
 
@@ -34,6 +39,7 @@ def certificate_json(
         certificate: What is proved of it.
         facts: What decides which methods of integration apply, as JSON values.
         methods: Methods that keep structure, as they are judged.
+        motion: The equations of motion, which notebooks show of a system.
     """
     quantities: Sequence[Declared] = (*spec.variables, *spec.parameters, *spec.driving)
     record: dict[str, Any] = {
@@ -65,7 +71,21 @@ def certificate_json(
         record["constraints"] = kept
     if spec.domain:  # generated code names conditions; their text stands here
         record["domain"] = {condition.name: condition.in_one_line for condition in spec.domain}
+    if sections := list(motion):
+        record["motion"] = [motion_record(each) for each in sections]
     return json.dumps(record, indent=2, ensure_ascii=True) + "\n"
+
+
+def motion_record(section: Section) -> dict[str, Any]:
+    """A section of the motion without Typst; components too long for a notebook are left out."""
+    vectors, lines = (
+        [{"text": line.text, "latex": line.latex, "mathml": line.mathml} for line in part]
+        for part in (section.vectors, section.lines)
+    )
+    law = section.law
+    if vectors and sum(len(line["mathml"]) for line in lines) > LONGEST_MOTION:
+        law, lines = f"{law}; components are left out, which fill pages", []
+    return {"title": section.title, "law": law, "vectors": vectors, "lines": lines}
 
 
 def _list_rotations(spec: Spec) -> dict[str, str]:

@@ -19,7 +19,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 
 from coadjoint.notation.tex import is_formula, to_mathml
-from coadjoint.render.environment import make_environment
+from coadjoint.render.strict import make_environment
 
 FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -71,7 +71,7 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
 def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     """A document with everything that templates ask for, which may be empty."""
     empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
-    empty |= {"theorem": ""}
+    empty |= {"theorem": "", "law_latex": ""}
     sections = [{**empty, **section} for section in document["sections"]]
     return {"picture": "", "caption": "", **document, "sections": sections}
 

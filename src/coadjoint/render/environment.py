@@ -1,28 +1,22 @@
-"""Render, templates: the one strict Jinja environment that every generated file comes from.
+"""Render, templates of code: the environment that every generated file comes from.
 
-Comes in: names of templates of this package and plain values. Goes out: text. Templates are files
-of this package only, never text of a spec; an undefined name is an error, a value given for nothing
-is an error, and a value that could end a comment or a string of the output is refused.
+Comes in: names of templates of this package and plain values. Goes out: text. A value given for
+nothing is an error, and a value that could end a comment or a string of the output is refused.
 Read next: `coadjoint.render.targets`.
 """
 
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any, Final
 
-from jinja2 import FileSystemLoader, StrictUndefined
-from jinja2.compiler import CodeGenerator, Frame
-from jinja2.sandbox import ImmutableSandboxedEnvironment
-
 from coadjoint.errors import SpecError
 from coadjoint.render.printers import python_call
+from coadjoint.render.strict import StrictEnvironment, make_environment
 from coadjoint.render.targets import OTHERS, TARGETS
-from coadjoint.resources import templates_folder
 
 #: What would begin or end a comment or a string, or glue two lines together, in C or in Python.
 UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
@@ -31,48 +25,8 @@ UNSAFE = re.compile(r'[^ -~]|\\|/\*|\*/|"""|\?\?')
 PAGES: Final = ("document/", "explorer/")
 
 
-class _Generator(CodeGenerator):
-    """Compiles a template, and notes the names that it takes from its context."""
-
-    def enter_frame(self, frame: Frame) -> None:
-        """As of the base."""
-        super().enter_frame(frame)
-        assert isinstance(self.environment, _Environment)
-        for action, name in frame.symbols.loads.values():
-            if action == "resolve" and name is not None and name not in self.environment.globals:
-                self.environment.read[self.name].add(name)
-
-
-class _Environment(ImmutableSandboxedEnvironment):
-    """A sandbox that knows which names each template reads, once it has compiled it.
-
-    `jinja2.meta` would compile each a second time, which took a quarter of a second a system.
-    """
-
-    code_generator_class = _Generator
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(**options)
-        self.read = defaultdict[str | None, set[str]](set)
-
-
-def make_environment(**options: Any) -> _Environment:
-    """An environment of our templates, in which an undefined name is an error.
-
-    The sandbox is a second wall; the first is that specs are not templates.
-    """
-    return _Environment(
-        loader=FileSystemLoader(templates_folder()),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        **options,
-    )
-
-
 @cache
-def environment() -> _Environment:
+def environment() -> StrictEnvironment:
     """The environment of kernels, with the filters of all targets."""
     made = make_environment(autoescape=False)  # code, not HTML; `refuse_unsafe` guards each value
     made.filters["python_call"] = python_call

@@ -476,6 +476,12 @@ class System(Functions):
 
         return show_system(self)
 
+    def _repr_latex_(self) -> str | None:
+        """What a notebook shows that takes no HTML, and an export to LaTeX; None of what is old."""
+        from coadjoint.notebook import write_system
+
+        return write_system(self)
+
 
 def _name_below(quantity: Quantity) -> Quantity:
     """A quantity of the state as what stands below it: the same rows of a vector."""

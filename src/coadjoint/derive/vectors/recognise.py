@@ -12,9 +12,9 @@ Comes in: a vocabulary and the value of a rate. Goes out: addends. Read next:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import tee
 
 from coadjoint.derive.interpret import Value, entries
 from coadjoint.derive.vectors.gradients import Addend, total_of
@@ -33,6 +33,8 @@ LONGEST = 70
 MOST_WORDS = 20
 #: Products that one line may have.
 MOST_PRODUCTS = 8
+#: Terms of what remains with which a term of a candidate is compared.
+MOST_RATIOS = 12
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,10 @@ def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend]
     """Addends taken one by one, the simplest kind of product first."""
     like, found = rest, list[Addend]()
     for level in range(vocabulary.levels):
+        candidates = vocabulary.candidates(like, level)
         while len(found) < MOST_PRODUCTS and any(map(bool, entries(rest))):
-            step = _best(vocabulary, vocabulary.candidates(like, level), rest, whole=whole)
+            candidates, again = tee(candidates)  # which are made once, and only as far as asked for
+            step = _best(vocabulary, again, rest, whole=whole)
             if step is None:
                 break
             addend, rest = step
@@ -121,8 +125,9 @@ def _best(
     """The candidate that leaves fewest terms, with what it leaves."""
     field, best = vocabulary.field, None
     fewest = before = _count(field, rest)
+    wanted = [field.terms(each)[:MOST_RATIOS] for each in entries(rest)]
     for candidate in candidates:
-        for factor in _factors(vocabulary, candidate.value, rest):
+        for factor in _factors(vocabulary, candidate.value, wanted):
             left = subtract(rest, scale(factor, candidate.value))
             count = _count(field, left)
             if count >= fewest or (whole and before - count < _count(field, candidate.value)):
@@ -149,13 +154,14 @@ def _put(scalar: Addend, vector: tree.Node) -> Addend:
     return Addend(scalar.number, scalar.above, scalar.below, vector)
 
 
-def _factors(vocabulary: Vocabulary, value: Value, rest: Value) -> list[Element]:
+def _factors(
+    vocabulary: Vocabulary, value: Value, wanted: Sequence[Sequence[Element]]
+) -> list[Element]:
     """Scalars of the spec by which a term of a candidate is a term of what remains."""
-    field = vocabulary.field
-    for own, wanted in zip(entries(value), entries(rest), strict=True):
-        if own and wanted:
-            first = field.terms(own)[0]
-            ratios = (term / first for term in islice(field.terms(wanted), 12))
+    for own, terms in zip(entries(value), wanted, strict=True):
+        if own and terms:
+            first = vocabulary.field.terms(own)[0]
+            ratios = (term / first for term in terms)
             return [each for each in ratios if vocabulary.is_scalar(each)]
         if own:
             # a candidate that has an entry where nothing remains can only add terms
@@ -165,4 +171,4 @@ def _factors(vocabulary: Vocabulary, value: Value, rest: Value) -> list[Element]
 
 def _count(field: Field, value: Value) -> int:
     """The number of terms of all components."""
-    return sum(len(field.terms(each)) for each in entries(value) if each)
+    return sum(field.count_terms(each) for each in entries(value))
