@@ -160,8 +160,8 @@ def _factors(
     """Scalars of the spec by which a term of a candidate is a term of what remains."""
     for own, terms in zip(entries(value), wanted, strict=True):
         if own and terms:
-            first = vocabulary.field.terms(own)[0]
-            ratios = (term / first for term in terms)
+            inverse = vocabulary.field.terms(own)[0].inverse()
+            ratios = (term * inverse for term in terms)
             return [each for each in ratios if vocabulary.is_scalar(each)]
         if own:
             # a candidate that has an entry where nothing remains can only add terms

@@ -59,6 +59,7 @@ class Vocabulary:
         shapes: Shapes of whole quantities.
         values: The value of each name that a printed tree may hold.
         levels: How many kinds of candidates there are, the simplest first.
+        products: Products of two vectors that were made, by the trees of both.
     """
 
     field: Field
@@ -69,6 +70,7 @@ class Vocabulary:
     shapes: Mapping[str, Shape] = attribute(default_factory=dict)
     values: Mapping[str, Value] = attribute(default_factory=dict)
     levels: int = 4
+    products: dict[tuple[tree.Node, tree.Node], Candidate] = attribute(default_factory=dict)
 
     def evaluate(self, node: tree.Node) -> Value:
         """The value of a printed tree, from that of each name in it."""
@@ -110,9 +112,17 @@ class Vocabulary:
     def _crosses(self, left: list[Candidate], right: list[Candidate]) -> Iterator[Candidate]:
         for n, a in enumerate(left):
             for b in right[n + 1 :] if right is left else right:
-                value = dense.cross(a.value, b.value)
-                if any(map(bool, value)):
-                    yield Candidate(tree.Call(function="cross", arguments=(a.node, b.node)), value)
+                found = self._cross(a, b)
+                if any(map(bool, found.value)):
+                    yield found
+
+    def _cross(self, a: Candidate, b: Candidate) -> Candidate:
+        """A product, made once: each level of each search begins with the same."""
+        known = self.products.get((a.node, b.node))
+        if known is None:
+            node = tree.Call(function="cross", arguments=(a.node, b.node))
+            known = self.products[a.node, b.node] = Candidate(node, dense.cross(a.value, b.value))
+        return known
 
     def _turns(self, own: list[Candidate]) -> Iterator[Candidate]:
         """Quaternions times vectors, from either side."""
