@@ -72,6 +72,7 @@ class Facts:
         self.field, self.state = equations.setting.field, equations.setting.state
         self.programs, self._certificate = programs, certificate
         self.motion: Motion = motion_of(equations)
+        self._kept_by_action = dict[tuple[Element, ...], bool]()
 
     # -- what acts ------------------------------------------------------------------------
 
@@ -345,6 +346,12 @@ class Facts:
         They stay along the tensor times any xi that is zero where the energy does not change, as by
         attitudes that no force asks for; or they are momenta of linear symmetries of the energy.
         """
+        asked = tuple(values)  # the same by each composition of a method
+        if asked not in self._kept_by_action:
+            self._kept_by_action[asked] = self._find_kept_by_action(asked)
+        return self._kept_by_action[asked]
+
+    def _find_kept_by_action(self, values: Sequence[Element]) -> bool:
         if self.energy is None or not values:
             return False
         slopes = self.field.gradient(self.energy, self.state)
