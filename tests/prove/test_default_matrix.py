@@ -72,7 +72,7 @@ MATRIX = {
     ),
     "metriplectic": (
         "metriplectic_body",
-        "gauss4",  # energy and entropy are quadratic
+        "metriplectic_gradient",  # gauss4 where a certificate proves that G is semidefinite
         ("metriplectic_gradient", "gauss8"),
         {"discrete_gradient": "projects G along that", "coadjoint_mean": "with its energy alone"},
     ),
