@@ -2,7 +2,9 @@
 
 import decimal
 import math
+from decimal import Decimal, localcontext
 from fractions import Fraction
+from itertools import product
 
 import mpmath
 import numpy as np
@@ -10,8 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from coadjoint.crosscheck import oracle as oracle_module
 from coadjoint.crosscheck.oracle import (
+    CONTEXT,
+    Bounded,
     OutsideDomain,
+    _take,
     call,
     error_in_envelopes,
     errors,
@@ -196,3 +202,37 @@ def test_constants_are_exact_rationals():
     third = exact(Fraction(1, 3)).value
     assert abs(third * 3 - 1) < decimal.Decimal("1e-50")
     assert third != exact(1 / 3).value
+
+
+def find_products():
+    """Products of numbers that cancelled by 0 to 40 digits, beside their sizes by the formula."""
+    numbers = [Bounded(Decimal(0), Decimal(size)) for size in ("0", "1e-3", "7")]
+    for digits in range(41):
+        for value in ("1", "-9.99", "3.7e200"):
+            number = Decimal(value)
+            numbers.append(Bounded(number, abs(number).scaleb(digits) * Decimal("1.5")))
+    found = []
+    with localcontext(CONTEXT):
+        for one, other in product(numbers, repeat=2):
+            size = abs(one.value) * other.envelope + abs(other.value) * one.envelope
+            both = Decimal(2.0**-53) * one.envelope * other.envelope
+            found.append((one * other, Bounded(one.value * other.value, max(size, both))))
+    return [a == b for a, b in found]
+
+
+def test_products_have_their_sizes_however_much_factors_cancel(monkeypatch):
+    """What is not looked at would never be the larger one; a wider margin leaves out some."""
+    same = find_products()
+    assert len(same) == (3 + 3 * 41) ** 2
+    assert all(same)
+    monkeypatch.setattr(oracle_module, "_KNOWN", 20)
+    assert not all(find_products())
+
+
+def test_zeros_of_both_signs_stay_apart():
+    """The same doubles are taken once, and zeros each time."""
+    pairs = [(each, _take(each).value) for each in (0.0, -0.0, 0.0, 1.5, -1.5, 1.5)]
+    for double, taken in pairs:
+        assert float(taken) == double
+        assert math.copysign(1.0, taken) == math.copysign(1.0, double)
+    assert _take(1.5) is _take(1.5)

@@ -15,6 +15,7 @@ from coadjoint.crosscheck.solver_exact import ExactStep, Solvers
 from coadjoint.crosscheck.solver_objects import (
     NumpySolver,
     compile_solvers,
+    list_compared,
     load_numpy,
     load_solver,
 )
@@ -45,13 +46,19 @@ from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import arrange, select_programs
-from coadjoint.solve.methods import average_gradient, coadjoint_mean, gauss
+from coadjoint.solve.methods import (
+    average_gradient,
+    coadjoint_mean,
+    gauss,
+    metriplectic_gradient,
+    nambu_gradient,
+)
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
 from tests.kernels import COMPILER, ProgramReference
 from tests.programs import BOUNDED, HEAVY_TOP, LOOPED, PENDULUM, program
-from tests.specs import RIGID_BODY, spec
+from tests.specs import RIGID_BODY, lowered, spec
 
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 CONTEXTS = {"heavy_top": HEAVY_TOP, "pendulum": PENDULUM, "bounded": BOUNDED, "looped": LOOPED}
@@ -614,6 +621,38 @@ Pi = { role = "momentum" }
 [hamiltonian]
 h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Pi1^4/8 + Pi2*Pi3/7"
 """
+#: Functions that are not quadratic, of three coordinates and of four.
+PRODUCT = """
+title = "A product of gradients"
+routes = ["nambu"]
+[poisson]
+nambu = ["x1^4/4 + x2^2/2 + x3^2/2"]
+[variables]
+x = { role = "coordinate", shape = [3] }
+[hamiltonian]
+h = "x1^2/2 + x2^4/4 + x3"
+"""
+PRODUCT_OF_FOUR = PRODUCT.replace('/2"]', '/2 + x4", "x1*x4 + x3^4/4"]').replace("[3]", "[4]")
+#: A body whose energy and entropy are of degree 4.
+RELAXING = """
+title = "A body"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum" }
+[hamiltonian]
+h = "Pi1^2/2 + Pi2^2/4 + Pi3^2/6 + Pi1^4/8"
+[definitions]
+w = "vector(Pi1 + Pi1^3/2, Pi2/2, Pi3/3)"
+[metriplectic]
+S = "dot(Pi, Pi)^2/4"
+G = "(dot(w, w)*hat(w)^0 - outer(w, w))/5"
+"""
+SPECS = {
+    "nambu_gradient_newton": PRODUCT,
+    "metriplectic_gradient_newton": RELAXING,
+}
 #: Of each method, wrong slopes in C, and what NumPy is to have in the place of a table or function.
 WRONG_SLOPES = {
     "gauss4_newton": ("stage_shares[s][j] * rows[i][k]", "stage_shares[s][j] * rows[k][i]"),
@@ -622,13 +661,34 @@ WRONG_SLOPES = {
         "half * rows[i * SLOPES + k]",
         "half * rows[k * SLOPES + i]",
     ),
+    "nambu_gradient_newton": ("half * rows[i * SLOPES + k]", "half * rows[k * SLOPES + i]"),
+    "metriplectic_gradient_newton": ("half * rows[i * SLOPES + k]", "half * rows[k * SLOPES + i]"),
 }
 SHARES = tuple(each[::-1] for each in gauss.TABLEAUS[4].shares)
 WRONG_STEPS = {
     "gauss4_newton": (gauss, "TABLEAUS", {4: replace(gauss.TABLEAUS[4], shares=SHARES)}),
     "coadjoint_mean_newton": (coadjoint_mean, "TERMS", 1),
     "discrete_gradient_newton": (average_gradient, "NODES", average_gradient.NODES[:1]),
+    "nambu_gradient_newton": (average_gradient, "NODES", average_gradient.NODES[:1]),
+    "metriplectic_gradient_newton": (
+        metriplectic_gradient,
+        "project",
+        lambda vector, along: vector,
+    ),
 }
+#: Wrong steps in C: minors with other signs, and G that is projected along the other gradient.
+WRONG_GRADIENTS = {
+    "nambu_gradient_newton": (
+        "? minors[set] - term : minors[set] + term",
+        "? minors[set] + term : minors[set] + term",
+    ),
+    "metriplectic_gradient_newton": ("project(rows, g, relaxed)", "project(rows, s, relaxed)"),
+}
+
+
+def context_for(method):
+    """What the kernels of a system that has a method are rendered from."""
+    return context_of(f"quartic_{method}", SPECS.get(method, QUARTIC))
 
 
 @needs_compiler
@@ -640,7 +700,7 @@ def test_newtons_method_of_other_steps_is_compared(method, is_wrong, tmp_path, m
     own = lambda batch, size: (each for each in runs(batch, size) if each[0] == method)  # noqa: E731
     monkeypatch.setattr(solver_steps, "_runs", own)
     spoil = replaced("solver.c", *WRONG_SLOPES[method]) if is_wrong else lambda texts: texts
-    made = solvers(context_of("quartic", QUARTIC), (method,), tmp_path, spoil)
+    made = solvers(context_for(method), (method,), tmp_path, spoil)
     batch = points(made)
     if is_wrong:
         with pytest.raises(CrossCheckError, match="rung 5"):
@@ -652,11 +712,46 @@ def test_newtons_method_of_other_steps_is_compared(method, is_wrong, tmp_path, m
 
 @pytest.mark.parametrize("method", WRONG_STEPS)
 def test_wrong_implicit_steps_are_caught(method, monkeypatch):
-    """Exchanged shares, a series that ends too early, and a mean with half of its nodes."""
-    made = solvers(context_of("quartic", QUARTIC), (method,))
+    """Exchanged shares, a short series, means with half of the nodes, and no projections."""
+    made = solvers(context_for(method), (method,))
     monkeypatch.setattr(*WRONG_STEPS[method])
     with pytest.raises(CrossCheckError, match="rung 4"):
         check_steps(made, points(made), 0.125)
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", WRONG_GRADIENTS)
+def test_wrong_gradients_in_c_are_caught_by_60_digits(method, tmp_path):
+    """Alone, without NumPy beside them."""
+    spoil = replaced("solver.c", *WRONG_GRADIENTS[method])
+    made = solvers(context_for(method), (method,), tmp_path, spoil)
+    with pytest.raises(CrossCheckError, match=rf"rung 4.*a step of {method}, c:"):
+        check_steps(made, points(made), 0.125)
+
+
+def test_products_of_three_gradients_are_compared(monkeypatch):
+    """Of four coordinates; with other signs of minors the step is another one."""
+    made = solvers(context_of("four", PRODUCT_OF_FOUR), ("nambu_gradient_newton",))
+    batch = points(made)
+    assert check_steps(made, batch, 0.125)["nambu_gradient_newton"]["numpy"].points == 1
+    product = nambu_gradient.multiply_gradients
+    monkeypatch.setattr(nambu_gradient, "multiply_gradients", lambda rows: -product(rows))
+    with pytest.raises(CrossCheckError, match="rung 4"):
+        check_steps(made, batch, 0.125)
+
+
+GRADIENTS = {
+    "nambu_body": {"discrete_gradient", "nambu_gradient"},
+    "metriplectic_body": {"metriplectic_gradient"},
+    "double_bracket_body": {"discrete_gradient"},
+}
+
+
+@pytest.mark.parametrize("system", GRADIENTS)
+def test_motions_have_the_gradients_that_are_theirs(system):
+    """By facts that names of functions do not tell."""
+    own = list_compared(hold_sides(select_programs(lowered(system).values())))
+    assert {each.name for name, each in own.items() if "gradient" in name} == GRADIENTS[system]
 
 
 @needs_compiler

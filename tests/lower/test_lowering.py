@@ -28,6 +28,7 @@ from coadjoint.lower.program import (
     run,
     walk,
 )
+from coadjoint.methods import RELAXED
 from tests.conftest import rational_points
 from tests.prove.rolling import motion
 from tests.sources import textbook
@@ -79,6 +80,12 @@ def has_functions(equations):
     return poisson is not None and poisson.kind == "nambu"
 
 
+def has_entropy(equations):
+    """Whether the motion is metriplectic."""
+    relaxation = equations.spec.relaxation
+    return relaxation is not None and relaxation.S is not None
+
+
 def test_every_function_that_applies_is_lowered(system):
     """In the order of the kernels; `tests.test_regenerate` runs each backwards, as below."""
     equations, programs = emitted(system), lowered(system)
@@ -90,6 +97,7 @@ def test_every_function_that_applies_is_lowered(system):
         "energy_gradient": not has_bracket(equations),
         "bracket_vector": not has_bracket(equations),
         **dict.fromkeys(("distinguished", "distinguished_gradient"), not has_functions(equations)),
+        **dict.fromkeys(RELAXED, not has_entropy(equations)),
         "sandwich": equations.spec.name not in MATRICES,
         **dict.fromkeys(("noise", "noise_gradient"), not equations.spec.noise),
         "constraint_residual": not equations.spec.constraints and not equations.spec.turning,
@@ -107,6 +115,7 @@ def test_every_function_that_applies_is_lowered(system):
         "poisson_tensor",
         "energy_gradient",
         "bracket_vector",
+        *RELAXED,
         "distinguished",
         "distinguished_gradient",
         "sandwich",
@@ -254,6 +263,7 @@ BY_HAND = {
     "kapitza_top": 3 + 2 * 9 + 12 + 4 + 3,
     "lorenz_gyrostat": 2 + 4 + 3,  # sigma (y - x); r x - y - x z; x y - b z
     "double_bracket_body": 3 + 2 * 9 + 3 + 3,  # velocities, two cross products, alpha, sums
+    "metriplectic_body": 3 + 2 * 9 + 3 + 3,  # as double_bracket_body
     "stochastic_rigid_body": 3 + 9,  # velocities, a cross product
     "landau_lifshitz_gilbert": 3 + 2 * 9 + 3 + 3,  # K m3 + B3 and its sign; as above
     "sp2_momentum": 1 + 5 + 6,  # 2 X3/m; -2 b X1 X3 - 2 k X3; X2/m - b X1^2 - k X1

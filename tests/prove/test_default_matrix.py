@@ -70,6 +70,12 @@ MATRIX = {
         ("discrete_gradient", "gauss8"),
         {"discrete_gradient4": "go back in time", "coadjoint_mean": "with its energy alone"},
     ),
+    "metriplectic": (
+        "metriplectic_body",
+        "metriplectic_gradient",  # gauss4 where a certificate proves that G is semidefinite
+        ("metriplectic_gradient", "gauss8"),
+        {"discrete_gradient": "projects G along that", "coadjoint_mean": "with its energy alone"},
+    ),
     "noise": (
         "stochastic_rigid_body",
         "",

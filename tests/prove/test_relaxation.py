@@ -240,6 +240,58 @@ def test_a_body_falls_onto_its_largest_axis():
     assert np.allclose(found["Pi1"], size * np.cos(theta), atol=1e-8)
 
 
+def relax_top(times, inertia, alpha, omega):
+    """``(L1, L2, L3)`` of a top with the moments (I, I, J) by the closed form of its relaxation.
+
+    ``dL/dt = L x omega + alpha omega x (L x omega)`` keeps ``2E = I (w1^2 + w2^2) + J w3^2``, so
+    that ``u = w3^2`` follows Verhulst's equation ``du/dt = rate u (1 - u/U)`` with ``U = 2E/J`` and
+    ``rate = 4 E alpha (J - I)/(I J)``; omega precesses by the angle ``(J - I)/I`` times that of w3.
+    """
+    one, other = inertia
+    double = one * (omega[0] ** 2 + omega[1] ** 2) + other * omega[2] ** 2
+    rate, full = 2 * double * alpha * (other - one) / (one * other), math.sqrt(double / other)
+    left = (full / omega[2]) ** 2 - 1
+    along = full / np.sqrt(1 + left * np.exp(-rate * times))
+    grown = np.arcsinh(np.exp(rate * times / 2) / math.sqrt(left))
+    turned = full * 2 / rate * (grown - math.asinh(1 / math.sqrt(left)))
+    angle = math.atan2(omega[1], omega[0]) + (other - one) / one * turned
+    across = np.sqrt(np.maximum(double - other * along**2, 0) / one)
+    return np.array([one * across * np.cos(angle), one * across * np.sin(angle), other * along])
+
+
+@pytest.mark.parametrize("method", [{}, {"method": "metriplectic_gradient", "step": 2.0**-7}])
+@pytest.mark.parametrize("inertia", [(1.0, 2.5), (2.5, 1.0)])
+def test_a_top_relaxes_by_its_closed_form(method, inertia):
+    """To rotation about the axis where it is largest, or away from it where it is smallest."""
+    body = importlib.import_module("coadjoint.systems.metriplectic_body")
+    alpha, omega, times = 0.2, np.array([0.6, -0.3, 0.5]), np.linspace(0, 8, 33)
+    moments = [inertia[0], *inertia]
+    found = body.simulate(
+        moments * omega, (0, 8), {"I": moments, "alpha": alpha}, samples=33, **method
+    )
+    expected = relax_top(times, inertia, alpha, omega)
+    assert np.abs(expected[:, -1] - expected[:, 0]).max() > 0.3
+    assert np.abs(found.state - expected).max() < (1e-4 if method else 1e-8)
+    wrong = relax_top(times, inertia, 1.01 * alpha, omega)
+    assert np.abs(found.state - wrong).max() > 1e-3
+
+
+def test_a_body_relaxes_to_its_largest_moment_at_constant_energy():
+    """The momentum ends at ``sqrt(2 E I3)`` along the third axis; its square grows as it should."""
+    body = importlib.import_module("coadjoint.systems.metriplectic_body")
+    found = body.simulate([1.0, 0.2, 0.1], (0, 400), method="gauss4", step=0.25, samples=1601)
+    energy, end = 1 / 2 + 0.2**2 / 4 + 0.1**2 / 6, found.state[:, -1]
+    assert np.abs(body.energy(found.state) - energy).max() < 1e-14
+    assert np.abs(end[:2]).max() < 1e-6
+    assert abs(end[2]) == pytest.approx(math.sqrt(2 * energy * 3), rel=1e-12)
+    assert (np.diff((found.state**2).sum(0)) > -1e-14).all()
+    assert "casimir1" not in found.drift
+    L = found.state
+    omega = L / np.array([[1.0], [2.0], [3.0]])
+    produced = 0.1 * (np.cross(L, omega, axis=0) ** 2).sum(0)  # alpha |L x omega|^2
+    assert np.allclose((L * body.rhs(L)).sum(0), produced, rtol=1e-12, atol=1e-15)
+
+
 def test_shipped_motions_name_what_they_lose():
     """The heads of generated files and the certificate agree."""
     found = {c.statement for c in prove_claims(shipped("landau_lifshitz_gilbert")).claims}

@@ -70,6 +70,18 @@ def falling_body_rates(Pi: Vector, parameters: Vector) -> list[Any]:
     return [a + alpha * b for a, b in zip(turned, cross(Pi, turned), strict=True)]
 
 
+def relaxing_body_rates(L: Vector, parameters: Vector) -> list[Any]:
+    """``dL/dt = L x omega + alpha omega x (L x omega)``.
+
+    M. Materassi and P. J. Morrison, Cybernetics and Physics 7 (2018) 78: the torque is
+    ``alpha (|omega|^2 L - (omega . L) omega)``, with half the square of L as the entropy.
+    """
+    inertia, alpha = parameters[:3], parameters[3]
+    omega = [p / i for p, i in zip(L, inertia, strict=True)]
+    turned = cross(L, omega)
+    return [a + alpha * b for a, b in zip(turned, cross(omega, turned), strict=True)]
+
+
 def gilbert_rates(m: Vector, parameters: Vector) -> list[Any]:
     """``dm/dt`` from Gilbert's implicit form, ``(1 - alpha m x) dm/dt = -gamma m x B``, solved.
 
@@ -222,6 +234,7 @@ RATES = {
     "orbiting_body": orbit_rates,
     "kapitza_top": lambda x, p: heavy_top_rates(x, shaken(p)),
     "double_bracket_body": falling_body_rates,
+    "metriplectic_body": relaxing_body_rates,
     "stochastic_rigid_body": lambda x, p: rigid_body_rates(x, p[:3]),  # Stratonovich's drift
     "landau_lifshitz_gilbert": gilbert_rates,
     "heavy_top_damped": damped_top_rates,
@@ -235,6 +248,7 @@ OBSERVABLES = {
     "orbiting_body": orbit_observables,
     "kapitza_top": lambda x, p: heavy_top_observables(x, shaken(p)),
     "double_bracket_body": lambda x, p: rigid_body_observables(x, p[:3]),
+    "metriplectic_body": lambda x, p: rigid_body_observables(x, p[:3]),
     "stochastic_rigid_body": lambda x, p: rigid_body_observables(x, p[:3]),
     "landau_lifshitz_gilbert": gilbert_observables,
     "heavy_top_damped": lambda x, p: heavy_top_observables(x, p[:8]),
@@ -248,6 +262,7 @@ TENSORS = {
     "orbiting_body": lambda x, p: orbit_tensor(x),
     "kapitza_top": lambda x, p: se3_tensor(x),
     "double_bracket_body": lambda x, p: rigid_body_tensor(x),
+    "metriplectic_body": lambda x, p: rigid_body_tensor(x),
     "stochastic_rigid_body": lambda x, p: rigid_body_tensor(x),
     "landau_lifshitz_gilbert": lambda x, p: rigid_body_tensor(x),
     "heavy_top_damped": lambda x, p: se3_tensor(x),
@@ -270,6 +285,7 @@ STATES = {
     ),
     "kapitza_top": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
     "double_bracket_body": ("Pi1", "Pi2", "Pi3"),
+    "metriplectic_body": ("Pi1", "Pi2", "Pi3"),
     "stochastic_rigid_body": ("Pi1", "Pi2", "Pi3"),
     "landau_lifshitz_gilbert": ("m1", "m2", "m3"),
     "heavy_top_damped": ("Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"),
@@ -283,6 +299,7 @@ PARAMETERS = {
     "orbiting_body": ("I1", "I2", "I3", "m", "mu"),
     "kapitza_top": ("I1", "I2", "I3", "m", "g", "chi1", "chi2", "chi3", "a", "w"),
     "double_bracket_body": ("I1", "I2", "I3", "alpha"),
+    "metriplectic_body": ("I1", "I2", "I3", "alpha"),
     "stochastic_rigid_body": ("I1", "I2", "I3", "sigma1", "sigma2", "sigma3"),
     "landau_lifshitz_gilbert": ("gamma", "alpha", "B1", "B2", "B3", "K"),
     "heavy_top_damped": (

@@ -222,6 +222,11 @@ SHIPPED = {
         "I1 I2 I3 alpha",
         ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
     ),
+    "metriplectic_body": (
+        "Pi1 Pi2 Pi3",
+        "I1 I2 I3 alpha",
+        ("euler-poincare", "lie-poisson", "nambu", "newton-euler"),
+    ),
     "stochastic_rigid_body": (
         "Pi1 Pi2 Pi3",
         "I1 I2 I3 sigma1 sigma2 sigma3",

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from itertools import combinations, permutations
 from typing import Any, Final
 
 import numpy as np
@@ -181,41 +182,126 @@ def discrete_gradient(
 ) -> tuple[Row, Row]:
     """The discrete gradient by so many sweeps: its mean along the chord, corrected along it.
 
-    ``y - x = h (J(m) g + f(m))`` with ``g = mean + c (y - x)`` and ``g.(y - x) = H(y) - H(x)``; the
-    mean by Gauss's formula of four nodes (Abramowitz and Stegun, table 25.4).
+    ``y - x = h (J(m) g + f(m))`` with ``g = mean + c (y - x)`` and ``g.(y - x) = H(y) - H(x)``.
+    """
+
+    def find_rates(middle: Row, slopes: Row, added: Row) -> Row:
+        half = h * number(Fraction(1, 2))
+        turned = motion.turn(middle, added, middle, half)
+        return [a + b for a, b in zip(motion(middle, half), turned, strict=True)]
+
+    return _follow_gradients(motion, ("energy",), find_rates, x, h, after, number, sweeps)
+
+
+def nambu_gradient(
+    motion: Motion, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """Nambu's product of discrete gradients of the energy and of the distinguished functions.
+
+    ``x_i' = -e_ijk.. g_j c_k ..``, a sum over the permutations of all places; it is ``c x g`` of
+    three coordinates. R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions
+    A 357 (1999) 1021.
+    """
+
+    def find_rates(middle: Row, slopes: Row, added: Row) -> Row:
+        n = len(middle)
+        gradients = [a + b for a, b in zip(slopes, added, strict=True)]
+        rates = [number(Fraction(0))] * n
+        for i, *others in permutations(range(n)):
+            swaps = sum(a > b for a, b in combinations((i, *others), 2))
+            term = number(Fraction(-1 if swaps % 2 == 0 else 1))
+            for row, column in enumerate(others):
+                term = term * gradients[row * n + column]
+            rates[i] = rates[i] + term
+        return rates
+
+    functions = ("energy", "distinguished")
+    return _follow_gradients(motion, functions, find_rates, x, h, after, number, sweeps)
+
+
+def metriplectic_gradient(
+    motion: Motion, x: Row, h: Any, after: Any, number: Number, sweeps: int
+) -> tuple[Row, Row]:
+    """The bracket with the energy and G with the entropy, each projected along the other gradient.
+
+    ``y - x = h (R P(m) R g + Q G(m) Q s)`` with discrete gradients g and s,
+    ``Q = 1 - g g^T/(g.g)`` and ``R = 1 - s s^T/(s.s)``.
+    """
+
+    def project(vector: Row, along: Row) -> Row:
+        product = square = number(Fraction(0))
+        for one, other in zip(vector, along, strict=True):
+            product, square = product + one * other, square + other * other
+        part = product / square
+        return [minus(one, part * other) for one, other in zip(vector, along, strict=True)]
+
+    def find_rates(middle: Row, slopes: Row, added: Row) -> Row:
+        half = h * number(Fraction(1, 2))
+        gradients = [a + b for a, b in zip(slopes, added, strict=True)]
+        g, s = gradients[: len(middle)], gradients[len(middle) :]
+        moved = project(motion.turn(middle, project(g, s), middle, half), s)
+        relaxed = project(motion.relax(middle, project(s, g), half), g)
+        return [a + b for a, b in zip(moved, relaxed, strict=True)]
+
+    functions = ("energy", "entropy")
+    return _follow_gradients(motion, functions, find_rates, x, h, after, number, sweeps)
+
+
+def _follow_gradients(
+    motion: Motion,
+    functions: Sequence[str],
+    find_rates: Callable[[Row, Row, Row], Row],
+    x: Row,
+    h: Any,
+    after: Any,
+    number: Number,
+    sweeps: int,
+) -> tuple[Row, Row]:
+    """A step by discrete gradients of functions, by so many sweeps; between its ends as `rk4`.
+
+    Rates follow from the middle, the gradients there, and what discrete ones have in addition.
     """
     half = h * number(Fraction(1, 2))
-    energy = motion.find_energy(x, half)
+    first = motion.find_values(functions, x, half)
     rise = [h * k for k in motion(x, half)]
     for _ in range(sweeps):
         chord, last = rise, rise
         middle = [a + each * number(Fraction(1, 2)) for a, each in zip(x, chord, strict=True)]
-        slope = motion.find_gradient(middle, half)
-        excess = [number(Fraction(0))] * len(x)
+        slopes = motion.find_gradients(functions, middle, half)
+        excess = [number(Fraction(0))] * len(slopes)
         for node, weight in NODES:
             for part in (node, 1.0 - node):
                 at = [a + number(Fraction(part)) * b for a, b in zip(x, chord, strict=True)]
-                other = motion.find_gradient(at, half)
+                other = motion.find_gradients(functions, at, half)
                 excess = [
                     total + number(Fraction(weight)) * minus(a, b)
-                    for total, a, b in zip(excess, other, slope, strict=True)
+                    for total, a, b in zip(excess, other, slopes, strict=True)
                 ]
         given = [each.settled() for each in chord]  # the number c moves with it in a higher order
         end = [a + each for a, each in zip(x, given, strict=True)]
-        missing = minus(motion.find_energy(end, half), energy)
-        square = number(Fraction(0))
-        for a, b, step in zip(slope, excess, given, strict=True):
-            missing = minus(missing, (a.settled() + b.settled()) * step)
-            square = square + step * step
-        factor = missing / square
-        added = [a + factor * step for a, step in zip(excess, chord, strict=True)]
-        turned = motion.turn(middle, added, middle, half)
-        rates = motion(middle, half)
-        rise = [h * (a + b) for a, b in zip(rates, turned, strict=True)]
+        ends = zip(first, motion.find_values(functions, end, half), strict=True)
+        added = Row()
+        for place, (before, behind) in enumerate(ends):
+            own = slice(place * len(x), (place + 1) * len(x))
+            factor = _find_factor(slopes[own], excess[own], given, minus(behind, before), number)
+            added += [a + factor * step for a, step in zip(excess[own], chord, strict=True)]
+        rise = [h * each for each in find_rates(middle, slopes, added)]
         if _has_settled(last, rise):
             break
     end = [a + each for a, each in zip(x, rise, strict=True)]
     return _draw_cubic(motion, (x, end), h, after, number), end
+
+
+def _find_factor(slope: Row, excess: Row, chord: Row, change: Any, number: Number) -> Any:
+    """c, by which the chord is multiplied for what gradients along it miss of a change.
+
+    Gradients are means by Gauss's formula of four nodes (Abramowitz and Stegun, table 25.4).
+    """
+    missing, square = change, number(Fraction(0))
+    for a, b, step in zip(slope, excess, chord, strict=True):
+        missing = minus(missing, (a.settled() + b.settled()) * step)
+        square = square + step * step
+    return missing / square
 
 
 def _has_settled(last: Row, following: Row) -> bool:

@@ -43,6 +43,8 @@ DIGITS_OF_MPMATH: Final = MPContext()
 DIGITS_OF_MPMATH.dps = DIGITS
 _UNIT: Final = Decimal(2.0**-53)
 _FLOOR: Final = Decimal(2.0**-1074)
+#: By fewer powers of ten than these an envelope is above a value that is more than a unit of it.
+_KNOWN: Final = 15
 
 
 class Reference(Protocol):
@@ -80,7 +82,9 @@ class Bounded:
 
     def __mul__(self, other: Bounded) -> Bounded:
         one, two, mine, theirs = self.value, other.value, self.envelope, other.envelope
-        size = abs(one) * theirs + abs(two) * mine
+        size = one.copy_abs() * theirs + two.copy_abs() * mine
+        if one and mine.adjusted() - one.adjusted() < _KNOWN:  # what follows is smaller
+            return Bounded(one * two, size)
         both = _UNIT * mine * theirs  # where both factors cancel to nothing
         return Bounded(one * two, size if size >= both else both)
 
@@ -202,6 +206,21 @@ def exact(value: float | Fraction) -> Bounded:
     return Bounded(taken, abs(taken))
 
 
+def _take(value: float) -> Bounded:
+    """A double in this arithmetic; those of a point are asked for by each function of a system.
+
+    >>> _take(-0.0).value, _take(0.0).value  # which are equal, and would have one place
+    (Decimal('-0'), Decimal('0'))
+    """
+    return _known(value) if value else exact(value)
+
+
+@lru_cache(maxsize=2**14)
+def _known(value: float) -> Bounded:
+    """A double that is not zero."""
+    return exact(value)
+
+
 def call(function: str, *arguments: Bounded) -> Bounded:
     """``f(u)``, with envelope ``|f(u)| + |f'(u)| envelope(u)``.
 
@@ -287,7 +306,7 @@ def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> 
     """
     with localcontext(CONTEXT):
         try:
-            known = {name: exact(value) for name, value in inputs.items()}
+            known = {name: _take(value) for name, value in inputs.items()}
             return reference.evaluate(function, known, exact, call)
         except ArithmeticError as error:  # e.g. the exponential of 1e300
             raise OutsideDomain from error

@@ -64,9 +64,13 @@ class Motion:
         """Whether Wiener processes move it."""
         return bool(self._noise)
 
-    def find_energy(self, x: Row, after: Any) -> Any:
-        """The energy at a state."""
-        return self._find("energy", x, after)[0]
+    def find_values(self, functions: Sequence[str], x: Row, after: Any) -> Row:
+        """The rows of functions at a state, one below the other."""
+        return [row for name in functions for row in self._find(name, x, after)]
+
+    def find_gradients(self, functions: Sequence[str], x: Row, after: Any) -> Row:
+        """Their derivatives by the state, those of one function below those of another."""
+        return self.find_values([f"{name}_gradient" for name in functions], x, after)
 
     def find_gradient(self, x: Row, after: Any) -> Row:
         """The derivative of the energy by the state, with those of noise times its increments."""
@@ -82,6 +86,10 @@ class Motion:
         if n < len(x):
             rows += self._find("rhs", [*middle[:n], *x[n:]], after)[n:]
         return rows
+
+    def relax(self, x: Row, vector: Row, after: Any) -> Row:
+        """G of a metriplectic motion at a state times a vector."""
+        return self._find("metric_vector", [*x, *vector], after)
 
     def _find(self, function: str, x: Row, after: Any) -> Row:
         """The rows of a function, whose first argument may be shorter than a state."""

@@ -29,6 +29,7 @@ from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JACOBIAN, MAPPED, list_structured
+from coadjoint.methods import STRUCTURED as KEEPING
 from coadjoint.render.solvers import describe_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
@@ -66,8 +67,12 @@ NEWTON: Final = {
         ("gauss4", 4),
         ("coadjoint_mean", 2),
         ("discrete_gradient", 2),
+        ("nambu_gradient", 2),
+        ("metriplectic_gradient", 2),
     )
 }
+#: Facts of a motion that some methods need in addition to functions of its kernel.
+_MARKS: Final = ("orbits", "nambu", "metriplectic")
 #: Those whose steps are implicit.
 IMPLICIT: Final = STRUCTURED | NEWTON
 #: Those that are a sequence of maps. Compilers make those that have all the maps.
@@ -79,7 +84,7 @@ def list_choices(functions: Collection[str]) -> dict[str, Choice]:
     """The methods that are compared, as far as the names of the functions of solvers allow them."""
     if "noise" in functions:
         return CHOICES | NOISY
-    own = {each.name for each in list_structured([*functions, "orbits"])}
+    own = {each.name for each in list_structured([*functions, *_MARKS])}
     own |= list_schedules(list_maps(functions)).keys()
     newton = NEWTON if JACOBIAN in functions else {}
     return CHOICES | {
@@ -97,12 +102,17 @@ def list_compared(programs: Mapping[str, Program]) -> dict[str, Choice]:
     if not programs:
         return dict(CHOICES)
     own = describe_structured(programs)["structured"]
-    has_orbits = own["is_noisy"] or any(each.name == "coadjoint_mean" for each in own["methods"])
+    able = {each.name for each in own["methods"]}
     return {
         name: each
         for name, each in list_choices(programs).items()
-        if each.name != "coadjoint_mean" or has_orbits
+        if own["is_noisy"] or each.name in able or not _needs_mark(each.name)
     }
+
+
+def _needs_mark(method: str) -> bool:
+    """Whether functions of the kernel alone do not tell that a motion has a method."""
+    return method in KEEPING and not {*_MARKS}.isdisjoint(KEEPING[method].needs)
 
 
 class Advance(Protocol):
@@ -239,7 +249,8 @@ class NumpySolver:
         if name in IMPLICIT and not self.is_noisy:
             functions: dict[str, Any] = {"rates": rates, JACOBIAN: self._find_slopes}
             functions |= {"gradient": self._find_element, "bracket": self._turn}
-            functions["energy"] = partial(self._evaluate, "energy")
+            functions |= {"energy": partial(self._evaluate, "energy")}
+            functions |= {"evaluate": self._evaluate_all, "metric": self._relax}
             own, functions["known"] = IMPLICIT[name], self.known
             return Structured(own.name, size, functions, branches=self.branches, newton=own.newton)
         return METHODS[name](
@@ -306,6 +317,14 @@ class NumpySolver:
             return turned
         rates = self._evaluate("rates", lanes, after, np.concatenate([element[n:], state[n:]]))
         return np.concatenate([turned, rates[n:]])
+
+    def _relax(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
+        return self._evaluate("metric_vector", lanes, after, np.concatenate([state, vector]))
+
+    def _evaluate_all(
+        self, functions: Sequence[str], lanes: Lanes, after: Array, state: Array
+    ) -> Array:
+        return np.concatenate([self._evaluate(each, lanes, after, state) for each in functions])
 
     def _find_noise_slopes(self, lanes: Lanes, after: Array, state: Array) -> Array:
         rows = self._evaluate("noise_gradient", lanes, after, state)

@@ -54,7 +54,7 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
-from coadjoint.methods import BALANCE, JACOBIAN
+from coadjoint.methods import ASKED, JACOBIAN
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -211,7 +211,7 @@ def _load(
 
 def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
     """The functions of the NumPy kernel by their names in the texts of solvers."""
-    others = ("domain", "projection", "noise", "noise_gradient", JACOBIAN, *BALANCE)
+    others = ("domain", "projection", "noise", "noise_gradient", JACOBIAN, *ASKED)
     bounds = [name for name in others if name in subject.programs]
     found = {name: _numpy_function(subject, (name,)) for name in bounds}
     found["rates"] = _numpy_function(subject, kind.rates)
