@@ -101,7 +101,7 @@ MUTANTS = (
     ),
     *of(
         "methods/midpoint",
-        "Midpoint.sweep: rewrite 0.5 * rise -> rise",
+        "Midpoint.sweep: rewrite 0.5 * arc.length -> arc.length",
         "Midpoint.sweep: rewrite arc.low + _1 -> _1 - arc.low",
         tests=("tests/solve/test_structured.py -k 'bits or quadratic'",),
     ),
