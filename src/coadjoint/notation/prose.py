@@ -484,9 +484,10 @@ def _as_formula(sides: list[tuple[str, Written]]) -> Formula:
         typst += [*filter(None, [shown[2]]), whole.typst]
         mathml += [*lead, whole.mathml]
         for n, part in enumerate([each for group in whole.groups for each in group] or [whole]):
-            plus = ['<mo form="infix">+</mo>'] if n and part.sign > 0 else []
-            own = add([part]) if part.sign < 0 else part
-            pieces.append(row(*([] if n else lead), *plus, own.mathml))
+            mark = "&#x2212;" if part.sign < 0 else "+"
+            signed = [f'<mo form="infix">{mark}</mo>'] if n else []
+            own = add([part]) if part.sign < 0 and not n else bracket(replace(part, sign=1), SUM)
+            pieces.append(row(*([] if n else lead), *signed, own.mathml))
     written = literal(" ", " ".join(latex), row(*mathml), " ".join(typst))
     long = sum(len(re.sub("<[^>]*>", "", each)) for each in pieces) > SHORT
     return Formula(
