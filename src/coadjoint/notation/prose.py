@@ -19,11 +19,13 @@ from coadjoint.notation.written import (
     ATOM,
     CROSS,
     DOT,
+    PRODUCT,
     SUM,
     Written,
     add,
     attach,
     between,
+    bracket,
     call,
     divide,
     enclose,
@@ -486,7 +488,8 @@ def _as_formula(sides: list[tuple[str, Written]]) -> Formula:
         for n, part in enumerate([each for group in whole.groups for each in group] or [whole]):
             mark = "&#x2212;" if part.sign < 0 else "+"
             signed = [f'<mo form="infix">{mark}</mo>'] if n else []
-            own = add([part]) if part.sign < 0 and not n else bracket(replace(part, sign=1), SUM)
+            level = PRODUCT if n and part.sign < 0 else SUM
+            own = bracket(replace(part, sign=1), level) if n else add([part])
             pieces.append(row(*([] if n else lead), *signed, own.mathml))
     written = literal(" ", " ".join(latex), row(*mathml), " ".join(typst))
     long = sum(len(re.sub("<[^>]*>", "", each)) for each in pieces) > SHORT
