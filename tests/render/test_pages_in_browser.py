@@ -67,15 +67,17 @@ def test_a_chapter_fits_a_phone_and_says_nothing(page, name, tmp_path):
 
 
 def test_the_check_sees_what_is_too_wide(page, tmp_path):
-    """A law that cannot be moved by itself goes over the side, and is found."""
-    wide = r"\dot\mu = " + r" + ".join(r"\mathrm{ad}^*_\xi \mu" for _ in range(30))
-    section = {"title": "Rates", "law": "the law", "law_latex": wide}
+    """A definition that cannot be moved by itself goes over the side, and is found."""
+    wide = "= " + "*".join(["Omega"] * 60)
+    section = {"title": "Rates", "law": "", "kind": "definitions", "words": [("f(q)", wide)]}
     chapter = {"title": "A top", "about": "", "source": "", "description": "", "routes": []}
     chapter |= {"name": "top", "part": "1", "marks": {}, "proved": 0, "others": 0}
     text = render_book([{**chapter, "sections": [section]}])
     for spoiled in (False, True):
         path = tmp_path / "book.html"
-        path.write_text(text.replace(".law, dd {", ".other {") if spoiled else text)
+        path.write_text(
+            text.replace("dd { overflow-x: auto; overflow-y: hidden; }", "") if spoiled else text
+        )
         page.resize(390, 844)
         page.open(path)
         over, _ = page.run(OVER_THE_SIDE)
