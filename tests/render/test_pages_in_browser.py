@@ -73,6 +73,8 @@ def test_the_check_sees_what_is_too_wide(page, tmp_path):
     chapter = {"title": "A top", "about": "", "source": "", "description": "", "routes": []}
     chapter |= {"name": "top", "part": "1", "marks": {}, "proved": 0, "others": 0}
     text = render_book([{**chapter, "sections": [section]}])
+    rule = "dd { overflow-x: auto; overflow-y: hidden; }"
+    assert rule in text
     for spoiled in (False, True):
         path = tmp_path / "book.html"
         path.write_text(
