@@ -159,7 +159,8 @@ class Drawing {
   }
 
   uniform(program, name, value) {
-    const gl = this.gl, at = gl.getUniformLocation(program, name);
+    const gl = this.gl, places = (program.places ||= {}); // asked for once: an answer waits for what is being drawn
+    const at = name in places ? places[name] : (places[name] = gl.getUniformLocation(program, name));
     if (at === null) return;
     if (typeof value === "number") gl.uniform1f(at, value);
     else if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
@@ -209,7 +210,12 @@ class Drawing {
     const count = points.length - 1;
     if (count < 1) return;
     const data = new Float32Array(14 * count);
-    for (let k = 0; k < count; k++) data.set([...points[k], ...points[k + 1], ...tint(k / count), ...tint((k + 1) / count)], 14 * k);
+    let before = tint(0);
+    for (let k = 0; k < count; k++) { // no list is made for a piece: thousands in each frame would be collected at some time
+      const at = 14 * k, after = tint((k + 1) / count);
+      data.set(points[k], at); data.set(points[k + 1], at + 3); data.set(before, at + 6); data.set(after, at + 10);
+      before = after;
+    }
     this.pairs(data, count, width);
   }
 

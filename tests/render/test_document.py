@@ -80,7 +80,9 @@ def test_every_step_and_line_is_there(form, derivation):
     assert "Heavy top" in text
     assert len(derivation["sections"]) >= 4
     for section in derivation["sections"]:
-        assert ESCAPED[form](section["title"]) in text
+        words, *formula = re.split(r"(?= so\(3\))", section["title"])
+        assert ESCAPED[form](words) in text
+        assert not formula or form == "text" or ESCAPED[form](formula[0]) not in text
     lines = [line for section in derivation["sections"] for line in section["lines"]]
     assert len(lines) > 10
     if form != "text":
@@ -129,11 +131,26 @@ def test_every_formula_of_the_page_is_mathml(derivation):
         assert ET.fromstring(element).tag == "math"
 
 
+def without_formulas(page, form):
+    """A page without the formulas that were found in its words, which hold letters and signs."""
+    pattern = {"html": r"<math>.*?</math>", "latex": r"(?<!\\)\$.*?(?<!\\)\$"}[form]
+    for found in re.findall(pattern, page):
+        if form == "html":
+            tags = {each.tag for each in ET.fromstring(found).iter()}
+            assert tags <= {"math", "mrow", "mi", "mn", "mo", "mspace"}, found
+        else:
+            safe = r"\$([\w ,()+={}-]|\\(,|(left|right|operatorname|mathrm|[lr]angle)\b))*\$"
+            assert re.fullmatch(safe, found), found
+    return re.sub(pattern, "", page)
+
+
 @pytest.mark.parametrize("text", HOSTILE)
 def test_free_text_adds_no_element_to_the_page(text):
     """Hostile free text leaves the elements and attributes of the page as they are."""
-    plain = Tags(render_document(hostile("plain"), "html"))
-    spoiled = Tags(render_document(hostile(text), "html"))
+    plain, spoiled = (
+        Tags(without_formulas(render_document(hostile(each), "html"), "html"))
+        for each in ("plain", text)
+    )
     assert (spoiled.names, spoiled.attributes) == (plain.names, plain.attributes)
     assert "script" not in plain.names
 
@@ -146,8 +163,10 @@ def test_free_text_adds_no_command_to_the_latex_file(text):
     def commands(page):
         return set(re.findall(r"\\([A-Za-z]+)", page.replace(r"\\", "")))
 
-    plain = render_document(hostile("plain"), "latex")
-    spoiled = render_document(hostile(text), "latex")
+    plain, spoiled = (
+        without_formulas(render_document(hostile(each), "latex"), "latex")
+        for each in ("plain", text)
+    )
     assert commands(spoiled) <= commands(plain) | allowed
     for mark in "%$#&_^":
         bare = re.compile(r"(?<!\\)" + re.escape(mark))

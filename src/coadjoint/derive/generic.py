@@ -20,8 +20,8 @@ from coadjoint.derive.records import Left, Step, member, rate, symbol
 from coadjoint.derive.truncated import tell_motion
 from coadjoint.families import Family
 from coadjoint.notation.elements import write_sympy
+from coadjoint.notation.functions import write_sum
 from coadjoint.notation.texts import write_text
-from coadjoint.notation.trees import write_sum
 from coadjoint.notation.written import add, literal, multiply
 
 Names = Mapping[sympy.Symbol, Left]

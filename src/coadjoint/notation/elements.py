@@ -14,8 +14,8 @@ import sympy
 
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.rationals import Monomial
+from coadjoint.notation.functions import CALLS
 from coadjoint.notation.names import name
-from coadjoint.notation.trees import CALLS
 from coadjoint.notation.written import (
     Written,
     add,

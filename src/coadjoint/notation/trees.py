@@ -6,34 +6,26 @@ Comes in: a tree of `coadjoint.spec.core.tree`, and which of its names are vecto
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
+from coadjoint.notation.functions import CALLS, write_rate, write_sum
 from coadjoint.notation.names import differentiate_along, name, partial
 from coadjoint.notation.written import (
     ATOM,
-    CROSS,
-    DOT,
-    OUTER,
-    SUM,
     Written,
     add,
     attach,
-    between,
     bracket,
     call,
     divide,
-    enclose,
     literal,
     matrix,
     multiply,
     negate,
     number,
-    operator,
     power,
-    root,
-    row,
 )
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
@@ -41,23 +33,6 @@ from coadjoint.spec.core.components import Shape
 #: Functions that only printed lines have: the rate of a name, and a derivative along space.
 RATE: Final = "rate_of"
 ALONG: Final = "along_space"
-CALLS: Final[Mapping[str, Callable[..., Written]]] = {
-    "dot": lambda a, b: between(a, DOT, b),
-    "cross": lambda a, b: between(a, CROSS, b),
-    "outer": lambda a, b: between(a, OUTER, b),
-    "commutator": lambda a, b: enclose([a, b]),
-    "qmul": lambda a, b: multiply([a, b]),
-    "transpose": lambda a: _raise(a, "T", "⊤"),
-    "conjugate": lambda a: _raise(a, "*", "*"),
-    "inverse": lambda a: power(a, -1),
-    "norm": lambda a: enclose([a], "||"),
-    "abs": lambda a: enclose([a], "||"),
-    "sqrt": root,
-    "exp": lambda a: _exponential(a),
-    "vector": lambda *a: enclose(a, "()"),
-    "pow": power,
-    "hat": lambda a: _hat(a),
-}
 
 
 def write_tree(
@@ -125,14 +100,14 @@ def write_tree(
                 return call("diag", below)
             case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
                 written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)
-                return written if text not in known else _rate(below[0])
+                return written if text not in known else write_rate(below[0])
             case tree.Call(function="rate_of", arguments=(tree.Member() as of,)) if not of.indices:
                 whole = name(of.name, bold=len(shapes.get(of.name, ())) == 1)
                 place = _place(of)
                 shown = attach(whole, below=[place], dot=True)
                 return replace(shown, text=f"d{of.name}[{place.text}]/dt")
             case tree.Call(function="rate_of"):
-                return _rate(below[0])
+                return write_rate(below[0])
             case tree.Call(function="slope_of"):
                 return partial(*below)
             case tree.Call(function="along_space"):
@@ -175,68 +150,3 @@ def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:
     if isinstance(node.right, tree.Number) and not isinstance(node.left, tree.Number | tree.Name):
         return multiply([number(1 / node.right.value), top])
     return divide(top, bottom)
-
-
-def _raise(base: Written, text: str, mark: str) -> Written:
-    """A mark above: of a transpose, a conjugate."""
-    own = bracket(base, ATOM)
-    latex = r"\top" if text == "T" else text
-    return Written(
-        text=f"{own.text}^{text}",
-        latex=f"{own.latex}^{{{latex}}}",
-        mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
-        typst=f"{own.typst}^({'top' if text == 'T' else 'ast'})",
-    )
-
-
-def _exponential(exponent: Written) -> Written:
-    base = literal("e", "e", "<mi>e</mi>", "e")
-    inner = add([exponent]) if exponent.sign < 0 else exponent
-    return replace(power(base, inner), text=f"exp({inner.text})", level=ATOM)
-
-
-def _hat(vector: Written) -> Written:
-    return Written(
-        text=f"hat({vector.text})",
-        latex=rf"\widehat{{{vector.latex}}}",
-        mathml=f'<mover accent="true">{vector.mathml}{operator("^")}</mover>',
-        typst=f"hat({vector.typst})",
-    )
-
-
-def _rate(of: Written) -> Written:
-    """The rate of what has no dot of its own."""
-    return Written(
-        text=f"d({of.text})/dt" if of.level < ATOM else f"d{of.text}/dt",
-        latex=rf"\frac{{d}}{{dt}} {bracket(of, ATOM).latex}",
-        mathml=row(
-            "<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>", bracket(of, ATOM).mathml
-        ),
-        typst=f"frac(dif, dif t) {bracket(of, ATOM).typst}",
-    )
-
-
-def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Written:
-    """A sum over members, with the two sides of its condition before its term."""
-    *sides, term = below
-    listed = ", ".join(indices)
-    text, latex, typst = listed, listed, listed
-    mathml = operator(",").join(f"<mi>{i}</mi>" for i in indices)
-    if sides:
-        marks = {"!=": ("≠", r"\ne", "!="), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
-        marks |= {"<=": ("≤", r"\le", "<="), ">=": ("≥", r"\ge", ">="), "==": ("=", "=", "=")}
-        shown, in_latex, in_typst = marks[sign]
-        a, b = sides
-        text = f"{listed}, {a.text} {sign} {b.text}"
-        latex, typst = f"{a.latex} {in_latex} {b.latex}", f"{a.typst} {in_typst} {b.typst}"
-        mathml = row(a.mathml, operator(shown), b.mathml)
-    outer, term = term.sign, replace(term, sign=1)
-    own = bracket(term, SUM + 1)
-    return Written(
-        text=f"sum({text}, {term.text})",
-        latex=rf"\sum_{{{latex}}} {own.latex}",
-        mathml=row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
-        typst=f"sum_({typst}) {own.typst}",
-        level=SUM + 1,
-        sign=outer,
-    )

@@ -309,10 +309,11 @@ OUTER: Final = ("(x)", r"\otimes", "&#x2297;", "⊗")
 
 
 def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
-    """Pieces with commas between them, in brackets of a kind: ``[]``, ``{}``, ``()`` or ``||``."""
+    """Pieces with commas between them in brackets: ``[]``, ``{}``, ``()``, ``<>`` or ``||``."""
     inner = [add([part]) if part.sign < 0 else part for part in parts]
     first, last = marks[0], marks[1]
-    braces = {"{": r"\{", "}": r"\}"}
+    braces = {"{": r"\{", "}": r"\}", "<": r"\langle ", ">": r"\rangle"}
+    shown = [{"<": "⟨", ">": "⟩"}.get(mark, mark) for mark in (first, last)]
     opens, closes = (
         (r"\lvert ", r"\rvert")
         if first == "|"
@@ -323,9 +324,9 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
         text=first + ", ".join(part.text for part in inner) + last,
         latex=opens + ", ".join(part.latex for part in inner) + closes,
         mathml=row(
-            operator(first), operator(",").join(part.mathml for part in inner), operator(last)
+            operator(shown[0]), operator(",").join(p.mathml for p in inner), operator(shown[1])
         ),
-        typst=f"abs({typst})" if first == "|" else f"{first}{typst}{last}",
+        typst=f"abs({typst})" if first == "|" else f"{shown[0]}{typst}{shown[1]}",
     )
 
 

@@ -17,8 +17,11 @@ from typing import Any, Final
 
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
+from markupsafe import escape as escape_html
 
+from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
+from coadjoint.notation.written import Written
 from coadjoint.render.strict import make_environment
 
 FORMATS: Final = ("text", "latex", "html", "typst")
@@ -65,6 +68,8 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
     filled = _fill(document)
     if form == "html":
         filled["sections"] = leave_out_repeated(filled["sections"])
+    if form != "text":
+        filled = set_prose(filled, form)
     return _environment(form).get_template(f"document/{form}.j2").render(document=filled)
 
 
@@ -99,9 +104,90 @@ def leave_out_repeated(sections: Sequence[Mapping[str, Any]]) -> list[dict[str, 
     return made
 
 
+class Prose(Markup):
+    """Words with formulas between them, as a format has them, ready to be printed.
+
+    Attributes:
+        plain: The text that it was, by which columns are measured.
+    """
+
+    plain: str
+
+    @classmethod
+    def of(cls, parts: Sequence[str | Formula], plain: str, form: str) -> Prose:
+        """Words, escaped, and formulas of `coadjoint.notation.prose`."""
+        escape = _ESCAPES.get(form, _escape_html)
+        made = cls("".join(escape(p) if isinstance(p, str) else _set(p, form) for p in parts))
+        made.plain = plain
+        return made
+
+
+def _escape_html(text: str) -> str:
+    """Text in which a page sees no element."""
+    return str(escape_html(make_printable(text)))
+
+
+def _set(formula: Formula, form: str) -> str:
+    """A formula in a line."""
+    if form == "html":
+        return " ".join(f"<math>{each}</math>" for each in formula.pieces)
+    return f"${formula.written.latex if form == 'latex' else formula.written.typst}$"
+
+
+#: Sections whose words name books and routes, and hold no formula.
+_NO_FORMULAS: Final = ("principle", "references")
+
+
+def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
+    """A document in which formulas between words are set as formulas.
+
+    Names are written as its table of symbols has them.
+    """
+    sections, names = document["sections"], _list_names(document["sections"])
+
+    def prose(text: str) -> str:
+        parts = read_prose(text, names)
+        return text if parts == [text] else Prose.of(parts, text, form)
+
+    made = [dict(part) for part in sections]
+    for part in made:
+        if part["kind"] == "cost":
+            part["words"] = [(n, Prose.of(read_counts(t), t, form)) for n, t in part["words"]]
+        elif part["kind"] not in _NO_FORMULAS:
+            part["title"] = prose(part["title"])
+            part["words"] = [(prose(label), prose(text)) for label, text in part["words"]]
+        if part["kind"] in ("verdicts", "symbols"):  # whose labels are names of code
+            part["rows"] = [
+                tuple(
+                    prose(cell) if isinstance(cell, str) and n != 1 else cell
+                    for n, cell in enumerate(row)
+                )
+                for row in part["rows"]
+            ]
+        if not part["law_latex"]:
+            part["law"] = prose(part["law"])
+    return {**document, "sections": made}
+
+
+def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
+    """How the table of symbols writes names."""
+    return {
+        label: Written(
+            text=label,
+            latex=cell["latex"],
+            mathml=cell["mathml"].removeprefix("<math>").removesuffix("</math>"),
+            typst=cell["typst"],
+        )
+        for part in sections
+        if part["kind"] == "symbols"
+        for cell, label, *_ in part["rows"]
+        if isinstance(cell, Mapping)
+    }
+
+
 def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
     """Sections as HTML without a page around them."""
-    filled = _fill({"sections": sections})["sections"]
+    filled = set_prose(_fill({"sections": sections}), "html")["sections"]
     return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
 
 
@@ -113,8 +199,9 @@ def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
             by route, and how many claims are ``proved``, and how many ``others`` there are.
     """
     filled = [_fill(chapter) for chapter in chapters]
-    for chapter in filled:
+    for n, chapter in enumerate(filled):
         chapter["sections"] = leave_out_repeated(chapter["sections"])
+        filled[n] = set_prose(chapter, "html")
     contents = [
         {"title": part, "chapters": list(own)}
         for part, own in groupby(filled, key=lambda chapter: chapter["part"])
@@ -199,7 +286,8 @@ def write_law(section: Mapping[str, Any]) -> Markup | str:
         maths = to_mathml(section["law_latex"])
         if maths is not None:
             return Markup(maths)  # noqa: S704 - made of elements alone, its letters escaped
-    return str(section["law"])
+    law: str = section["law"]
+    return law
 
 
 def split_sides(mathml: str) -> tuple[str, str]:
@@ -247,10 +335,7 @@ def choose_columns(rows: Sequence[Sequence[Any]]) -> str:
     >>> choose_columns([["name", "meaning"], ["m", "mass " * 40]]).count("raggedright")
     2
     """
-    widths = [
-        max(len(cell["text"] if isinstance(cell, Mapping) else str(cell)) for cell in column)
-        for column in zip(*rows, strict=True)
-    ]
+    widths = [max(map(_measure, column)) for column in zip(*rows, strict=True)]
     room = WIDTH - 2 * len(widths)
     if sum(widths) <= room:
         return "l" * len(widths)
@@ -260,6 +345,13 @@ def choose_columns(rows: Sequence[Sequence[Any]]) -> str:
     return "".join(
         rf">{{\raggedright\arraybackslash}}p{{{share:.3f}\linewidth}}" for share in shares
     )
+
+
+def _measure(cell: Any) -> int:
+    """The characters of a cell, as plain text."""
+    if isinstance(cell, Prose):
+        return len(cell.plain)
+    return len(cell["text"] if isinstance(cell, Mapping) else str(cell))
 
 
 def wrap(text: str, indent: int = 0) -> list[str]:

@@ -1,0 +1,114 @@
+r"""Functions of a spec as a book writes them: ``cross(a, b)`` is a product with a sign.
+
+Comes in: arguments, written. Goes out: what they make, written. No tree is known here, so that
+documents are printed without the reader of specs. Read next: `coadjoint.notation.written`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Final
+
+from coadjoint.notation.written import (
+    ATOM,
+    CROSS,
+    DOT,
+    OUTER,
+    SUM,
+    Written,
+    add,
+    between,
+    bracket,
+    enclose,
+    literal,
+    multiply,
+    operator,
+    power,
+    root,
+    row,
+)
+
+#: Functions that have a sign, by name.
+CALLS: Final[Mapping[str, Callable[..., Written]]] = {
+    "dot": lambda a, b: between(a, DOT, b),
+    "cross": lambda a, b: between(a, CROSS, b),
+    "outer": lambda a, b: between(a, OUTER, b),
+    "commutator": lambda a, b: enclose([a, b]),
+    "qmul": lambda a, b: multiply([a, b]),
+    "transpose": lambda a: _raise(a, "T", "⊤"),
+    "conjugate": lambda a: _raise(a, "*", "*"),
+    "inverse": lambda a: power(a, -1),
+    "norm": lambda a: enclose([a], "||"),
+    "abs": lambda a: enclose([a], "||"),
+    "sqrt": root,
+    "exp": lambda a: _exponential(a),
+    "vector": lambda *a: enclose(a, "()"),
+    "pow": power,
+    "hat": lambda a: _hat(a),
+}
+
+
+def _raise(base: Written, text: str, mark: str) -> Written:
+    """A mark above: of a transpose, a conjugate."""
+    own = bracket(base, ATOM)
+    latex = r"\top" if text == "T" else text
+    return Written(
+        text=f"{own.text}^{text}",
+        latex=f"{own.latex}^{{{latex}}}",
+        mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
+        typst=f"{own.typst}^({'top' if text == 'T' else 'ast'})",
+    )
+
+
+def _exponential(exponent: Written) -> Written:
+    base = literal("e", "e", "<mi>e</mi>", "e")
+    inner = add([exponent]) if exponent.sign < 0 else exponent
+    return replace(power(base, inner), text=f"exp({inner.text})", level=ATOM)
+
+
+def _hat(vector: Written) -> Written:
+    return Written(
+        text=f"hat({vector.text})",
+        latex=rf"\widehat{{{vector.latex}}}",
+        mathml=f'<mover accent="true">{vector.mathml}{operator("^")}</mover>',
+        typst=f"hat({vector.typst})",
+    )
+
+
+def write_rate(of: Written) -> Written:
+    """The rate of what has no dot of its own."""
+    return Written(
+        text=f"d({of.text})/dt" if of.level < ATOM else f"d{of.text}/dt",
+        latex=rf"\frac{{d}}{{dt}} {bracket(of, ATOM).latex}",
+        mathml=row(
+            "<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>", bracket(of, ATOM).mathml
+        ),
+        typst=f"frac(dif, dif t) {bracket(of, ATOM).typst}",
+    )
+
+
+def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Written:
+    """A sum over members, with the two sides of its condition before its term."""
+    *sides, term = below
+    listed = ", ".join(indices)
+    text, latex, typst = listed, listed, listed
+    mathml = operator(",").join(f"<mi>{i}</mi>" for i in indices)
+    if sides:
+        marks = {"!=": ("≠", r"\ne", "!="), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
+        marks |= {"<=": ("≤", r"\le", "<="), ">=": ("≥", r"\ge", ">="), "==": ("=", "=", "=")}
+        shown, in_latex, in_typst = marks[sign]
+        a, b = sides
+        text = f"{listed}, {a.text} {sign} {b.text}"
+        latex, typst = f"{a.latex} {in_latex} {b.latex}", f"{a.typst} {in_typst} {b.typst}"
+        mathml = row(a.mathml, operator(shown), b.mathml)
+    outer, term = term.sign, replace(term, sign=1)
+    own = bracket(term, SUM + 1)
+    return Written(
+        text=f"sum({text}, {term.text})",
+        latex=rf"\sum_{{{latex}}} {own.latex}",
+        mathml=row(f"<munder><mo>∑</mo>{row(mathml)}</munder>", own.mathml),
+        typst=f"sum_({typst}) {own.typst}",
+        level=SUM + 1,
+        sign=outer,
+    )

@@ -1,0 +1,108 @@
+"""Formulas within sentences are found, and words stay words."""
+
+import re
+import time
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from coadjoint.chapter import complete
+from coadjoint.notation.names import name
+from coadjoint.notation.prose import Formula, read_counts, read_prose
+from coadjoint.render.document import render_document
+
+
+def show(text, names=None):
+    """The text with its formulas as LaTeX between dollar signs."""
+    parts = read_prose(text, names)
+    return "".join(each if isinstance(each, str) else f"${each.written.latex}$" for each in parts)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("the energy is conserved, for N >= 2", r"the energy is conserved, for $N \ge 2$"),
+        ("{K, P} = -M*diag(m)", r"$\{K, P\} = -M\,\operatorname{diag}\left(m\right)$"),
+        ("dot(Pi, Gamma) is a Casimir", r"$\Pi \cdot \Gamma$ is a Casimir"),
+        ("where |Gamma| = 1.", r"where $\lvert \Gamma\rvert = 1$."),
+        ("of degree <= 2 in Pi", r"of degree $\le 2$ in $\Pi$"),
+        ("keeps dh/dmu = xi", r"keeps $\frac{\partial h}{\partial \mu} = \xi$"),
+        ("L D L^T = B^T M B: solved", r"$L\,D\,L^{\top} = B^{\top}\,M\,B$: solved"),
+        ("J_[xi, eta]", r"${J}_{[\xi, \eta]}$"),
+        ("dL/dt = [L, M] for every lambda", r"$\dot{L} = [L, M]$ for every $\lambda$"),
+        ("p^* . v - h(p), at v", r"$p^{*} \cdot v - h(p)$, at $v$"),
+        ("-<P dh, G P dh>", r"$-\langle P\,dh, G\,P\,dh\rangle$"),
+        ("waves up to 2 K come", r"waves up to $2\,K$ come"),
+        ("1/2*m^2/r", r"$\frac{1}{2}\,\frac{{m}^{2}}{r}$"),
+        ("v -> -v", r"$v \to -v$"),
+        ("so(3) (s) R^3", r"$\operatorname{so}\left(3\right) \ltimes {R}^{3}$"),
+        ("through Pi = p_Gamma x Gamma", r"through $\Pi = p_{\Gamma} \times \Gamma$"),
+        ("= sqrt(A^2 - 1)", r"$= \sqrt{{A}^{2} - 1}$"),
+    ],
+)
+def test_a_formula_is_found_in_a_sentence(text, shown):
+    """Its signs are those of a book, and the words around it stay."""
+    assert show(text) == shown
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "euler-poincare and Lie-Poisson give a 2-form",
+        "every point(s) of [poisson] (section 3)",
+        "Newton's law is a law",
+        "A body. A disk, and 418931385270818879 points",
+        "so4_body",
+        "energy, spin and a",
+        "dop853",
+    ],
+)
+def test_words_stay_words(text):
+    """Names of routes, plurals, articles, numbers and names of code are no formulas."""
+    assert read_prose(text) == [text]
+
+
+def test_nothing_of_a_text_is_lost_and_every_piece_is_whole():
+    """Words are those of the text in order, and each piece of a formula is one element."""
+    text = "no (a + b*(c, in it: x - " + " + ".join(f"a{n}*b{n}^2" for n in range(40)) + " is 0"
+    parts = read_prose(text)
+    (formula,) = (each for each in parts if isinstance(each, Formula) and len(each.pieces) > 1)
+    assert len(formula.pieces) == 41
+    for piece in formula.pieces:
+        ET.fromstring(piece.replace("&#x2212;", "-"))
+    rest = text
+    for words in (each for each in parts if isinstance(each, str)):
+        _, found, rest = rest.partition(words)
+        assert found
+
+
+def test_names_are_written_as_they_are_given():
+    """A vector is bold, also where it is varied."""
+    bold = {"Pi": name("Pi", bold=True)}
+    assert show("dot(Pi, Pi) dPi", bold).count(r"\boldsymbol{\Pi}") == 3
+
+
+@pytest.mark.parametrize(
+    "text", ["(" * 5000, "a + (" * 900, "tr " * 1900, "9" * 9000, "(a + " * 900, "a*" * 900]
+)
+def test_free_text_costs_little(text):
+    """Whatever a description says, it is read to its end in a moment."""
+    began = time.process_time()
+    read_prose(text)
+    assert time.process_time() - began < 2
+
+
+@pytest.mark.parametrize("form", ["html", "latex", "typst"])
+def test_proofs_and_costs_are_set(form, tmp_path):
+    """No claim of a page has the signs of code; the text has them still."""
+    (tmp_path / "kernel_python.py").write_text("def rhs(a, b):\n    return a * b - a / b\n")
+    claim = {"statement": "{K, P} = -M*diag(m)^2", "kind": "bracket", "verdict": "proved"}
+    record = {"title": "A top", "about": "", "source": "", "description": "", "sections": []}
+    made = complete(record, {"claims": [{**claim, "method": "R^2 = 1"}]}, tmp_path)
+    text, page = render_document(made), render_document(made, form)
+    assert "1 *, 1 -, 1 /" in text
+    assert text.count("-M*diag(m)^2") == 1
+    assert not re.search(r"M\*|\d [*] *,|R\^2|R\\\^2|1 \*", page)
+    product = {"html": "<mo>×</mo>", "latex": r"$\times$", "typst": "$times$"}
+    assert page.count(product[form]) == 1
+    assert [each.pieces for each in read_counts("3 sqrt, 2 *")[1:]] == [("<mo>×</mo>",)]
