@@ -76,7 +76,7 @@ JUDGES = {
     "src/coadjoint/render": KERNELS,
     "templates": KERNELS,
 }
-COPIED = ("src", "templates", "derivations", "tests", "pyproject.toml")
+COPIED = ("src", "templates", "derivations", "examples", "tests", "pyproject.toml")
 #: pytest's exit statuses for a failed test and for a tree that cannot even be imported.
 KILLED = (1, 2, 4)
 

@@ -1,6 +1,7 @@
 """Every free system that is shipped, damped, driven and forced: read, derived, its power proved."""
 
 import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -83,7 +84,22 @@ def variant(name, *drives):
     if parts:
         own = tables["forces"].get(first.name, "")
         tables["forces"][first.name] = " + ".join([*filter(None, [own]), *parts])
+    drop_unread_inputs(tables)
     return read_spec_text(text_of(tables), Path(f"{name}.toml"))
+
+
+def drop_unread_inputs(tables):
+    """Inputs of forces that were dropped are named by no formula."""
+    words = ("variables", "parameters", "inputs", "observables")  # with descriptions of their own
+    formulas = {k: x for k, x in tables.items() if isinstance(x, dict) and k not in words}
+    named = {*re.findall(r"\w+", text_of(formulas))}
+    kept = {n: x for n, x in tables.pop("inputs", {}).items() if named & names_of(n, x)}
+    tables |= {"inputs": kept} if kept else {}
+
+
+def names_of(name, table):
+    """How formulas may name an input: as a whole, or by components."""
+    return {name, *(f"{name}{n}" for n in range(1, 1 + max(table.get("shape", [0]))))}
 
 
 def along(variable, formula):
