@@ -179,7 +179,7 @@ def test_a_header_tests_itself(tested, compiler):
 @pytest.mark.parametrize(
     ("method", "old", "new"),
     [
-        ("midpoint", "0.5 * rise[i]", "0.499999999999 * rise[i]"),
+        ("midpoint", "half = 0.5 * arc", "half = 0.499999999999 * arc"),
         ("midpoint", "parameters[2] = parameters->I3", "parameters[2] = parameters->I2"),
         ("rk4", "_rows[0] = _p3 * Pi2 * Pi3", "_rows[0] = _p3 * (Pi2 * Pi3)"),
     ],
