@@ -113,7 +113,7 @@ class Compiler:
         lowest = int(build == "fast")  # without optimisation nothing is fused
         level = min(source.level, max(_allowed_level(), lowest))
         fusing = _FUSING if self.is_gnu and level == 1 else ()
-        hasty = _HASTY if fusing and source.level == 1 else ()  # users who ask for it have loops
+        hasty = _HASTY if fusing and source.level == 1 else ()  # the cross-check, never users
         suited = (f"-O{level}", *fusing, *hasty, *own, *machine)
         return (*_FLAGS, *suited, BUILDS[build], *source.defines, *_SHARED)
 

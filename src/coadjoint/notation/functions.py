@@ -29,6 +29,16 @@ from coadjoint.notation.written import (
     row,
 )
 
+#: Relations, as LaTeX, MathML and Typst have them.
+RELATIONS: Final[Mapping[str, tuple[str, str, str]]] = {
+    "=": ("=", "=", "="),
+    "==": ("=", "=", "="),
+    "!=": (r"\ne", "≠", "!="),
+    "<": ("<", "&lt;", "<"),
+    ">": (">", "&gt;", ">"),
+    "<=": (r"\le", "≤", "<="),
+    ">=": (r"\ge", "≥", ">="),
+}
 #: Functions that have a sign, by name.
 CALLS: Final[Mapping[str, Callable[..., Written]]] = {
     "dot": lambda a, b: between(a, DOT, b),
@@ -95,9 +105,7 @@ def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Writ
     text, latex, typst = listed, listed, listed
     mathml = operator(",").join(f"<mi>{i}</mi>" for i in indices)
     if sides:
-        marks = {"!=": ("≠", r"\ne", "!="), "<": ("&lt;", "<", "<"), ">": ("&gt;", ">", ">")}
-        marks |= {"<=": ("≤", r"\le", "<="), ">=": ("≥", r"\ge", ">="), "==": ("=", "=", "=")}
-        shown, in_latex, in_typst = marks[sign]
+        in_latex, shown, in_typst = RELATIONS[sign]
         a, b = sides
         text = f"{listed}, {a.text} {sign} {b.text}"
         latex, typst = f"{a.latex} {in_latex} {b.latex}", f"{a.typst} {in_typst} {b.typst}"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from coadjoint.notation.functions import CALLS, write_rate, write_sum
+from coadjoint.notation.functions import CALLS, RELATIONS, write_rate, write_sum
 from coadjoint.notation.names import member, name, partial, spell
 from coadjoint.notation.written import (
     ATOM,
@@ -47,16 +47,7 @@ _TOKEN: Final = re.compile(
     r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
     re.ASCII,
 )
-_RELATIONS: Final = {
-    "=": ("=", "=", "="),
-    "==": ("=", "=", "="),
-    "<=": (r"\le", "≤", "<="),
-    ">=": (r"\ge", "≥", ">="),
-    "!=": (r"\ne", "≠", "!="),
-    "->": (r"\to", "→", "->"),
-    "<": ("<", "&lt;", "<"),
-    ">": (">", "&gt;", ">"),
-}
+_RELATIONS: Final = {**RELATIONS, "->": (r"\to", "→", "->")}
 #: Brackets, and other things in which formulas stand, that are read within each other; digits of a
 #: whole number; pieces of a text. What has more is left as it is: a description is free text.
 DEEPEST: Final = 24

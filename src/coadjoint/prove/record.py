@@ -21,7 +21,7 @@ from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
-#: Characters of MathML beyond which components beside vectors are too long for a notebook.
+#: A notebook shows components beside vectors if their formulas, as MathML, have no more characters.
 LONGEST_MOTION: Final = 20_000
 
 
