@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from coadjoint.derive.fields.profiles import evaluate_profile
+from coadjoint.exact import dense
 from coadjoint.solve.strands import NODES, find_steps
 
 if TYPE_CHECKING:
@@ -91,18 +92,12 @@ def _find_frames(strand: Strand, bodies: int, first: Fraction) -> Array:
     nodes = []
     for node in NODES:
         strains = _evaluate(strand, strand.strain.name, (s + h * Fraction(node) for s in begins))
-        nodes.append(float(h * length[0]) * _hat(strains).transpose(0, 2, 1))
+        turning: Array = np.array(dense.hat(tuple(strains.T)))
+        # each matrix transposed
+        nodes.append(float(h * length[0]) * turning.transpose(2, 1, 0))
     frames = [np.eye(3)]
     for step in find_steps(nodes) if begins else ():  # none of a single body
         frames.append(step @ frames[-1])
     # by columns: the transpose of R follows from the left
     found = np.array(frames[::pieces]).transpose(0, 2, 1)
     return np.concatenate([found, found[-1:]]) if space.has_ends else found
-
-
-def _hat(vectors: Array) -> Array:
-    """Matrices of cross products, ``(N, 3, 3)``."""
-    x, y, z = vectors.T
-    zero = np.zeros_like(x)
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.array(rows).transpose(2, 0, 1)
