@@ -44,7 +44,7 @@ def made(monkeypatch):
 
     def make(method, folder=None, spoil=lambda texts: texts):
         system, files = plain.subject(SWING), plain.texts_of(SWING, spoil).files
-        functions = _list_functions(system, SOLVER)
+        functions = _list_functions(system, load_numpy(texts["kernel.py"]), SOLVER)
         numpy = NumpySolver(load_numpy(files["solver.py"]), functions)
         advance = {method: {"numpy": numpy.advance(method)}}
         if folder:

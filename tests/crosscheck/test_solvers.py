@@ -321,7 +321,8 @@ def test_a_function_without_its_suffix_is_caught():
 def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exact"):
     """Solvers of some methods, in NumPy and perhaps in C."""
     system, files = subject(context), texts_of(context, spoil).files
-    functions = _list_functions(system, SOLVER)
+    kernel = load_numpy(texts_by_name(context.name)["kernel.py"])
+    functions = _list_functions(system, kernel, SOLVER)
     strict = tuple(bound.strict for bound in context.domain)
     numpy = NumpySolver(load_numpy(files["solver.py"]), functions, strict)
     advance = {method: {"numpy": numpy.advance(method)} for method in methods}

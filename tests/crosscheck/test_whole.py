@@ -85,9 +85,10 @@ def test_wrong_equations_are_caught_by_the_power_series():
 
 def test_a_wrong_kernel_is_caught_by_steps():
     """The methods in NumPy ask the function reconstruction of the kernel."""
-    wrong = subject(kernel=changed("_t3 + 1.0000001*r"))
+    wrong = dict(render_system(changed("_t3 + 1.0000001*r")))
+    texts = rendered() | {"kernel.py": wrong["kernel.py"]}
     with pytest.raises(CrossCheckError, match="rung 4: followed: a step of dop853, numpy: y is"):
-        check_solvers(wrong, rendered(), {}, RECONSTRUCTION)
+        check_solvers(subject(), texts, {}, RECONSTRUCTION)
 
 
 @pytest.mark.parametrize(

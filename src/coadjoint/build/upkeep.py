@@ -7,6 +7,7 @@ people. Read next: `coadjoint.build.cache`, which calls `evict` after each new o
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import time
 from collections.abc import Iterator
@@ -39,12 +40,12 @@ class _Entry:
     """Something that can be removed by itself.
 
     Attributes:
-        path: A file, or the folder of a system.
+        path: Of a file, or of the folder of a system.
         size: Bytes on the disk, about.
         used: When it was written or used last.
     """
 
-    path: Path
+    path: str
     size: int
     used: float
 
@@ -61,36 +62,41 @@ def evict(folder: Path, most: int = CACHE_BYTES) -> None:
     for entry in entries:
         if total <= most:
             return
-        fresh = entry.used > time.time() - IN_USE
-        if entry.path.parent.name == SYSTEMS and fresh:
+        path, fresh = Path(entry.path), entry.used > time.time() - IN_USE
+        if path.parent.name == SYSTEMS and fresh:
             continue
         with suppress(OSError):
-            remove(entry.path)
+            remove(path)
             total -= entry.size
 
 
 def _entries(folder: Path) -> Iterator[_Entry]:
     """Everything that may be evicted."""
     for name in _OURS:
-        for path in list_kept(folder / name):
+        for kept in _scan(folder / name):
             with suppress(OSError):
-                yield _entry(path)
+                yield _entry(kept)
 
 
 def list_kept(folder: Path) -> list[Path]:
     """What runs keep in a folder of the cache, by its name."""
-    with suppress(OSError):
-        return sorted(each for each in folder.iterdir() if _OURS[folder.name].fullmatch(each.name))
+    return sorted(Path(kept.path) for kept in _scan(folder))
+
+
+def _scan(folder: Path) -> list[os.DirEntry[str]]:
+    """The same as the system lists it: each new object asks for thousands, and paths are slow."""
+    with suppress(OSError), os.scandir(folder) as found:
+        return [each for each in found if _OURS[folder.name].fullmatch(each.name)]
     return []
 
 
-def _entry(path: Path) -> _Entry:
+def _entry(kept: os.DirEntry[str]) -> _Entry:
     """A file, or a folder with all that is in it."""
-    parts = [path.lstat()]
-    if path.is_dir() and not path.is_symlink():
-        parts += [inner.lstat() for inner in path.rglob("*")]
+    parts = [kept.stat(follow_symlinks=False)]
+    if kept.is_dir(follow_symlinks=False):
+        parts += [inner.lstat() for inner in Path(kept.path).rglob("*")]
     size = sum(-(-each.st_size // PAGE) * PAGE for each in parts)
-    return _Entry(path, size, max(each.st_mtime for each in parts))
+    return _Entry(kept.path, size, max(each.st_mtime for each in parts))
 
 
 def find_problems(folder: Path) -> list[str]:

@@ -126,7 +126,7 @@ def _expect(
     return batch, np.ascontiguousarray(numpy)
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class _Stopping:
     """A value that notes where its language would stop; an arithmetic for `run`.
 

@@ -315,11 +315,7 @@ def _read_python_part(
     text: str, part: str, name: str, file: str, read_value: Callable[[str, str], Node]
 ) -> _Text:
     """A part of a module."""
-    found = [
-        item
-        for item in ast.parse(text).body
-        if isinstance(item, ast.FunctionDef) and item.name == f"_{part}"
-    ]
+    found = [item for item in _list_functions(text) if item.name == f"_{part}"]
     if len(found) != 1:
         raise failure(f"{file} has no function {part!r}", name)
     read = _Text()
@@ -343,6 +339,12 @@ def _read_python_part(
     if ast.unparse(last).rstrip(",)") != f"return ({outs}":
         raise _refuse(file, part, last, name)
     return read
+
+
+@lru_cache(maxsize=4)
+def _list_functions(text: str) -> list[ast.FunctionDef]:
+    """The functions of a module, each part of which asks for them."""
+    return [item for item in ast.parse(text).body if isinstance(item, ast.FunctionDef)]
 
 
 def _refuse(file: str, part: str, line: ast.stmt, name: str) -> CrossCheckError:

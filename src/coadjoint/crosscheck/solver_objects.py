@@ -340,7 +340,7 @@ class NumpySolver:
 
 
 def load_numpy(text: str) -> dict[str, Any]:
-    """What names of the text of a solver in NumPy stand for."""
+    """What names of the text of a kernel or solver in NumPy stand for."""
     module: dict[str, Any] = {}
     exec(compile(text, "solver.py", "exec"), module)  # noqa: S102 (it is a module)
     return module

@@ -16,9 +16,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -50,13 +49,13 @@ from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.crosscheck.whole import make_whole
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import list_maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import ASKED, JACOBIAN
 from coadjoint.render.kernels import list_called
 from coadjoint.render.solvers import arrange, select_programs
+from coadjoint.render.targets import BUILDS
 from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: The method whose fast build is compiled as well: builds differ in flags alone, which one shows.
@@ -137,7 +136,8 @@ def check_solvers(
         CompilerError: An object cannot be compiled.
         CrossCheckError: A rung failed.
     """
-    functions, base = _list_functions(subject, kind), subject
+    kernel, base = load_numpy(texts[BUILDS["numpy"].kernel]), subject
+    functions = _list_functions(subject, kernel, kind)
     programs = select_programs(subject.programs.values(), kind, subject.maps)
     subject, programs = make_whole(subject, programs, kind), hold_sides(programs)
     text = arrange(programs)
@@ -209,37 +209,35 @@ def _load(
     return advance
 
 
-def _list_functions(subject: Subject, kind: SolverKind) -> dict[str, Function]:
+def _list_functions(
+    subject: Subject, kernel: Mapping[str, Any], kind: SolverKind
+) -> dict[str, Function]:
     """The functions of the NumPy kernel by their names in the texts of solvers."""
     others = ("domain", "projection", "noise", "noise_gradient", JACOBIAN, *ASKED)
     bounds = [name for name in others if name in subject.programs]
-    found = {name: _numpy_function(subject, (name,)) for name in bounds}
-    found["rates"] = _numpy_function(subject, kind.rates)
+    found = {name: _numpy_function(subject, kernel, (name,)) for name in bounds}
+    found["rates"] = _numpy_function(subject, kernel, kind.rates)
     if "projection" in found and kind != SOLVER:
         found["projection"] = _leave_below(found["projection"], subject.programs["rhs"])
     return found
 
 
-def _numpy_function(subject: Subject, names: Sequence[str]) -> Function:
-    """The rows of some functions of the NumPy kernel, one below the other."""
-    program = subject.programs[names[0]]
-    inputs = len(program.inputs)
+def _numpy_function(subject: Subject, kernel: Mapping[str, Any], names: Sequence[str]) -> Function:
+    """The rows of some functions of the NumPy kernel, one below the other.
+
+    They are called thousands of times for few members, so that checks of arguments would show.
+    """
+    programs = [subject.programs[name] for name in names]
+    inputs, has_time = len(programs[0].inputs), bool(programs[0].time)
 
     def function(state: Array, parameters: Array, driving: Array) -> Array:
-        shared = [np.ascontiguousarray(parameters)]
-        shared += [np.ascontiguousarray(driving[:inputs])] if inputs else []
-        named = {"time": np.ascontiguousarray(driving[inputs])} if program.time else {}
-        rows = []
-        for name in names:
-            each = subject.programs[name]
-            own = np.ascontiguousarray(state[: len(each.state)])
-            block = np.empty((*each.shape, state.shape[1]))
-            call = getattr(subject.system, name)
-            if KERNEL_FUNCTIONS[name].below == "vector":  # which stands below the state already
-                call = partial(subject.system.evaluate, name)
-            call(own, *shared, **named, target="numpy", out=block)
-            rows.append(block.reshape(-1, state.shape[1]))
-        return np.concatenate(rows)
+        given = (driving[:inputs],) if inputs else ()
+        named = {"time": driving[inputs]} if has_time else {}
+        blocks = (
+            kernel[each.name](state[: len(each.state)], parameters, *given, **named)
+            for each in programs
+        )
+        return np.concatenate([block.reshape(-1, state.shape[1]) for block in blocks])
 
     return function
 

@@ -8,11 +8,18 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from types import ModuleType
+from functools import lru_cache
+from types import CodeType, ModuleType
 from typing import Any
 
 from coadjoint.errors import OutputError, system_error
 from coadjoint.render.targets.protocol import Generated, Kernel
+
+
+@lru_cache(maxsize=64)
+def _compile(content: bytes, path: str) -> CodeType:
+    """The code of a file; each run of a simulation asks for that of its kernel."""
+    return compile(content, path, "exec")
 
 
 class KernelModule(Kernel):
@@ -31,7 +38,7 @@ class KernelModule(Kernel):
         module = ModuleType(f"_coadjoint_{system.name}_{self.path.stem}")
         try:
             content = self.path.read_bytes()
-            exec(compile(content, self.path, "exec"), module.__dict__)  # noqa: S102 (it is a module)
+            exec(_compile(content, str(self.path)), module.__dict__)  # noqa: S102 (it is a module)
             identity = module.ID
         except Exception as error:
             raise system_error(error) or self.explain_broken(

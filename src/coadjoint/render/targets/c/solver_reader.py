@@ -117,10 +117,10 @@ def read_function(text: str, function: str, file: str) -> SolverBody:
     Raises:
         CrossCheckError: It has a line that no template prints.
     """
-    found = re.search(_pattern(function), text, re.DOTALL | re.MULTILINE)
-    if not found:
+    _, begin, end = _find_body(text, function)
+    if end < 0:
         raise failure(f"{file} has no function {function!r}", function)
-    inside = re.sub(r"/\*.*?\*/", "", found[1], flags=re.DOTALL)
+    inside = re.sub(r"/\*.*?\*/", "", text[begin:end], flags=re.DOTALL)
     return _Reading(function, file).read(_UNROLLED.sub("", inside, count=1))
 
 
@@ -141,13 +141,22 @@ def rest(text: str, *, is_looped: bool) -> str:
     """The text without what belongs to the system: bodies of its functions, and tables."""
     for function in _FUNCTIONS:
         if not (is_looped and function in LOOPED):
-            text = re.sub(_pattern(function), f"{function} {{}}", text, count=1, flags=re.S | re.M)
+            head, _, end = _find_body(text, function)
+            if end >= 0:
+                text = f"{text[:head]}{function} {{}}{text[end + 1 :]}"
     return _TABLE.sub(r"\1 {}", text)
 
 
-def _pattern(function: str) -> str:
-    """What finds the body of a function."""
-    return rf"^{re.escape(_FUNCTIONS[function])}\n\{{\n(.*?)^\}}$"
+def _find_body(text: str, function: str) -> tuple[int, int, int]:
+    """Where a function begins, its body, and where that ends, at its brace; -1 where there is none.
+
+    Texts are long, and a pattern would try each of their letters.
+    """
+    head = f"\n{_FUNCTIONS[function]}\n{{\n"
+    at = text.find(head)
+    begin = at + len(head)
+    end = text.find("\n}\n", begin - 1) if at >= 0 else -1
+    return at + 1, begin, end + 1 if end >= 0 else -1
 
 
 class _Reading:
