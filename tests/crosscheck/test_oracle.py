@@ -17,12 +17,12 @@ from coadjoint.crosscheck.oracle import (
     CONTEXT,
     Bounded,
     OutsideDomain,
-    _take,
     call,
     error_in_envelopes,
     errors,
     exact,
     oracle,
+    take,
 )
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.program import FUNCTIONS, evaluate
@@ -231,8 +231,8 @@ def test_products_have_their_sizes_however_much_factors_cancel(monkeypatch):
 
 def test_zeros_of_both_signs_stay_apart():
     """The same doubles are taken once, and zeros each time."""
-    pairs = [(each, _take(each).value) for each in (0.0, -0.0, 0.0, 1.5, -1.5, 1.5)]
+    pairs = [(each, take(each).value) for each in (0.0, -0.0, 0.0, 1.5, -1.5, 1.5)]
     for double, taken in pairs:
         assert float(taken) == double
         assert math.copysign(1.0, taken) == math.copysign(1.0, double)
-    assert _take(1.5) is _take(1.5)
+    assert take(1.5) is take(1.5)

@@ -9,18 +9,14 @@ Read next: `coadjoint.crosscheck.bits`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
+
+from coadjoint.crosscheck.columns import find_exact
 from coadjoint.crosscheck.hard import BATCHES, hard_batches
-from coadjoint.crosscheck.oracle import (
-    Bounded,
-    OutsideDomain,
-    distance_in_envelopes,
-    errors,
-    oracle,
-)
+from coadjoint.crosscheck.oracle import Bounded, distance_in_envelopes, errors
 from coadjoint.crosscheck.points import Array, Batch
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
@@ -81,14 +77,18 @@ def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
         function: Which function.
         count: How many points, at the least.
     """
-    batches = []
-    for batch in hard_batches(subject, function, -(-count // BATCHES)):
-        exact = {}
-        for member, inputs in enumerate(subject.members(batch)):
-            with suppress(OutsideDomain):
-                exact[member] = oracle(subject.reference, function, inputs)
-        batches.append((batch, exact))
-    return ExactPoints(function, batches)
+    batches = list(hard_batches(subject, function, -(-count // BATCHES)))
+    parts = [
+        {name: np.broadcast_to(row, batch.size) for name, row in subject.values(batch).items()}
+        for batch in batches
+    ]
+    rows = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    known, first, found = find_exact(subject.reference, function, rows), 0, []
+    for batch in batches:
+        members = {n: known[first + n] for n in range(batch.size) if first + n in known}
+        found.append((batch, members))
+        first += batch.size
+    return ExactPoints(function, found)
 
 
 def against_oracle(subject: Subject, points: ExactPoints) -> Agreement:

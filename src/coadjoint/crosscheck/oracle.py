@@ -206,10 +206,10 @@ def exact(value: float | Fraction) -> Bounded:
     return Bounded(taken, abs(taken))
 
 
-def _take(value: float) -> Bounded:
+def take(value: float) -> Bounded:
     """A double in this arithmetic; those of a point are asked for by each function of a system.
 
-    >>> _take(-0.0).value, _take(0.0).value  # which are equal, and would have one place
+    >>> take(-0.0).value, take(0.0).value  # which are equal, and would have one place
     (Decimal('-0'), Decimal('0'))
     """
     return _known(value) if value else exact(value)
@@ -306,7 +306,7 @@ def oracle(reference: Reference, function: str, inputs: Mapping[str, float]) -> 
     """
     with localcontext(CONTEXT):
         try:
-            known = {name: _take(value) for name, value in inputs.items()}
+            known = {name: take(value) for name, value in inputs.items()}
             return reference.evaluate(function, known, exact, call)
         except ArithmeticError as error:  # e.g. the exponential of 1e300
             raise OutsideDomain from error
