@@ -36,7 +36,7 @@ def one_by_one(reference, points):
 
 
 def compare(reference, points):
-    """Points and outputs that agree: values to the last digit, envelopes as far as they are read."""
+    """Points and outputs that agree: values to the last digit, envelopes as they are read."""
     expected, found = one_by_one(reference, points), find_exact(reference, "f", points)
     assert found.keys() == expected.keys()
     count = 0
