@@ -176,6 +176,7 @@ CORE = (
             *distributions.FORCED,
             *distributions.DRIVEN,
             "tests/prove/test_driven.py -k 'constraints_that_move_with or kept_constraint'",
+            *distributions.TURNTABLE,
         ),
         fallacies={"_right_side: drop gyroscopic": "a constraint put in before varying"},
     ),
@@ -194,7 +195,7 @@ CORE = (
         "frames",
         "along bracket _extend rates_apart",
         systems=(),
-        tests=distributions.FRAMES,
+        tests=(*distributions.FRAMES, *distributions.TURNTABLE),
         fallacies={
             "_extend: omit sign in return": "forces of a left-invariant body on a right one"
         },
