@@ -109,7 +109,7 @@ CORE = (
         "poisson",
         "hamiltonian_equations",
         systems=("nambu_body", "sp2_momentum", "kepler", "heavy_top"),
-        tests=coordinates.PAIRED_TWICE,
+        tests=(*coordinates.PAIRED_TWICE, "tests/derive/test_products.py -k paired_by_the_trace"),
         equivalent={
             "hamiltonian_equations: swap bracket": "the step that shows the bracket",
             "hamiltonian_equations: transpose tensor": "the step that shows the bracket",
