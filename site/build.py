@@ -25,6 +25,7 @@ import click
 import coadjoint
 from coadjoint.cli.arguments import shipped_names, spec_path
 from coadjoint.fingerprint import digest, engine_fingerprint
+from coadjoint.render.document import set_text
 from coadjoint.resources import templates_folder
 from coadjoint.spec import read_spec
 
@@ -150,7 +151,7 @@ def write_system(made: Made) -> str:
     """The page of a system."""
     lines = [f"# {made.title}", ""]
     if made.about:
-        lines += [made.about, ""]
+        lines += [f"<p>{set_text(made.about)}</p>", ""]
     if "picture.png" in made.parts:
         lines += [f"![A motion of {made.title}](../_static/pictures/{made.name}.png)", ""]
     links = []

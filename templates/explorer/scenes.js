@@ -440,7 +440,7 @@ class FieldScene extends Scene {
     super(model, drawing);
     this.hint = "Drag to look around; the coloured curve is the field";
     this.camera.pitch = 0.5;
-    this.camera.distance = 7.5;
+    this.camera.distance = 8.2;
     const values = this.curve();
     this.scale = 1 / Math.max(...values.map((v) => Math.hypot(...v)), 1e-9);
   }
@@ -461,7 +461,7 @@ class FieldScene extends Scene {
     const every = Math.max(1, Math.floor(count / 64));
     for (let i = 0; i < count; i += every) drawing.line([ring[i], tips[i]], (s) => [...hue(i / count), 0.25 + 0.6 * s], 2);
     drawing.line([...tips, tips[0]], (s) => [...hue(s), 1], 4.5);
-    this.label(scene.tables.state[0].name, tips[0]);
+    this.label(scene.tables.state[0].name, plus(tips[0], [0.15, 0, 0.1]));
   }
 }
 /* Colours around a ring that readers without one kind of cone tell apart by their lightness. */

@@ -119,22 +119,30 @@ def test_a_spoiled_pair_is_caught(factor, monkeypatch):
     assert verdicts(BODY)["{q, p} = 1"] is Verdict.REFUTED
 
 
-def test_entries_of_symmetric_matrices_are_paired_by_the_trace():
-    """``{S12, P12} = 1/2``, and 1 on the diagonal, as without an algebra."""
-    shaped = (
-        (
-            'q = { role = "coordinate" }',
-            'q = { role = "coordinate", shape = [3], form = "symmetric" }',
-        ),
-        ('v = { role = "velocity", of = "q" }\n', ""),
-        ("p^2/(2*m) + k*q^2/2", "trace(p*p)/(2*m) + k*trace(q*q)/2"),
-        ("(I2 + m*q^2)", "I2"),
-        ("(I3 + m*q^2)", "I3"),
-        ('"{q, p}" = "1", ', ""),
-        (', "{Pi, q}" = "0*Pi"', ""),
-    )
-    tensor = sympy.Matrix(derive(spec(BODY, *shaped)).poisson_tensor)
-    assert tensor[3:6, 6:] == sympy.diag(1, sympy.Rational(1, 2), 1)
+#: What makes a symmetric matrix of the coordinate; its velocity may be named.
+SYMMETRIC = (
+    ('q = { role = "coordinate" }', 'q = { role = "coordinate", shape = [3], form = "symmetric" }'),
+    ("p^2/(2*m) + k*q^2/2", "trace(p*p)/(2*m) + k*trace(q*q)/2"),
+    ("(I2 + m*q^2)", "I2"),
+    ("(I3 + m*q^2)", "I3"),
+    ('"{q, p}" = "1", ', ""),
+    (', "{Pi, q}" = "0*Pi"', ""),
+)
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_entries_of_symmetric_matrices_are_paired_by_the_trace(named):
+    """``{S12, P12} = 1/2``, and 1 on the diagonal, as without an algebra; ``dS/dt = P/m``."""
+    unnamed = [] if named else [('v = { role = "velocity", of = "q" }\n', "")]
+    found = derive(spec(BODY, *SYMMETRIC, *unnamed))
+    assert sympy.Matrix(found.poisson_tensor)[3:6, 6:] == sympy.diag(1, sympy.Rational(1, 2), 1)
+    entries = [sympy.symbols(f"{name}11 {name}12 {name}22") for name in "qp"]
+    expected = [*(x / m for x in entries[1]), *(-k * x for x in entries[0])]
+    assert [sympy.simplify(a - b) for a, b in zip(found.rates[3:], expected, strict=True)] == [
+        0
+    ] * 6
+    if named:
+        assert found.observables["v12"] == entries[1][1] / m
 
 
 def test_a_coordinate_without_a_momentum_is_refused():

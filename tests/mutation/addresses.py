@@ -77,7 +77,7 @@ def find_edit(tree: ast.Module, line: str) -> Edit:
 
 
 def find_edits(tree: ast.Module, line: str) -> list[Edit]:
-    """All edits that a line fits.
+    """All edits that a line fits; those that it names letter by letter where there are some.
 
     Raises:
         AddressError: It fits none.
@@ -86,7 +86,7 @@ def find_edits(tree: ast.Module, line: str) -> list[Edit]:
     if not fitting:
         listed = "\n".join(f"  {each.label}" for each in candidates)
         raise AddressError(f"{line!r} fits no place:\n{listed}")
-    return fitting
+    return [each for each in fitting if line.endswith(f": {each.label}")] or fitting
 
 
 def _fitting(tree: ast.Module, line: str) -> tuple[list[Edit], list[Edit]]:

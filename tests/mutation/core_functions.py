@@ -109,7 +109,7 @@ CORE = (
         "poisson",
         "hamiltonian_equations",
         systems=("nambu_body", "sp2_momentum", "kepler", "heavy_top"),
-        tests=coordinates.PAIRED_TWICE,
+        tests=(*coordinates.PAIRED_TWICE, "tests/derive/test_products.py -k paired_by_the_trace"),
         equivalent={
             "hamiltonian_equations: swap bracket": "the step that shows the bracket",
             "hamiltonian_equations: transpose tensor": "the step that shows the bracket",
@@ -176,6 +176,7 @@ CORE = (
             *distributions.FORCED,
             *distributions.DRIVEN,
             "tests/prove/test_driven.py -k 'constraints_that_move_with or kept_constraint'",
+            *distributions.TURNTABLE,
         ),
         fallacies={"_right_side: drop gyroscopic": "a constraint put in before varying"},
     ),
@@ -194,7 +195,7 @@ CORE = (
         "frames",
         "along bracket _extend rates_apart",
         systems=(),
-        tests=distributions.FRAMES,
+        tests=(*distributions.FRAMES, *distributions.TURNTABLE),
         fallacies={
             "_extend: omit sign in return": "forces of a left-invariant body on a right one"
         },

@@ -11,6 +11,8 @@ from tests.mutation.mutant import of, of_spec
 
 BY_HAND = "tests/derive/test_nonholonomic.py"
 FRAMES = ("tests/derive/test_frames.py",)
+#: A body that rolls on a surface which turns: points of contact move, and by themselves, too.
+TURNTABLE = ("tests/prove/test_contact.py -k work_of_a_turntable",)
 DISTRIBUTIONS = ("tests/derive/test_distribution.py -k 'annihilate or affine or sign'",)
 SLEIGH, BALL = ("chaplygin_sleigh",), ("chaplygin_ball_centred",)
 #: Systems that depend on time, with rates typed by hand.

@@ -10,6 +10,8 @@ from coadjoint.chapter import complete
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.render.document import render_document
+from coadjoint.resources import derivations_folder
+from coadjoint.spec import read_spec
 
 
 def show(text, names=None):
@@ -37,6 +39,13 @@ def show(text, names=None):
         ("v -> -v", r"$v \to -v$"),
         ("so(3) (s) R^3", r"$\operatorname{so}\left(3\right) \ltimes {R}^{3}$"),
         ("through Pi = p_Gamma x Gamma", r"through $\Pi = p_{\Gamma} \times \Gamma$"),
+        ("m = u - d^2u/ds^2", r"$m = u - \frac{d^{2} u}{d {s}^{2}}$"),
+        ("d2h/dp2", r"$\frac{\partial^{2} h}{\partial {p}^{2}}$"),
+        ("oscillators x and z", "oscillators $x$ and $z$"),
+        ("one of x alone, where x is", "one of $x$ alone, where $x$ is"),
+        ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),
+        ("b . curl b", r"$b \cdot \left(\operatorname{curl}\,b\right)$"),
+        ("over hbar", r"over $\hbar$"),
         ("= sqrt(A^2 - 1)", r"$= \sqrt{{A}^{2} - 1}$"),
     ],
 )
@@ -51,6 +60,7 @@ def test_a_formula_is_found_in_a_sentence(text, shown):
         "euler-poincare and Lie-Poisson give a 2-form",
         "every point(s) of [poisson] (section 3)",
         "Newton's law is a law",
+        "Korteweg and de Vries",
         "A body. A disk, and 418931385270818879 points",
         "so4_body",
         "energy, spin and a",
@@ -106,3 +116,35 @@ def test_proofs_and_costs_are_set(form, tmp_path):
     product = {"html": "<mo>×</mo>", "latex": r"$\times$", "typst": "$times$"}
     assert page.count(product[form]) == 1
     assert [each.pieces for each in read_counts("3 sqrt, 2 *")[1:]] == [("<mo>×</mo>",)]
+
+
+#: Signs of code that are left where a formula was not read as one.
+CODE = re.compile(r"[\^*_=|<>{}`]|[A-Za-z]\.[A-Za-z]")
+
+
+@pytest.mark.parametrize("form", ["html", "latex", "typst"])
+def test_heads_are_set(form):
+    """Title and description have their formulas; the title of a window is plain."""
+    page = {
+        "title": "Motion on C^3",
+        "description": "With d^2u/ds^2 = 0.",
+        "about": "",
+        "source": "",
+    }
+    shown = render_document({**page, "sections": []}, form)
+    assert "C^3" not in shown.replace("<title>Motion on C^3</title>", "")
+    assert "d^2u" not in shown
+    if form == "html":
+        assert "<h1>Motion on <math><msup><mi>C</mi><mn>3</mn></msup></math></h1>" in shown
+
+
+def test_descriptions_of_all_systems_are_read():
+    """No sign of code is left in the words of what we ship."""
+    specs = [read_spec(path) for path in sorted(derivations_folder().glob("*.toml"))]
+    texts = [text for spec in specs for text in (spec.title, " ".join(spec.description.split()))]
+    words = [part for text in texts for part in read_prose(text) if isinstance(part, str)]
+    assert len(words) > 400
+    assert [part for part in words if CODE.search(part)] == []
+    formulas = [part for text in texts for part in read_prose(text) if isinstance(part, Formula)]
+    assert len(formulas) > 300
+    assert CODE.search("the matrix J_k")

@@ -19,6 +19,7 @@ from markupsafe import Markup
 
 from coadjoint.explore.scene import describe_scene
 from coadjoint.pipeline import Rendered
+from coadjoint.render.document import set_text
 from coadjoint.render.scripts import render_family_script, render_script
 from coadjoint.render.strict import make_environment
 from coadjoint.resources import templates_folder
@@ -68,6 +69,7 @@ def assemble(scene: Mapping[str, Any], kernel: str) -> str:
     style = (folder / "page.css").read_text(encoding="utf-8")
     return _environment().get_template("explorer/page.html.j2").render(
         scene=scene,
+        about=set_text(scene["description"]),
         script=Markup(script),  # noqa: S704 (our files, and a kernel that `refuse_unsafe` passed)
         style=Markup(style),  # noqa: S704 (our file)
         data=Markup(_escape_json(scene)),  # noqa: S704 (escaped for a script element)

@@ -62,6 +62,7 @@ GREEK: Final = {
             "Phi:Φ",
             "Psi:Ψ",
             "Omega:Ω",
+            "hbar:ℏ",
         ]
     )
 }
@@ -70,7 +71,7 @@ _RATE = re.compile(r"d(?P<of>.+)_dt")
 #: A name and the numbers of a member, a row or a component behind it.
 _PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
 _ALONG = re.compile(r"(?P<of>.+)_(?P<s>s+)")
-_TYPST_GREEK: Final = {"phi": "phi.alt", "epsilon": "epsilon.alt"}
+_TYPST_GREEK: Final = {"phi": "phi.alt", "epsilon": "epsilon.alt", "hbar": "planck.reduce"}
 
 
 @cache

@@ -42,6 +42,7 @@ from coadjoint.notation.written import (
 SHORT: Final = 20
 _TOKEN: Final = re.compile(
     r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
+    r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
     r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
@@ -62,9 +63,9 @@ _BETWEEN: Final = {
 }
 _CLOSING: Final = {"(": ")", "[": "]", "{": "}", "<": ">", "|": "|"}
 #: Words that act on the symbol behind them without brackets.
-_ACTING: Final = ("tr", "div", "grad")
+_ACTING: Final = ("tr", "det", "div", "grad", "curl")
 #: Letters of the alphabet, or what looks like a symbol, that are words of a sentence.
-_WORDS: Final = ("a", "do")
+_WORDS: Final = ("a", "de", "do")
 _OPERATION: Final = re.compile(r"(?<=\d )([-*/+])(?=,|$)")
 _OPERATIONS: Final = {
     "*": literal("*", r"\times", operator("×"), "times"),
@@ -266,6 +267,9 @@ class _Reader:
                 sign = " "
             else:
                 return made
+            if sign == "x" and (_is_word(self._peek()) or _is_word(self._peek(-2))):
+                self.at = start  # oscillators x and z
+                return made
             factor = self._try(self._power)
             if factor is None:
                 self.at = start
@@ -278,7 +282,7 @@ class _Reader:
             return False
         before, token = self.tokens[self.at - 1], self.tokens[self.at]
         own = bool(token["rate"]) or token[0] == "["
-        own = own or token[0] in _ACTING or token[0].startswith("sum_")
+        own = own or token[0] in _ACTING or token[0].startswith("sum_") or bool(token["higher"])
         own = own or bool(token["name"] and _is_symbol(token[0]))
         closed = before[0] in (")", "]", "}", ">", "*")
         return own and (
@@ -329,6 +333,8 @@ class _Reader:
             return literal(token[0], mathml=f"<mn>{token[0]}</mn>")
         if token["rate"]:
             return self._differentiate(token)
+        if token["higher"]:
+            return self._repeat("d", token["order"], token["what"], token["along"])
         if token["name"]:
             return self._named(token[0])
         if token[0] in _CLOSING and not self._is_spaced():
@@ -379,19 +385,7 @@ class _Reader:
         """``dW/dt`` has a dot, ``dl/dxi`` is partial; ``d/dt`` acts on what stands behind it."""
         times, of, by = token["times"], token["of"], token["by"]
         if times:
-            by = by.removesuffix(times)
-            second = literal("", f"^{{{times}}}")
-            lead = row(f"<msup>{operator('∂')}<mn>{times}</mn></msup>", self._symbol(of).mathml)
-            lower = f"<msup>{self._symbol(by).mathml}<mn>{times}</mn></msup>"
-            top = literal("", rf"\partial{second.latex} {self._symbol(of).latex}", lead)
-            bottom = literal(
-                "",
-                rf"\partial {{{self._symbol(by).latex}}}{second.latex}",
-                row("<mo>∂</mo>", lower),
-            )
-            top = replace(top, typst=f"partial^{times} {self._symbol(of).typst}")
-            bottom = replace(bottom, typst=f"partial {self._symbol(by).typst}^{times}")
-            return divide(top, bottom)
+            return self._repeat("∂", times, of, by.removesuffix(times))
         if of and by == "t":
             made = attach(self._symbol(of), dot=True) if of in self.names else name(of, dot=True)
             if self._peek() == "|" and not self._is_spaced() and self._peek(1).isalpha():
@@ -411,6 +405,28 @@ class _Reader:
             return made
         behind = self._try(self._power)
         return made if behind is None else multiply([made, behind])
+
+    def _repeat(self, sign: str, times: str, of: str, by: str) -> Written:
+        """A derivative of higher order, with the sign of it: that of one variable has a d."""
+        top, bottom = self._symbol(of), self._symbol(by)
+        latex, typst = (r"\partial", "partial") if sign == "∂" else ("d", "d")
+        letter = operator(sign) if sign == "∂" else "<mi>d</mi>"
+        raised = f"<msup>{letter}<mn>{times}</mn></msup>"
+        below = f"<msup>{bottom.mathml}<mn>{times}</mn></msup>"
+        return divide(
+            literal(
+                "",
+                f"{latex}^{{{times}}} {top.latex}",
+                row(raised, top.mathml),
+                f"{typst}^{times} {top.typst}",
+            ),
+            literal(
+                "",
+                f"{latex} {{{bottom.latex}}}^{{{times}}}",
+                row(letter, below),
+                f"{typst} {bottom.typst}^{times}",
+            ),
+        )
 
     def _enclosed(self, opening: str) -> Written:
         """What stands in brackets."""
@@ -434,6 +450,11 @@ class _Reader:
 def _is_symbol(text: str) -> bool:
     """Whether a name is a letter of some alphabet, with or without what stands below it."""
     return text not in _WORDS and (_is_letter(text) or (text[0] == "d" and _is_letter(text[1:])))
+
+
+def _is_word(text: str) -> bool:
+    """Whether a name can be nothing but a word of a sentence."""
+    return bool(re.fullmatch("[a-z]{2,}", text)) and text not in _ACTING and not _is_symbol(text)
 
 
 def _is_letter(text: str) -> bool:

@@ -134,6 +134,15 @@ def _set(formula: Formula, form: str) -> str:
     return f"${formula.written.latex if form == 'latex' else formula.written.typst}$"
 
 
+def set_text(text: str, form: str = "html") -> str:
+    """A text by itself, with its formulas set as formulas.
+
+    >>> print(set_text("moves in C^3"))
+    moves in <math><msup><mi>C</mi><mn>3</mn></msup></math>
+    """
+    return Prose.of(read_prose(text), text, form)
+
+
 #: Sections whose words name books and routes, and hold no formula.
 _NO_FORMULAS: Final = ("principle", "references")
 
@@ -141,7 +150,8 @@ _NO_FORMULAS: Final = ("principle", "references")
 def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
     """A document in which formulas between words are set as formulas.
 
-    Names are written as its table of symbols has them.
+    Names are written as its table of symbols has them. What stands at the head of a page is its
+    ``heading``; its ``title`` stays plain text.
     """
     sections, names = document["sections"], _list_names(document["sections"])
 
@@ -166,7 +176,8 @@ def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
             ]
         if not part["law_latex"]:
             part["law"] = prose(part["law"])
-    return {**document, "sections": made}
+    heads = {"heading": prose(document["title"]), "description": prose(document["description"])}
+    return {**document, **heads, "sections": made}
 
 
 def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
@@ -187,7 +198,8 @@ def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
 
 def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
     """Sections as HTML without a page around them."""
-    filled = set_prose(_fill({"sections": sections}), "html")["sections"]
+    page = _fill({"title": "", "description": "", "sections": sections})
+    filled = set_prose(page, "html")["sections"]
     return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
 
 
