@@ -12,7 +12,7 @@ from typing import Final
 from markupsafe import escape
 
 from coadjoint.notation.names import GREEK
-from coadjoint.notation.written import DOT_ABOVE, row
+from coadjoint.notation.written import CLOSE, DOT_ABOVE, STILL, row
 
 _PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+|[^\s]")
 _OPERATORS: Final = {
@@ -22,6 +22,7 @@ _OPERATORS: Final = {
     "dots": "…", "Longrightarrow": "⟹", "{": "{", "}": "}", "|": "‖", "iota": "ι", "in": "∈",
     "otimes": "⊗", "top": "⊤", "infty": "∞",
 }  # fmt: skip
+_OPENING, _ENDING = ("(", "[", "{", "⟨"), (")", "]", "}", "⟩")
 _SPACES: Final = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", " ": "0.3em"}
 _ACCENTS: Final = {"ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯"}
 _SIZES: Final = ("left", "right", "big", "Big", "bigl", "bigr", "Bigl", "Bigr")
@@ -94,7 +95,7 @@ class _Reader:
         if name in _LETTERS:
             return f"<mi>{_LETTERS[name]}</mi>"
         if name in _OPERATORS:
-            return f"<mo>{_OPERATORS[name]}</mo>"
+            return _sign(_OPERATORS[name])
         if name in _SPACES:
             return f'<mspace width="{_SPACES[name]}"/>'
         if name == "dot":
@@ -102,7 +103,7 @@ class _Reader:
         if name in _ACCENTS:
             return f'<mover accent="true">{self._atom()}<mo>{_ACCENTS[name]}</mo></mover>'
         if name in _SIZES:
-            return self._atom()
+            return self._atom().replace(STILL, "")
         if name in _WORDS:
             return f"<mi>{name}</mi>"
         if name in ("frac", "tfrac"):
@@ -130,7 +131,16 @@ def _plain(piece: str) -> str:
         return f"<mn>{piece}</mn>"
     if piece.isalpha():
         return f"<mi>{piece}</mi>"
-    return f"<mo>{'−' if piece == '-' else escape(piece)}</mo>"
+    return _sign("−" if piece == "-" else escape(piece))
+
+
+def _sign(text: str) -> str:
+    """An operator; a bracket as high as a line, unless its size is given, and none for itself."""
+    if text in _OPENING:
+        return f'<mo form="prefix"{STILL}>{text}</mo>'
+    return (
+        f'<mo form="postfix"{STILL}{CLOSE}>{text}</mo>' if text in _ENDING else f"<mo>{text}</mo>"
+    )
 
 
 def is_formula(latex: str, text: str) -> bool:

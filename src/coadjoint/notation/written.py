@@ -6,6 +6,7 @@ brackets stand only where they are needed. Read next: `coadjoint.notation.names`
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -20,6 +21,10 @@ SUM: Final = 1
 PRODUCT: Final = 2
 POWER: Final = 3
 ATOM: Final = 4
+#: Of a bracket that does not stretch, and of the second one, which slanted letters would touch.
+STILL, CLOSE = ' stretchy="false"', ' lspace="0.08em"'
+#: Elements that are higher than a line; a power is nearly as high as its base.
+_TALL: Final = re.compile("<m(frac|table|under|munderover)")
 #: Characters of text that a line of a page may be long, about.
 WIDTH: Final = 80
 
@@ -74,6 +79,16 @@ def operator(text: str, space: str = "") -> str:
     return f"<mo{spaced}>{text}</mo>"
 
 
+def fence(first: str, inside: str, last: str) -> tuple[str, str, str]:
+    """Brackets of MathML around elements, as high as a line, or as what is higher inside.
+
+    Those that stretch are set apart from what they hold, even where they have nothing to do.
+    """
+    if _TALL.search(inside):
+        return operator(first), inside, operator(last)
+    return f"<mo{STILL}>{first}</mo>", inside, f"<mo{STILL}{CLOSE}>{last}</mo>"
+
+
 def number(value: Fraction | int) -> Written:
     """A number; a negative one carries its sign."""
     value = Fraction(value)
@@ -96,7 +111,7 @@ def bracket(part: Written, level: int) -> Written:
     return Written(
         text=f"({part.text})",
         latex=rf"\left({part.latex}\right)",
-        mathml=row(operator("("), part.mathml, operator(")")),
+        mathml=row(*fence("(", part.mathml, ")")),
         typst=f"({part.typst})",
     )
 
@@ -260,7 +275,7 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
         text=f"{function}({', '.join(part.text for part in inner)})",
         latex=rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
         mathml=f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
-        f"<mrow>{operator('(')}{comma}{operator(')')}</mrow></mrow>",
+        f"<mrow>{''.join(fence('(', comma, ')'))}</mrow></mrow>",
         typst=f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
         f"({', '.join(part.typst for part in inner)})",
     )
@@ -323,9 +338,7 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
     return Written(
         text=first + ", ".join(part.text for part in inner) + last,
         latex=opens + ", ".join(part.latex for part in inner) + closes,
-        mathml=row(
-            operator(shown[0]), operator(",").join(p.mathml for p in inner), operator(shown[1])
-        ),
+        mathml=row(*fence(shown[0], operator(",").join(p.mathml for p in inner), shown[1])),
         typst=f"abs({typst})" if first == "|" else f"{shown[0]}{typst}{shown[1]}",
     )
 

@@ -150,8 +150,7 @@ _NO_FORMULAS: Final = ("principle", "references")
 def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
     """A document in which formulas between words are set as formulas.
 
-    Names are written as its table of symbols has them. What stands at the head of a page is its
-    ``heading``; its ``title`` stays plain text.
+    Names are written as its table of symbols has them. The title is words.
     """
     sections, names = document["sections"], _list_names(document["sections"])
 
@@ -176,8 +175,7 @@ def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
             ]
         if not part["law_latex"]:
             part["law"] = prose(part["law"])
-    heads = {"heading": prose(document["title"]), "description": prose(document["description"])}
-    return {**document, **heads, "sections": made}
+    return {**document, "description": prose(document["description"]), "sections": made}
 
 
 def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
@@ -198,8 +196,7 @@ def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
 
 def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
     """Sections as HTML without a page around them."""
-    page = _fill({"title": "", "description": "", "sections": sections})
-    filled = set_prose(page, "html")["sections"]
+    filled = set_prose(_fill({"description": "", "sections": sections}), "html")["sections"]
     return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
 
 
