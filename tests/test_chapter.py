@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 from coadjoint.chapter import complete, count_operations
 from coadjoint.files import read_certificate
+from coadjoint.render.document import render_document
 from coadjoint.resources import systems_folder
 
 RECORD = {
@@ -50,8 +53,85 @@ def test_the_cost_is_counted_in_the_text(tmp_path):
     """Operations of a module that was written by hand, and of a generated one."""
     module = tmp_path / "kernel_python.py"
     module.write_text("def rhs(a, b):\n    c = sqrt(a) * b\n    return c - asin(a) / b\n")
-    assert count_operations(module) == {"rhs": {"*": 1, "-": 1, "/": 1, "asin": 1, "sqrt": 1}}
+    operations = {"*": 1, "-": 1, "/": 1, "asin": 1, "sqrt": 1}
+    assert count_operations(module) == {"rhs": {"": operations}}
     folder = systems_folder() / "heavy_top"
     shown = by_kind(complete(RECORD, read_certificate(folder / "certificate.json"), folder))
     assert "rhs" in dict(shown["cost"]["words"])
     assert shown["methods"]["rows"][0][0] == "method"
+
+
+def test_the_cost_of_members_is_that_of_their_parts(tmp_path):
+    """Places of arrays and the loop are no cost; a part of two members is that of a pair."""
+    module = tmp_path / "kernel_python.py"
+    module.write_text(
+        "def rhs(state, parameters, sizes):\n    return [0.0] * (2 * sizes[0] - 1)\n"
+        "def _rhs_member(state, parameters, sums, i, size):\n"
+        "    x = state[2 * size + (i - 1) % size]\n    return x * x + sums[0][i]\n"
+        "def _rhs_partners(state, parameters, i, j, size):\n    return state[i] - state[j]\n"
+        "def _rhs_finish(state, parameters, sums, i, size):\n    return (sums[0][0] / 2.0,)\n"
+        "def _add(sums, i, terms):\n    return terms + 1\n"
+    )
+    assert count_operations(module) == {
+        "rhs": {
+            " for each member": {"*": 1, "+": 1},
+            " for each pair": {"-": 1},
+            " at last": {"/": 1},
+        }
+    }
+    (words,) = (part["words"] for part in complete(RECORD, {}, tmp_path)["sections"][1:2])
+    told = "2 operations for each member: 1 *, 1 +; 1 operation for each pair: 1 -; "
+    assert words == [("rhs", told + "1 operation at last: 1 /")]
+
+
+WORDS = {"add": "+-", "multiply": "*", "divide": "/"}
+
+
+def test_counts_are_those_of_what_was_lowered():
+    """Of each function of members without pairs: the docstring of the kernel has them by itself."""
+    compared = 0
+    for folder in sorted(systems_folder().iterdir()):
+        path = folder / "kernel_python.py"
+        if not path.is_file() or "def _rhs_member(" not in path.read_text():
+            continue
+        counts = count_operations(path)
+        for name, lowered in re.findall(
+            r"^def (\w+)\([^)]*\):\n[^\n]*\n\n    Operations per member: ([^\n]*)\.\n",
+            path.read_text(),
+            re.MULTILINE,
+        ):
+            parts = counts.get(name, {})
+            if set(parts) != {" for each member"}:
+                continue
+            own = parts[" for each member"]
+            for number, word in re.findall(r"(\d+) (add|multiply|divide)", lowered):
+                assert sum(own[sign] for sign in WORDS[word]) == int(number), (folder.name, name)
+                compared += 1
+    assert compared > 30
+
+
+def test_methods_that_do_not_apply_are_told_apart():
+    """They keep nothing, which is no news; those that apply come in the order of preference."""
+    judged = {
+        "order": 2,
+        "exactly": [],
+        "is_poisson": False,
+        "rank": 0,
+        "decides": "no",
+        "cost": "",
+    }
+    methods = [
+        judged | {"name": "kahan"},
+        judged | {"name": "rk", "cost": "a stage"},
+        judged | {"name": "midpoint", "cost": "a sweep", "rank": 1, "is_poisson": True},
+        judged | {"name": "gauss4"},
+    ]
+    shown = by_kind(complete(RECORD, {"methods": methods}, systems_folder() / "heavy_top"))
+    assert shown["methods"]["rows"][1:] == [
+        ("midpoint", "2", "Poisson tensor", "a sweep"),
+        ("rk", "2", "nothing", "a stage"),
+    ]
+    assert shown["unfit"]["rows"][1:] == [("kahan, gauss4", "no")]
+    record = RECORD | {"sections": []}
+    text = render_document(complete(record, {"methods": methods}, systems_folder() / "heavy_top"))
+    assert "midpoint  2      Poisson tensor  a sweep" in text

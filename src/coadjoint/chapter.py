@@ -8,12 +8,15 @@ generated folder. Read next: `coadjoint.render.document`.
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import starmap
 from pathlib import Path
 from typing import Any, Final
 
 from coadjoint.elementary import ELEMENTARY
+from coadjoint.methods import list_fitting, list_kept, list_unfit
 
 #: What the kinds of claims are about, as headings of sentences.
 _ABOUT: Final = {
@@ -115,43 +118,92 @@ def _sentence(statement: str, verdict: str, method: str, routes: Sequence[str]) 
 
 def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Operations of the generated code, counted in its text, and what methods keep."""
-    words = list[tuple[str, str]]()
-    for function, operations in count_operations(folder / "kernel_python.py").items():
-        listed = ", ".join(f"{number} {sign}" for sign, number in operations.items())
-        words.append((function, f"{sum(operations.values())} operations: {listed}"))
+    words = [
+        (function, "; ".join(starmap(_tell_cost, parts.items())))
+        for function, parts in count_operations(folder / "kernel_python.py").items()
+    ]
     yield section(
         "Cost of the kernel",
         "cost",
         law="operations in the text of the generated functions; those of a loop count once",
         words=words,
     )
+    judged = certificate.get("methods", ())
     rows = [("method", "order", "keeps exactly", "cost of a step")]
     rows += [
-        (m["name"], str(m["order"]), ", ".join(m["exactly"]) or "nothing", m["cost"])
-        for m in certificate.get("methods", ())
+        (m["name"], str(m["order"]), ", ".join(list_kept(m)) or "nothing", m["cost"])
+        for m in list_fitting(judged)
     ]
     if rows[1:]:
-        yield section("Methods of integration", "methods", rows=rows)
+        law = "those that apply, with steps of one length"
+        unfit = [(", ".join(names), why) for why, names in list_unfit(judged).items()]
+        unfit = [("method", "reason"), *unfit] if unfit else []
+        yield section("Methods of integration", "methods", law=law, rows=rows)
+        if unfit:
+            yield section("Methods that do not apply", "unfit", rows=unfit)
 
 
-def count_operations(path: Path) -> dict[str, dict[str, int]]:
-    """Operations by function, from the text of a module of plain Python."""
+def _tell_cost(where: str, operations: Mapping[str, int]) -> str:
+    """Operations, where they are made."""
+    if not operations:
+        return where
+    listed = ", ".join(f"{number} {sign}" for sign, number in sorted(operations.items()))
+    total = sum(operations.values())
+    return f"{total} operation{'s' * (total != 1)}{where}: {listed}"
+
+
+#: Parts of functions of equal members, by the ends of their names, and for what they are made.
+_PARTS: Final = (
+    (re.compile(r"_partners"), " for each pair"),
+    (re.compile(r"_(member|terms_\d+)"), " for each member"),
+    (re.compile(r"_end_\d+"), " at each end"),
+    (re.compile(r"_factors"), " for each entry"),
+    (re.compile(r"_finish"), " at last"),
+)
+#: What a function of entries of matrices does in addition, whose loops have no end to count to.
+_PRODUCTS: Final = "products of matrices"
+
+
+def count_operations(path: Path) -> dict[str, dict[str, Counter[str]]]:
+    """Operations by function, and by where they are made, from the text of a module of Python.
+
+    Of equal members the parts count that a function calls for each of them; its own operations, and
+    those in places of arrays, find members and are left out.
+    """
     module = ast.parse(path.read_text(encoding="utf-8"))
-    counts: dict[str, dict[str, int]] = {}
-    for function in module.body:
-        if not isinstance(function, ast.FunctionDef) or function.name.startswith("_"):
+    functions = {each.name: each for each in module.body if isinstance(each, ast.FunctionDef)}
+    counts = dict[str, dict[str, Counter[str]]]()
+    for name, function in functions.items():
+        if name.startswith("_"):
             continue
-        signs = Counter[str]()
-        for node in ast.walk(function):
-            if isinstance(node, ast.BinOp) and type(node.op) in _SIGNS:
-                signs[_SIGNS[type(node.op)]] += 1
-            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name | ast.Attribute):
-                label = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
-                if label in ELEMENTARY:
-                    signs[label] += 1
-        if signs:
-            counts[function.name] = dict(sorted(signs.items()))
-    return counts
+        found = dict[str, Counter[str]]()
+        for part, body in functions.items():
+            rest = part.removeprefix(f"_{name}")
+            where = next((told for end, told in _PARTS if rest != part and end.fullmatch(rest)), "")
+            if where:
+                where = " for each pair" if "j" in [each.arg for each in body.args.args] else where
+                found.setdefault(where, Counter()).update(_count(body))
+        counts[name] = {w: c for w, c in (found or {"": _count(function)}).items() if c}
+        if any(
+            isinstance(each, ast.Name) and each.id == "_multiply" for each in ast.walk(function)
+        ):
+            counts[name][_PRODUCTS] = Counter()
+    return {name: parts for name, parts in counts.items() if parts}
+
+
+def _count(function: ast.FunctionDef) -> Counter[str]:
+    """Operations of a function."""
+    signs, left = Counter[str](), list[ast.AST]([function])
+    while left:
+        node = left.pop()
+        left += [node.value] if isinstance(node, ast.Subscript) else ast.iter_child_nodes(node)
+        if isinstance(node, ast.BinOp) and type(node.op) in _SIGNS:
+            signs[_SIGNS[type(node.op)]] += 1
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name | ast.Attribute):
+            label = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
+            if label in ELEMENTARY:
+                signs[label] += 1
+    return signs
 
 
 def _references(record: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

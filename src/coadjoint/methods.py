@@ -8,10 +8,10 @@ Read next: `coadjoint.solve.methods`.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from coadjoint.limits import C_STATEMENTS
 
@@ -19,6 +19,26 @@ from coadjoint.limits import C_STATEMENTS
 TERMS: Final = 3
 #: Of how many steps one is composed, by its order.
 _LENGTHS: Final = MappingProxyType({2: 1, 4: 5, 6: 9})
+
+
+def list_fitting(judged: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Of the methods that a certificate judges those that apply, as ``"auto"`` prefers them."""
+    fitting = [each for each in judged if each["cost"]]
+    return sorted(fitting, key=lambda each: (not each["rank"], each["rank"]))
+
+
+def list_kept(judged: Mapping[str, Any]) -> list[str]:
+    """What one of them keeps exactly."""
+    return [*judged["exactly"], *(["Poisson tensor"] if judged["is_poisson"] else [])]
+
+
+def list_unfit(judged: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
+    """Those that do not apply, by the reason."""
+    unfit = dict[str, list[str]]()
+    for each in judged:
+        if not each["cost"]:
+            unfit.setdefault(each["decides"], []).append(each["name"])
+    return unfit
 
 
 @dataclass(frozen=True)

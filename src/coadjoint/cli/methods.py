@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from coadjoint.cli.output import print_table, say
-from coadjoint.methods import NOISY, PLAIN
+from coadjoint.methods import NOISY, PLAIN, list_fitting, list_kept, list_unfit
 
 
 def print_methods(record: Mapping[str, Any]) -> None:
@@ -20,7 +20,7 @@ def print_methods(record: Mapping[str, Any]) -> None:
     if not methods:
         say(f"The certificate of {name} judges no methods: run `coadjoint regenerate`.")
         return
-    fit = sorted((each for each in methods if each["cost"]), key=_place)
+    fit = list_fitting(methods)
     if fit:
         columns = ("method", ">order", "keeps exactly", "keeps nearly", "why", "a step takes")
         print_table(columns, list(map(_row, fit)), f"Methods of {name} with a fixed step")
@@ -28,26 +28,16 @@ def print_methods(record: Mapping[str, Any]) -> None:
     is_noisy = "noise" in record["structure"].get("acts", ())
     first = next((each["name"] for each in fit if each["rank"] == 1), "")
     say(f'"auto" with step= takes {first or (NOISY[-1] if is_noisy else PLAIN)}.')
-    others = dict[str, list[str]]()
-    for each in methods:
-        if not each["cost"]:
-            others.setdefault(each["decides"], []).append(each["name"])
-    for why, names in others.items():
+    for why, names in list_unfit(methods).items():
         say(f"{', '.join(names)} {'do' if len(names) > 1 else 'does'} not apply: {why}.")
-
-
-def _place(method: Mapping[str, Any]) -> tuple[bool, int]:
-    """Methods that ``"auto"`` takes, in its order, before the others."""
-    return not method["rank"], method["rank"]
 
 
 def _row(method: Mapping[str, Any]) -> tuple[str, ...]:
     """A line of the table."""
-    exactly = [*method["exactly"], *(["Poisson tensor"] if method["is_poisson"] else [])]
     return (
         method["name"],
         str(method["order"]),
-        ", ".join(exactly) or "-",
+        ", ".join(list_kept(method)) or "-",
         ", ".join(method["nearly"]) or "-",
         method["decides"],
         method["cost"],

@@ -66,7 +66,7 @@ _CLOSING: Final = {"(": ")", "[": "]", "{": "}", "<": ">", "|": "|"}
 _ACTING: Final = ("tr", "det", "div", "grad", "curl")
 #: Letters of the alphabet, or what looks like a symbol, that are words of a sentence.
 _WORDS: Final = ("a", "de", "do")
-_OPERATION: Final = re.compile(r"(?<=\d )([-*/+])(?=,|$)")
+_OPERATION: Final = re.compile(r"(?<=\d )([-*/+])(?=[,;]|$)")
 _OPERATIONS: Final = {
     "*": literal("*", r"\times", operator("×"), "times"),
     "-": literal("-", "-", operator("−"), "-"),

@@ -314,16 +314,22 @@ def split_sides(mathml: str) -> tuple[str, str]:
     return f'<math displaystyle="true">{left}</math>', f'<math displaystyle="true">{shown}</math>'
 
 
+#: Characters of a line of a table in text, with the blanks between columns.
+ROOM: Final = 94
+
+
 def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
-    """Rows of words in columns, the last one wrapped.
+    """Rows of words in columns, wrapped where a line would be longer than there is room.
 
     >>> list_rows([["name", "unit"], ["m", "kg"]])
     ['name  unit', 'm     kg']
     """
     texts = [[cell["text"] if isinstance(cell, Mapping) else str(cell) for cell in r] for r in rows]
-    texts = [row[1:] if len(row) > 3 else row for row in texts]  # a symbol is its name in text
+    if any(isinstance(row[0], Mapping) for row in rows):
+        texts = [row[1:] for row in texts]  # a symbol is its name in text
     widths = [max(len(row[n]) for row in texts) for n in range(len(texts[0]))]
-    widths = [min(width, 58) for width in widths]
+    while sum(widths) + 2 * len(widths) > ROOM:
+        widths[widths.index(max(widths))] -= 1
     listed = list[str]()
     for row in texts:
         cells = [
