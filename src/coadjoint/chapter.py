@@ -197,6 +197,8 @@ def _count(function: ast.FunctionDef) -> Counter[str]:
     while left:
         node = left.pop()
         left += [node.value] if isinstance(node, ast.Subscript) else ast.iter_child_nodes(node)
+        if isinstance(node, ast.BinOp) and isinstance(node.left, ast.List):
+            continue  # a row of zeros, of that many
         if isinstance(node, ast.BinOp) and type(node.op) in _SIGNS:
             signs[_SIGNS[type(node.op)]] += 1
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name | ast.Attribute):
