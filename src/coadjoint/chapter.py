@@ -154,8 +154,7 @@ def _tell_cost(where: str, operations: Mapping[str, int]) -> str:
 
 #: Parts of functions of equal members, by the ends of their names, and for what they are made.
 _PARTS: Final = (
-    (re.compile(r"_partners"), " for each pair"),
-    (re.compile(r"_(member|terms_\d+)"), " for each member"),
+    (re.compile(r"_(member|partners|terms_\d+)"), " for each member"),
     (re.compile(r"_end_\d+"), " at each end"),
     (re.compile(r"_factors"), " for each entry"),
     (re.compile(r"_finish"), " at last"),
@@ -177,18 +176,25 @@ def count_operations(path: Path) -> dict[str, dict[str, Counter[str]]]:
         if name.startswith("_"):
             continue
         found = dict[str, Counter[str]]()
-        for part, body in functions.items():
-            rest = part.removeprefix(f"_{name}")
-            where = next((told for end, told in _PARTS if rest != part and end.fullmatch(rest)), "")
-            if where:
-                where = " for each pair" if "j" in [each.arg for each in body.args.args] else where
-                found.setdefault(where, Counter()).update(_count(body))
+        for part in functions.values():
+            if where := _tell_where(name, part):
+                found.setdefault(where, Counter()).update(_count(part))
         counts[name] = {w: c for w, c in (found or {"": _count(function)}).items() if c}
         if any(
             isinstance(each, ast.Name) and each.id == "_multiply" for each in ast.walk(function)
         ):
             counts[name][_PRODUCTS] = Counter()
     return {name: parts for name, parts in counts.items() if parts}
+
+
+def _tell_where(name: str, part: ast.FunctionDef) -> str:
+    """For what a part of a function is made; "" of another function."""
+    end = part.name.removeprefix(f"_{name}")
+    if end == part.name:
+        return ""
+    where = next((told for known, told in _PARTS if known.fullmatch(end)), "")
+    has_partner = any(each.arg == "j" for each in part.args.args)
+    return " for each pair" if where and has_partner else where
 
 
 def _count(function: ast.FunctionDef) -> Counter[str]:
