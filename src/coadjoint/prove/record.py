@@ -21,7 +21,7 @@ from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
-#: A notebook shows components beside vectors if their formulas, as MathML, have no more characters.
+#: Longest components, in characters of MathML, that a notebook shows beside the vectors.
 LONGEST_MOTION: Final = 20_000
 
 

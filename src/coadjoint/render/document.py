@@ -78,7 +78,8 @@ def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
     empty |= {"theorem": "", "law_latex": ""}
     sections = [{**empty, **section} for section in document["sections"]]
-    return {"picture": "", "caption": "", **document, "sections": sections}
+    heads = {"picture": "", "caption": "", "description": ""}
+    return {**heads, **document, "sections": sections}
 
 
 def leave_out_repeated(sections: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -196,7 +197,7 @@ def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
 
 def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
     """Sections as HTML without a page around them."""
-    filled = set_prose(_fill({"description": "", "sections": sections}), "html")["sections"]
+    filled = set_prose(_fill({"sections": sections}), "html")["sections"]
     return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
 
 
