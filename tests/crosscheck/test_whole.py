@@ -24,11 +24,10 @@ def rendered():
     return render_system(FOLLOWED)
 
 
-def subject(context=FOLLOWED, kernel=FOLLOWED):
-    """The system, by the Programs of a context, with the NumPy kernel of another."""
-    texts = rendered() if kernel is FOLLOWED else render_system(kernel)
+def subject(context=FOLLOWED):
+    """The system, by the Programs of a context, with its own NumPy kernel."""
     module = {}
-    exec(texts["kernel.py"], module)
+    exec(rendered()["kernel.py"], module)
 
     def function(name):
         return lambda state, parameters, target, out: module[name](state, parameters, out)

@@ -47,7 +47,7 @@ class _AloneError(Exception):
 
 @dataclass(slots=True)
 class _Fate:
-    """What became of the points of a column; the first that happens to one stays.
+    """Which points of a column are left out, or evaluated alone; a point is one of both at most.
 
     Attributes:
         outside: Where the equations have no value that doubles could find.
@@ -73,7 +73,7 @@ class Column:
         values: Decimals.
         near: The same in doubles: to a part in a million, wherever that can be said at all.
         wide: Envelopes.
-        fate: What became of the points.
+        fate: Which points are left out by now, or evaluated alone.
     """
 
     __slots__ = ("fate", "near", "values", "wide")

@@ -78,10 +78,7 @@ def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
         count: How many points, at the least.
     """
     batches = list(hard_batches(subject, function, -(-count // BATCHES)))
-    parts = [
-        {name: np.broadcast_to(row, batch.size) for name, row in subject.values(batch).items()}
-        for batch in batches
-    ]
+    parts = [subject.columns(batch) for batch in batches]
     rows = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     known, first, found = find_exact(subject.reference, function, rows), 0, []
     for batch in batches:

@@ -7,7 +7,7 @@ Read next: `coadjoint.crosscheck.hard`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
@@ -220,11 +220,9 @@ class Subject:
             defined &= np.isfinite(value)
         return defined
 
-    def members(self, batch: Batch) -> Iterator[dict[str, float]]:
-        """State, parameters, inputs and time of each member by name."""
-        values = self.values(batch)
-        columns = [np.broadcast_to(row, batch.size).tolist() for row in values.values()]
-        return (dict(zip(values, member, strict=True)) for member in zip(*columns, strict=True))
+    def columns(self, batch: Batch) -> dict[str, Array]:
+        """State, parameters, inputs and time by name, a number for each member."""
+        return {name: np.broadcast_to(row, batch.size) for name, row in self.values(batch).items()}
 
     def inputs(self, batch: Batch, member: int) -> dict[str, float]:
         """State, parameters, inputs and time of one member by name."""
