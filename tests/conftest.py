@@ -78,8 +78,24 @@ def optimized(monkeypatch):
     monkeypatch.delenv(OPTIMIZE, raising=False)
 
 
-def pytest_collection_modifyitems(items):
-    """The longest test comes first: it works in processes of its own, and fills a cache."""
+#: Names of all that was collected, before some of it is left out.
+COLLECTED = pytest.StashKey[frozenset[str]]()
+#: Cases that take longer than about a second of processor time, where a shorter case of the same
+#: test is left: only under `make test-all`. Times are those of `pytest --durations`.
+LONG_CASES = frozenset(
+    line
+    for line in (Path(__file__).parent / "long_cases.txt").read_text(encoding="utf-8").splitlines()
+    if line and not line.startswith("#")
+)
+
+
+@pytest.hookimpl(tryfirst=True)  # what is marked here is left out by those that come later
+def pytest_collection_modifyitems(config, items):
+    """Long cases are marked; the longest test comes first: it works in processes of its own."""
+    config.stash[COLLECTED] = frozenset(item.nodeid for item in items)
+    for item in items:
+        if item.nodeid in LONG_CASES:
+            item.add_marker(pytest.mark.long)
     items.sort(key=lambda item: item.name != "test_the_checked_in_tree_is_current")
 
 
