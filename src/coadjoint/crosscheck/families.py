@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from decimal import localcontext
 from typing import TYPE_CHECKING, Any, Final
@@ -25,6 +26,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.crosscheck.bits import find_differing_bits
+from coadjoint.crosscheck.columns import find_exact
 from coadjoint.crosscheck.compare import Figures
 from coadjoint.crosscheck.family_loops import evaluate_loops
 from coadjoint.crosscheck.family_series import ORDER, check_series
@@ -173,33 +175,49 @@ class _Window:
             ),
         )
 
-    def evaluate(self, function: str, point: _Point) -> list[Any]:
-        """A function at a point to 50 digits, its rows in the order of a family."""
-        own, state = self.reference.state, point.state
+    def evaluate(self, function: str, points: Sequence[_Point]) -> dict[int, list[Any]]:
+        """A function to 50 digits at the points where it has a value, by their numbers.
+
+        Rows are in the order of a family.
+        """
+        inputs = [self._name_inputs(function, point) for point in points]
+        if function == "noise_vector":
+            found = dict[int, list[Any]]()
+            for n, point in enumerate(points):
+                with suppress(OutsideDomain):
+                    numbers = point.state[len(self.state) :].tolist()
+                    found[n] = self._move_by_noise(inputs[n], numbers)
+            return found
+        own = "rhs" if function == "sided_rhs" else function  # at the signs that the points have
+        columns = {name: np.array([each[name] for each in inputs]) for name in inputs[0]}
+        known = find_exact(self.replayed, own, columns)
+        return {n: self._order(own, values) for n, values in known.items()}
+
+    def _name_inputs(self, function: str, point: _Point) -> dict[str, float]:
+        """Numbers of a point by the names that the equations have for them."""
         inputs = dict(zip(self.parameters, point.parameters.tolist(), strict=True))
-        inputs |= zip(self.state, state.tolist(), strict=False)
+        inputs |= zip(self.state, point.state.tolist(), strict=False)
         inputs |= zip(self.inputs, point.inputs.tolist(), strict=True)
         inputs |= dict.fromkeys(self.time, point.time)
         if KERNEL_FUNCTIONS[function].below == "vector":
-            place = {name: n for n, name in enumerate(own, 1)}
-            vector = state[len(self.state) :].tolist()
+            place = {name: n for n, name in enumerate(self.reference.state, 1)}
+            vector = point.state[len(self.state) :].tolist()
             inputs |= {f"_h{place[name]}": v for name, v in zip(self.state, vector, strict=True)}
-        if function == "noise_vector":
-            return self._move_by_noise(inputs, state[len(self.state) :].tolist())
-        if function == "sided_rhs":  # at the signs that are those of the point
-            function = "rhs"
-        values = oracle(self.replayed, function, inputs)
+        return inputs
+
+    def _order(self, function: str, values: list[Any]) -> list[Any]:
+        """Rows of the equations in the order of a family."""
         if function in OF_STATE:
-            by_name = dict(zip(own, values, strict=True))
-            values = [by_name[name] for name in self.state]
+            by_name = dict(zip(self.reference.state, values, strict=True))
+            return [by_name[name] for name in self.state]
         if function == "observables":
             labels = [label for label, _ in self.reference.equations.exact.observables]
             by_name = dict(zip(labels, values, strict=True))
-            values = [by_name[name] for name in self.totals]
+            return [by_name[name] for name in self.totals]
         if function == "constraint_residual":
             rows = turning_residuals(self.reference.equations.setting)
             by_name = dict(zip((name for name, _ in rows), values, strict=True))
-            values = [by_name[name] for name in self.residuals]
+            return [by_name[name] for name in self.residuals]
         return values
 
     def _move_by_noise(self, inputs: Mapping[str, float], numbers: Sequence[float]) -> list[Any]:
@@ -349,7 +367,7 @@ def _check_window(
                 sized.evaluate("kinks", *given, time=now, target=targets[0])
             )
     points = [_Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
-    known = {n: v for n, each in enumerate(points) for v in _evaluate(window, loops, each)}
+    known = _evaluate(window, loops, points)
     if not known:
         raise _fail(system.name, f"no point of {name} has a value", 4)
     for target in targets:
@@ -373,28 +391,25 @@ def _check_window(
         figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(known))
 
 
-def _evaluate(window: _Window, loops: Loops, point: _Point) -> list[list[Any]]:
-    """The exact rows at a point; none where the equations have no value.
+def _evaluate(window: _Window, loops: Loops, points: Sequence[_Point]) -> dict[int, Sequence[Any]]:
+    """The exact rows at the points where the equations have a value, by their numbers.
 
     Their envelopes are those of the equations or of the loops, whichever are larger: they may be
     written in different forms, of which one has cancelled what the other subtracts.
     """
-    arrays = {name: getattr(point, name).tolist() for name in ("state", "parameters", "inputs")}
-    arrays["time"] = [point.time]
-    others = evaluate_loops(loops, arrays, window.size)
+    others = dict[int, Any]()
+    for n, point in enumerate(points):
+        arrays = {name: getattr(point, name).tolist() for name in ("state", "parameters", "inputs")}
+        others[n] = evaluate_loops(loops, {**arrays, "time": [point.time]}, window.size)
     if loops.name == "kinks":  # rung 2 has read these off from the rates
-        return [] if others is None else [others]
-    try:
-        rows = window.evaluate(loops.name, point)
-    except OutsideDomain:
-        return []
-    others = others or rows
-    return [
-        [
+        return {n: rows for n, rows in others.items() if rows is not None}
+    return {
+        n: [
             replace(row, envelope=max(row.envelope, other.envelope))
-            for row, other in zip(rows, others, strict=True)
+            for row, other in zip(rows, others[n] or rows, strict=True)
         ]
-    ]
+        for n, rows in window.evaluate(loops.name, points).items()
+    }
 
 
 def _compare_targets(

@@ -56,6 +56,10 @@ class Series:
 
     def __mul__(self, other: Series) -> Series:
         a, b = self.of, other.of
+        if not any(a[1:]):  # a number, as most factors are
+            return Series(tuple(a[0] * each for each in b))
+        if not any(b[1:]):
+            return Series(tuple(each * b[0] for each in a))
         return Series(tuple(sum(map(mul, a[: k + 1], b[k::-1])) for k in range(len(a))))
 
     def __truediv__(self, other: Series) -> Series:

@@ -374,32 +374,77 @@ class _Polynomials:
     Attributes:
         values: The polynomials.
         ring: Theirs.
-        inverses: What stands for a divisor, which is a symbol there, by its inverse.
+        relations: What stands for a divisor or a root, which is a symbol there: the power that it
+            is known by, -1 or 2, and what this power is. Later ones may name earlier symbols.
     """
 
     values: list[Any]
     ring: PolyRing
-    inverses: Mapping[Symbol, Tree]
+    relations: Mapping[Symbol, tuple[int, Tree]]
+
+    @property
+    def inverses(self) -> dict[Symbol, Tree]:
+        """The inverses of divisors, by their symbols."""
+        return {own: 1 / base for own, (power, base) in self.relations.items() if power < 0}
 
     @property
     def divisors(self) -> set[Symbol]:
         """Symbols in divisors."""
         return {s for inverse in self.inverses.values() for s in inverse.free_symbols}
 
+    def is_same(self) -> bool:
+        """Whether two have one value: divisors and roots are taken out of their difference.
 
-def _find_polynomials(trees: Sequence[Tree], others: Iterable[Symbol] = ()) -> _Polynomials | None:
-    """Trees as polynomials in all their symbols and in inverses; None where they call functions."""
-    inverses = dict[Tree, Symbol]()
+        False also where it is not known, since these call functions.
+        """
+        one, other = self.values
+        difference = one - other
+        for own, (power, base) in reversed([*self.relations.items()]):
+            if not difference:
+                return True
+            try:
+                symbol, known = self.ring(own), self.ring.from_expr(base)
+            except ValueError:
+                return False
+            place = self.ring.index(symbol)
+            most, left = difference.degree(symbol), self.ring.zero
+            for exponents, coefficient in difference.terms():
+                k = exponents[place]
+                times, rest = (most - k, 0) if power < 0 else divmod(k, power)
+                exponents = (*exponents[:place], rest, *exponents[place + 1 :])
+                left += self.ring.term_new(exponents, coefficient) * known**times
+            difference = left
+        return not difference
 
-    def invert(power: Tree) -> Tree:
-        symbol = inverses.setdefault(power.base, sympy.Dummy())
-        return symbol**-power.exp
 
-    plain = [
-        tree.replace(lambda e: e.is_Pow and e.exp.is_Integer and e.exp < 0, invert)
-        for tree in trees
-    ]
-    symbols = {*others}.union(*(tree.free_symbols for tree in plain))
+def _find_polynomials(
+    trees: Sequence[Tree], others: Iterable[Symbol] = (), *, roots: bool = False
+) -> _Polynomials | None:
+    """Trees as polynomials in all their symbols, in inverses and, if so, in square roots.
+
+    None where they call functions, or have roots that are not wanted.
+    """
+    relations, known = dict[Symbol, tuple[int, Tree]](), dict[tuple[int, Tree], Symbol]()
+
+    def relate(power: int, base: Tree) -> Symbol:
+        symbol = known.setdefault((power, base), sympy.Dummy())
+        relations.setdefault(symbol, (power, base))
+        return symbol
+
+    def stand_in(tree: Tree) -> Tree:
+        base, power = tree.base.expand(), tree.exp
+        if power.q == 2:
+            base, power = relate(2, base), 2 * power
+        return base**power if power > 0 else relate(-1, base) ** -power
+
+    def is_replaced(tree: Tree) -> bool:
+        if not (tree.is_Pow and tree.exp.is_Rational):
+            return False
+        return bool(tree.exp < 0) if tree.exp.is_Integer else roots and tree.exp.q == 2
+
+    plain = [tree.replace(is_replaced, stand_in) for tree in trees]
+    bases = [base for _, base in relations.values()]
+    symbols = {*others}.union(*(tree.free_symbols for tree in (*plain, *bases)))
     if not symbols:
         return None
     ring = PolyRing(sorted(symbols, key=str), sympy.QQ, lex)
@@ -407,18 +452,18 @@ def _find_polynomials(trees: Sequence[Tree], others: Iterable[Symbol] = ()) -> _
         values = [ring.from_expr(tree) for tree in plain]
     except ValueError:
         return None
-    return _Polynomials(values, ring, {own: 1 / base for base, own in inverses.items()})
+    return _Polynomials(values, ring, relations)
 
 
 def _are_equal(found: Tree, wanted: Tree) -> bool:
     """Whether two trees have one value."""
-    polynomials = _find_polynomials([found, wanted])
-    if polynomials and polynomials.values[0] == polynomials.values[1]:
+    polynomials = _find_polynomials([found, wanted], roots=True)
+    if polynomials and polynomials.is_same():
         return True
     difference = found - wanted
     if not difference.has(sympy.Function) and not difference.atoms(sympy.NumberSymbol):
         return difference.expand() == 0 or bool(sympy.cancel(sympy.together(difference)) == 0)
-    names = sorted(difference.free_symbols, key=str)
+    names = sorted(found.free_symbols | wanted.free_symbols, key=str)
     for n in range(1, _POINTS + 1):
         at = {s: sympy.Rational(7 * n + 3 * k + 1, 5 * n + k + 2) for k, s in enumerate(names)}
         one, other = (each.xreplace(at).evalf(_DIGITS) for each in (found, wanted))

@@ -13,7 +13,7 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -137,12 +137,11 @@ class _Lines:
             self.unpacking.append(ast.unparse(line))
         else:
             self.sharing.append(ast.unparse(line))
-            self._known |= {each.id for each in ast.walk(target) if isinstance(each, ast.Name)}
+            self._known.update(_list_names(target))
 
     def _is_shared(self, value: ast.expr) -> bool:
         """Whether a formula has the same value for all members."""
-        names = {each.id for each in ast.walk(value) if isinstance(each, ast.Name)}
-        return names <= self._known | {"np"}
+        return all(name in self._known or name == "np" for name in _list_names(value))
 
     def _mark(self, value: ast.expr) -> ast.expr:
         """A formula in which the largest parts that are shared are names."""
@@ -213,12 +212,13 @@ class _Writer:
             value.id: row for row, value in reversed(lines.outputs) if isinstance(value, ast.Name)
         }
         values = [*lines.moving, *((f"_out{row}", value) for row, value in lines.outputs)]
-        last = {each: n for n, (_, value) in enumerate(values) for each in _names(value)}
+        names = [dict.fromkeys(_list_names(value)) for _, value in values]
+        last = {each: n for n, own in enumerate(names) for each in own}
         self._places: dict[str, str] = {}
         self._text: list[str] = []
         for n, (name, value) in enumerate(values):
             self._write_line(name, value, final)
-            for each in _names(value):
+            for each in names[n]:
                 place = self._places.get(each, "")
                 if last[each] == n and place.startswith("_row"):
                     self._free.append(place)
@@ -277,6 +277,18 @@ class _Writer:
         return place
 
 
-def _names(value: ast.expr) -> set[str]:
-    """Names in a formula."""
-    return {each.id for each in ast.walk(value) if isinstance(each, ast.Name)}
+def _list_names(value: ast.AST) -> Iterator[str]:
+    """Names in a formula, from left to right; `ast.walk` takes three times as long."""
+    match value:
+        case ast.Name(name):
+            yield name
+        case ast.BinOp(left, _, right):
+            yield from _list_names(left)
+            yield from _list_names(right)
+        case ast.UnaryOp(_, operand):
+            yield from _list_names(operand)
+        case ast.Constant():
+            pass
+        case _:
+            for part in ast.iter_child_nodes(value):
+                yield from _list_names(part)
