@@ -12,7 +12,14 @@ from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.methods.gauss import Gauss
-from coadjoint.solve.methods.lie_poisson import keep_offset
+from coadjoint.solve.methods.lie_poisson import (
+    EXACT,
+    FEW_ROWS,
+    FREE,
+    Search,
+    Sweep,
+    keep_offset,
+)
 from coadjoint.solve.methods.midpoint import Midpoint
 from coadjoint.solve.steps import add_low
 from coadjoint.systems import rigid_body
@@ -138,3 +145,16 @@ def test_a_compensated_sum_is_that_of_fractions() -> None:
     exact = 1 + sum(map(Fraction, numbers.tolist()), Fraction(0))
     assert abs(Fraction(high[0]) + Fraction(low[0]) - exact) < Fraction(1, 2**56)
     assert abs(Fraction(plain) - exact) > Fraction(1, 2**52)
+
+
+@pytest.mark.parametrize(("rows", "ends"), [(FEW_ROWS, 7), (FEW_ROWS + 1, 6)])
+def test_of_few_rows_every_other_sweep_is_asked(rows: int, ends: int) -> None:
+    """The sixth sweep changes nothing for the first time; of few rows the seventh is asked."""
+    assert (EXACT - FREE) % 2 == 0, "the last sweep before those that are all asked is asked"
+    search = Search(np.zeros((rows, 1)), rows)
+    for number in range(EXACT):
+        if search.done.all():
+            break
+        middle = np.full((rows, 1), float(min(number, 4)))
+        search.take(number, Sweep(middle, np.zeros((rows, 1))))
+    assert search.made.tolist() == [ends]

@@ -174,7 +174,7 @@ void go(double *state, double *memory, uint8_t *solved, double *made, size_t cou
             }
         }
         for (long s = 0; s < steps; ++s)
-            advance(blocks, here, size, ends, left, fine, sweeps);
+            advance(blocks, here, size, ends, left, 0, fine, sweeps);
         for (int b = 0; b < here; ++b) EACH(w) {
             const size_t m = (first + (size_t)b) * LANES + (size_t)w;
             for (size_t i = 0; i < STATE; ++i)

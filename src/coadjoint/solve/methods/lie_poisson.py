@@ -46,11 +46,16 @@ Bracket = Callable[[Lanes, "Array", "Array", "Array"], "Array"]
 FREE: Final = 3
 #: Sweeps that end a search only where they change nothing: to ask that costs less than to ask how
 #: much they change.
-EXACT: Final = 12
+EXACT: Final = 13
+#: Rows of a state up to which every other of these is asked, and not each: to ask costs as much as
+#: to sweep there.
+FEW_ROWS: Final = 8
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44
 #: These numbers, as templates read them.
-STOPPING: Final = MappingProxyType({"FREE": FREE, "EXACT": EXACT, "SOLVED": SOLVED})
+STOPPING: Final = MappingProxyType(
+    {"FREE": FREE, "EXACT": EXACT, "FEW_ROWS": FEW_ROWS, "SOLVED": SOLVED}
+)
 
 
 @dataclass
@@ -90,7 +95,8 @@ class Sweep:
 class Search:
     """The search for the middle of a step: sweeps, until they no longer improve it.
 
-    A lane is done at the first sweep that changes nothing, after `FREE`. Where roundings never end
+    A lane is done at the first sweep that changes nothing, after `FREE`, of those that are asked:
+    where a state has no more than `FEW_ROWS`, every other one. Where roundings never end
     that, it goes on to `EXACT` of them and stops one sweep after one that changes next to nothing,
     and no less than the sweep before it: what the step adds belongs to the middle before the last
     sweep, which has to be such an end itself. To stop earlier leaves an error of one sign: with
@@ -132,12 +138,17 @@ class Search:
         middle = np.where(held, self.middle, sweep.middle)
         if number >= self.exact:
             ends = ends & self._may_end(middle)
-        elif number >= FREE:
+        elif self._is_asked(number):
             ends = ends & (middle == self.middle).all(axis=0)
         self.middle, self.rise = middle, np.where(held, self.rise, sweep.rise)
         self.made = np.where(self.done, self.made, self.made + np.uint64(1))
-        if number >= FREE:
+        if number >= self.exact or self._is_asked(number):
             self.done = self.done | ends
+
+    def _is_asked(self, number: int) -> bool:
+        """Whether a sweep before the exact ones may end the search by changing nothing."""
+        few = len(self.rise) <= FEW_ROWS
+        return number >= FREE and (not few or (number - FREE) % 2 == 1)
 
     def _may_end(self, middle: Array) -> Mask:
         """Where a sweep changes nothing, or follows one after which roundings turn back."""
