@@ -105,6 +105,12 @@ def render_claims(declared: Spec) -> pipeline.Rendered:
         return pipeline.render(declared)
 
 
+@cache
+def rendered(name: str) -> pipeline.Rendered:
+    """The files of a shipped system, for tests that ask for its kernels."""
+    return render_claims(shipped(name))
+
+
 def spec(text: str = RIGID_BODY, *changes: tuple[str, str], name: str = "sample") -> Spec:
     """A spec from text, with some pieces replaced; a piece that is not there is an error."""
     for old, new in changes:

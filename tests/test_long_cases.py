@@ -36,4 +36,6 @@ def test_mistakes_in_the_list_are_seen():
     assert list_mistakes(longest | wrong, collected) == [
         "tests/test_top.py::test_energy[4] is no test"
     ]
-    assert list_mistakes(collected, collected) == ["tests/test_top.py::test_energy has no case left"]
+    assert list_mistakes(collected, collected) == [
+        "tests/test_top.py::test_energy has no case left"
+    ]

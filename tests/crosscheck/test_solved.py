@@ -2,13 +2,12 @@
 
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.folders import load_texts
-from tests.specs import shipped
+from tests import specs
 
 #: What is spoiled in which file, the targets that are compared, and how it is seen; of a velocity
 #: with the mean 0, below.
@@ -42,13 +41,13 @@ WRONG_LEVEL = [
 @pytest.fixture(scope="module")
 def rendered():
     """The shipped system up to its texts."""
-    return pipeline.render(shipped("camassa_holm"))
+    return specs.rendered("camassa_holm")
 
 
 @pytest.fixture(scope="module")
 def rendered_level():
     """That with a velocity of mean 0."""
-    return pipeline.render(shipped("hunter_saxton"))
+    return specs.rendered("hunter_saxton")
 
 
 def climb(rendered, texts, targets):

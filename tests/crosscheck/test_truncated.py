@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.family_check import check_loops
+from tests import specs
 from tests.crosscheck.test_solved import climb
-from tests.specs import shipped
 
 #: What is spoiled in which file, the targets that are compared, and how it is seen.
 WRONG = [
@@ -45,7 +44,7 @@ WRONG_WAVES = [
 @pytest.fixture(scope="module")
 def on_torus():
     """The shipped system on the torus up to its texts."""
-    return pipeline.render(shipped("zeitlin_torus"))
+    return specs.rendered("zeitlin_torus")
 
 
 @pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG_WAVES)
@@ -63,7 +62,7 @@ def test_the_ladder_sees_wrong_waves(on_torus, monkeypatch, file, old, new, targ
 @pytest.fixture(scope="module")
 def rendered():
     """The shipped system up to its texts."""
-    return pipeline.render(shipped("zeitlin_su_n"))
+    return specs.rendered("zeitlin_su_n")
 
 
 @pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG)

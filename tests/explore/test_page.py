@@ -16,6 +16,7 @@ from coadjoint.render.scripts import render_script
 from coadjoint.resources import derivations_folder, templates_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec
+from tests import specs
 from tests.specs import RIGID_BODY, render_claims
 
 HOSTILE = '</script><img src=x onerror=alert(1)>\\"<!-- & {{ 7*7 }}'
@@ -82,7 +83,7 @@ def test_a_page_asks_for_nothing(top):
 def test_the_page_has_the_generated_functions_and_names_for_what_it_shows(top):
     """The kernel in it is that of the target, and controls have labels."""
     page, scene = top
-    rendered = render_claims(read_spec(derivations_folder() / "heavy_top.toml"))
+    rendered = specs.rendered("heavy_top")
     assert render_script(rendered.context) in page
     assert scene["kind"] == "body"
     assert scene["methods"][0]["name"] == "splitting4"
@@ -224,7 +225,7 @@ def test_steps_of_the_page_are_those_of_the_library(top):
     """Every method of the page ends where that of `System.simulate` ends, to rounding."""
     racer = pytest.importorskip("py_mini_racer", reason="mini-racer is not installed").MiniRacer()
     _, scene = top
-    rendered = render_claims(read_spec(derivations_folder() / "heavy_top.toml"))
+    rendered = specs.rendered("heavy_top")
     page = assemble(scene, render_script(rendered.context))
     code = element(page, "<script>", "const scene =")  # the kernel, numerics and drawing
     start, h, count = np.array([0.3, -0.2, 5.0, 0.3, 0.0, 0.9]), 0.01, 200

@@ -11,11 +11,11 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.resources import derivations_folder, systems_folder
 from coadjoint.spec.reader import read_spec_text
+from tests import specs
 from tests.conftest import FAMILIES, FIELDS
 from tests.families import MOVED, TOPS, read
 from tests.kernels import COMPILER
 from tests.render.test_sanitizers import SANITIZERS, compile_and_run
-from tests.specs import shipped
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 
@@ -207,7 +207,7 @@ CASES = [
 @pytest.mark.parametrize(("name", "method", "sanitizers"), CASES)
 def test_the_sanitizers_find_nothing(tops, name, method, sanitizers, tmp_path):
     """Every function and method, shared parameters and separate ones, odd numbers of members."""
-    rendered = tops if name == "tops" else pipeline.render(shipped(name))
+    rendered = tops if name == "tops" else specs.rendered(name)
     define = f"-D{METHODS[method]}"
     done = compile_and_run(sanitizers, write(rendered), tmp_path, define)
     assert done == (0, "")

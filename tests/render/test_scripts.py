@@ -11,9 +11,9 @@ from coadjoint.errors import CrossCheckError, OutputError
 from coadjoint.render.scripts import JS, list_scripted, render_family_script, render_script
 from coadjoint.render.targets.js.printer import name_text
 from coadjoint.render.targets.protocol import Call
-from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec
+from tests import specs
 from tests.specs import RIGID_BODY, render_claims
 
 POINTS = 10_000
@@ -67,7 +67,7 @@ def compare(system, kernel, functions, *, exact):
 def test_kernels_equal_those_of_numpy(name, exact):
     """Bits are those of NumPy where functions beyond sqrt are not called; else within a bound."""
     engine()
-    rendered = render_claims(read_spec(derivations_folder() / f"{name}.toml"))
+    rendered = specs.rendered(name)
     text = render_script(rendered.context)
     for program in list_scripted(rendered.context):
         assert check_text(program, JS, text, name) > 0
@@ -91,7 +91,7 @@ def test_kernels_equal_those_of_numpy(name, exact):
 def test_kernels_of_equal_members_equal_those_of_numpy(name, size):
     """So do loops over members, in blocks and without, with sums over pairs and solutions."""
     js = engine()
-    rendered = render_claims(read_spec(derivations_folder() / f"{name}.toml"))
+    rendered = specs.rendered(name)
     js.eval(render_family_script(rendered.family.context))
     rng = np.random.default_rng(8)
     with load_texts(rendered.texts) as loaded:

@@ -16,8 +16,8 @@ from coadjoint.solve.drift import tell_drift
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
+from tests import specs
 from tests.families import NECKLACE, RING, TOPS, VORTICES
-from tests.specs import shipped
 
 
 @pytest.fixture(scope="module")
@@ -373,7 +373,7 @@ def test_defaults_may_differ_from_member_to_member(default, expected, resized):
 
 def test_spins_begin_as_a_wave_of_any_number_of_waves():
     """It turns with the frequency 2 J cos(theta) (1 - cos(k)), k = pi/4 and cos(theta) = 4/5."""
-    with load_texts(pipeline.render(shipped("heisenberg_lattice")).texts) as system:
+    with load_texts(specs.rendered("heisenberg_lattice").texts) as system:
         waves = system.resize({"i": 24})
         start = np.array(list(waves.STATE.defaults.values())).reshape(3, 24)
         rates = waves.rhs(start.ravel(), target="numpy").reshape(3, 24)
@@ -386,7 +386,7 @@ def test_spins_begin_as_a_wave_of_any_number_of_waves():
 
 def test_the_drift_of_what_begins_at_zero_is_told_as_it_is():
     """Momentum of the figure eight: a ratio to its own roundings says nothing."""
-    with load_texts(pipeline.render(shipped("n_body")).texts) as system:
+    with load_texts(specs.rendered("n_body").texts) as system:
         start = [system.STATE.defaults[name] for name in system.STATE.components]
         run = system.simulate(start, (0.0, 1.0), target="numpy", samples=5)
         many = system.simulate(np.transpose([start] * 2), (0.0, 1.0), target="numpy", samples=5)
@@ -408,7 +408,7 @@ def test_operations_of_a_pair_are_counted(text, pair):
 
 def test_starts_may_differ_from_member_to_member():
     """Three bodies on the figure eight of Chenciner and Montgomery come back after its period."""
-    with load_texts(pipeline.render(shipped("n_body")).texts) as system:
+    with load_texts(specs.rendered("n_body").texts) as system:
         start = [system.STATE.defaults[name] for name in system.STATE.components]
         run = system.simulate(start, (0.0, 6.32591398), target="numpy", rtol=1e-11, samples=1)
         np.testing.assert_allclose(run.state[:, -1], start, atol=2e-7)

@@ -16,9 +16,7 @@ from tests.specs import derived, emitted, shipped
 BY_ROUTE = [(name, route) for name in SYSTEMS for route in shipped(name).routes]
 #: Certificates prove that other routes give the motion of the first one; here some of them again.
 REGULAR = {
-    pair
-    for route in ROUTES
-    for pair in [each for each in BY_ROUTE if each[1] == route][:3]
+    pair for route in ROUTES for pair in [each for each in BY_ROUTE if each[1] == route][:3]
 } | {(name, shipped(name).routes[0]) for name in SYSTEMS}
 each_route = pytest.mark.parametrize(
     ("name", "route"),
