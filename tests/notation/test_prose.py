@@ -9,8 +9,8 @@ import pytest
 from coadjoint.chapter import complete
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
-from coadjoint.notation.written import literal
 from coadjoint.notation.tex import to_mathml
+from coadjoint.notation.written import literal
 from coadjoint.render.document import render_document
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec
