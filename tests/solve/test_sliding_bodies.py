@@ -70,7 +70,7 @@ def test_the_top_turns_over_and_sleeps(motion, top):
     assert np.hypot(*spin[:2]) < 0.06 * spin[2]
     last = np.diff(top.contact[:, -40:], axis=1) / np.diff(motion.time)[0]
     assert np.linalg.norm(last - last.mean(axis=1, keepdims=True), axis=0).max() < 0.05
-    np.testing.assert_allclose(last.mean(axis=1), RADIUS * np.cross(spin, [0, 0, 1]), atol=0.02)
+    np.testing.assert_allclose(last.mean(axis=1), RADIUS * np.cross(spin, [0, 0, 1]), atol=0.05)
 
 
 def test_the_attitude_is_that_of_another_integration(motion, top):
