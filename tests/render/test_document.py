@@ -398,6 +398,28 @@ def test_a_formula_that_stays_plain_is_seen():
     assert not CODE.search("about a dozen sweeps of 2 stages, by Nambu's bracket")
 
 
+def test_names_of_code_end_lines_behind_their_lines_alone():
+    """On a page and in LaTeX a long name is broken there, and nowhere within a word."""
+    empty = {"words": (), "law": "", "law_latex": "", "title": "", "kind": "unfit"}
+    section = {**empty, "rows": [("method", "reason"), ("average_gradient, kahan", "it has noise")]}
+    for form, shown in {
+        "html": "<code>average_<wbr>gradient</code>, <code>kahan</code>",
+        "latex": r"\texttt{average\_\allowbreak{}gradient}, \texttt{kahan}",
+        "typst": '#raw("average_gradient"), #raw("kahan")',
+    }.items():
+        made = set_prose({"description": "", "sections": [section]}, form)
+        assert made["sections"][0]["rows"][1][0] == shown
+
+
+def test_sources_stand_once_on_a_page():
+    """Among the references, where there are some, else at the end."""
+    page = {"title": "T", "about": "A", "source": "Euler 1765", "description": ""}
+    listed = {"title": "References", "law": "", "kind": "references"}
+    listed["words"] = [("system", "Euler 1765")]
+    for sections in ([], [listed]):
+        assert render_document({**page, "sections": sections}, "html").count("Euler 1765") == 1
+
+
 def test_kept_quantities_have_the_sign_of_the_chapter():
     """As the table of symbols writes them; words stay words, and letters are letters."""
     sign = {"text": "casimir1", "latex": "C_1", "mathml": "<math><mi>C</mi></math>", "typst": "C"}

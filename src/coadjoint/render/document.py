@@ -149,10 +149,11 @@ def _set(formula: Formula | Code, form: str) -> str:
     if isinstance(formula, Code):
         if form == "typst":
             return f"#raw({json.dumps(make_printable(formula.text), ensure_ascii=False)})"
-        if form == "latex":  # a line may end behind a _, or names overflow narrow columns
+        # a line may end behind a _, or names overflow narrow columns
+        if form == "latex":
             escaped = escape_latex(formula.text).replace(r"\_", r"\_\allowbreak{}")
             return rf"\texttt{{{escaped}}}"
-        return f"<code>{_escape_html(formula.text)}</code>"
+        return f"<code>{_escape_html(formula.text).replace('_', '_<wbr>')}</code>"
     if form == "html":
         return " ".join(f"<math>{each}</math>" for each in formula.pieces)
     return f"${formula.written.latex if form == 'latex' else formula.written.typst}$"
