@@ -33,8 +33,11 @@ def test_claims_that_differ_by_the_route_are_one_sentence():
     shown = by_kind(complete(RECORD, {"claims": claims}, None))
     ((about, text),) = shown["proofs"]["words"]
     assert about == "The Legendre transform"
-    assert "It is proved that dh/dmu = xi on the routes a, b and c. Method: normal form." in text
-    assert "It is refuted that q > 0" in text
+    assert "Proved: dh/dmu = xi on the routes a, b and c. Method: normal form." in text
+    assert "Refuted: q > 0" in text
+    claims = [claim | {"verdict": "numerically supported", "statement": "q is kept"}]
+    ((_, text),) = by_kind(complete(RECORD, {"claims": claims}, None))["proofs"]["words"]
+    assert text == "Supported by numbers, and not proved: q is kept. Method: normal form."
     assert shown["proofs"]["law"] == "4 claims: 3 proved, 1 refuted"
     assert len(shown["verdicts"]["rows"]) == 5
 

@@ -104,16 +104,13 @@ def _sentences(claims: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, list[
 
 def _sentence(statement: str, verdict: str, method: str, routes: Sequence[str]) -> str:
     """A claim with its verdict and its method."""
-    lead = {
-        "proved": "It is proved that",
-        "refuted": "It is refuted that",
-        "numerically supported": "It is supported by numbers, and not proved, that",
-    }.get(verdict, f"It is {verdict} that")
+    told = "supported by numbers, and not proved" if verdict == "numerically supported" else verdict
     where = ""
     if routes:
         listed = ", ".join(routes[:-1]) + " and " * (len(routes) > 1) + routes[-1]
         where = f" on the route{'s' * (len(routes) > 1)} {listed}"
-    return f"{lead} {statement}{where}. Method: {method}."
+    # statements are sentences, or what there is: "an invariant measure: dPi dGamma"
+    return f"{told.capitalize()}: {statement}{where}. Method: {method}."
 
 
 def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -74,3 +74,6 @@ def test_other_motions_are_refused_with_the_reason():
     assert find_top(specs.emitted("se2_pendulum")) == (
         "the rate of m is -b2, which is no multiple of the product of the two others"
     )
+    assert find_top(specs.emitted("pt_rigid_body")) == (
+        "the rate of x1 is no multiple of the product of the two others"  # it takes ten lines
+    )

@@ -10,6 +10,7 @@ from coadjoint.chapter import complete
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import to_mathml
+from coadjoint.notation.written import literal
 from coadjoint.render.document import render_document
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec
@@ -130,6 +131,22 @@ def test_descriptions_are_set(form):
     shown = render_document({**page, "sections": []}, form)
     assert "d^2u" not in shown
     assert ("<mfrac>" if form == "html" else "frac") in shown
+
+
+def test_names_of_the_table_of_symbols_stand_by_themselves():
+    """They and their components are formulas; words among them, and other names, are words."""
+    names = {each: literal(each, "X") for each in ("casimir1", "vn", "spin", "g_gram")}
+    found = read_prose("casimir1, g_gram, vn2 and dvxi_dt, not spin or other1", names)
+    assert [each if isinstance(each, str) else each.written.latex for each in found] == [
+        *("X", ", ", "X", ", ", r"\mathrm{vn}_2", " and ", r"\dot{v}_{\xi}"),
+        ", not spin or other1",
+    ]
+
+
+def test_a_number_stands_before_a_letter_within_brackets_alone():
+    """As in the name of an algebra; what is no letter is left."""
+    assert [type(each) for each in read_prose("sp(2n)")] == [Formula]
+    assert read_prose("sp(2nd)") == ["sp(2nd)"]
 
 
 def test_descriptions_of_all_systems_are_read():

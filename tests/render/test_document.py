@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import asdict
 from html.parser import HTMLParser
+from importlib import import_module
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -15,6 +16,8 @@ from coadjoint.derive.document import document
 from coadjoint.derive.lines import formula, formula_line
 from coadjoint.derive.records import symbol
 from coadjoint.exact import Field
+from coadjoint.files import read_certificate
+from coadjoint.methods import list_fitting, list_kept, list_unfit
 from coadjoint.notation import written
 from coadjoint.render.document import (
     FORMATS,
@@ -23,8 +26,10 @@ from coadjoint.render.document import (
     escape_typst,
     leave_out_repeated,
     render_document,
+    set_prose,
     split_sides,
 )
+from coadjoint.resources import systems_folder
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES
 from tests.specs import RIGID_BODY, shipped, spec
@@ -333,3 +338,98 @@ def test_rates_that_differ_from_the_lead_stay():
     assert leave_out_repeated(sections) == sections
     short = [{**each, "lines": [{"mathml": "<math/>"}]} for each in long_rates([])]
     assert leave_out_repeated(short) == short
+
+
+#: What tells formulas and names of code from words, but for the article.
+CODE = re.compile(r"[_^*=\[\]{}+]|\w\(|[A-Za-z]\d|\b(?!a\b)(?<!')[A-Za-z]\b")
+#: What is set, in each format.
+SET = {
+    "html": re.compile(r"<(math|code)>.*?</\1>"),
+    "latex": re.compile(r"\$[^$]*\$|\\texttt\{(?:[^{}]|\{\})*\}"),
+    "typst": re.compile(r'\$[^$]*\$|#raw\("[^"]*"\)'),
+}
+
+
+def set_methods(certificate, form):
+    """The cells of both tables of methods, as a format has them."""
+    judged = certificate["methods"]
+    fitting = [
+        (m["name"], str(m["order"]), ", ".join(list_kept(m)) or "nothing", m["cost"])
+        for m in list_fitting(judged)
+    ]
+    unfit = [(", ".join(names), why) for why, names in list_unfit(judged).items()]
+    empty = {"words": (), "law": "", "law_latex": "", "title": ""}
+    heads = {"methods": ("m", "o", "k", "c"), "unfit": ("m", "r")}
+    sections = [
+        {**empty, "kind": kind, "rows": [heads[kind], *rows]}
+        for kind, rows in (("methods", fitting), ("unfit", unfit))
+    ]
+    state = [{"text": n, "latex": n, "mathml": n, "typst": n} for n in certificate["state"]]
+    symbols = [(each, each["text"], "a variable", "1") for each in state]
+    sections.append({**empty, "kind": "symbols", "rows": [("s", "n", "m", "u"), *symbols]})
+    made = set_prose({"description": "", "sections": sections}, form)["sections"]
+    return [str(cell) for part in made[:2] for row in part["rows"][1:] for cell in row]
+
+
+def list_certificates():
+    """Of every shipped system, with the names of its state."""
+    for path in sorted(systems_folder().glob("*/certificate.json")):
+        system = import_module(f"coadjoint.systems.{path.parent.name}").system
+        yield {**read_certificate(path), "state": list(system.STATE)}
+
+
+def test_tables_of_methods_have_no_sign_of_code():
+    """Of every system, in every format: formulas are set, and names of methods are code."""
+    systems, seen = [*list_certificates()], 0
+    assert len(systems) > 100
+    for form, pattern in SET.items():
+        for certificate in systems:
+            for cell in set_methods(certificate, form):
+                left = pattern.sub("", cell)
+                assert not CODE.search(left.replace("\\", "")), (form, cell)
+                seen += bool(left != cell)
+    assert seen > 5000
+
+
+def test_a_formula_that_stays_plain_is_seen():
+    """What the test above looks for, in what would be left."""
+    for text in ("T(p)", "casimir1", "g_gram", "O(h^2)", "multiples of i alone", "a = 1", "x + 1"):
+        assert CODE.search(text)
+    assert not CODE.search("about a dozen sweeps of 2 stages, by Nambu's bracket")
+
+
+def test_names_of_code_end_lines_behind_their_lines_alone():
+    """On a page and in LaTeX a long name is broken there, and nowhere within a word."""
+    empty = {"words": (), "law": "", "law_latex": "", "title": "", "kind": "unfit"}
+    section = {**empty, "rows": [("method", "reason"), ("average_gradient, kahan", "it has noise")]}
+    for form, shown in {
+        "html": "<code>average_<wbr>gradient</code>, <code>kahan</code>",
+        "latex": r"\texttt{average\_\allowbreak{}gradient}, \texttt{kahan}",
+        "typst": '#raw("average_gradient"), #raw("kahan")',
+    }.items():
+        made = set_prose({"description": "", "sections": [section]}, form)
+        assert made["sections"][0]["rows"][1][0] == shown
+
+
+def test_sources_stand_once_on_a_page():
+    """Among the references, where there are some, else at the end."""
+    page = {"title": "T", "about": "A", "source": "Euler 1765", "description": ""}
+    listed = {"title": "References", "law": "", "kind": "references"}
+    listed["words"] = [("system", "Euler 1765")]
+    for sections in ([], [listed]):
+        assert render_document({**page, "sections": sections}, "html").count("Euler 1765") == 1
+
+
+def test_kept_quantities_have_the_sign_of_the_chapter():
+    """As the table of symbols writes them; words stay words, and letters are letters."""
+    sign = {"text": "casimir1", "latex": "C_1", "mathml": "<math><mi>C</mi></math>", "typst": "C"}
+    empty = {"words": (), "law": "", "law_latex": "", "title": ""}
+    symbols = [("", "name", "meaning", "unit"), (sign, "casimir1", "Casimir", "1")]
+    kept = "casimir1, a, spin, dot(S[i], S[i]), Poisson tensor"
+    rows = [("method", "order", "keeps", "cost"), ("gauss4", "4", kept, "one map")]
+    sections = [{**empty, "kind": "symbols", "rows": symbols}]
+    sections.append({**empty, "kind": "methods", "rows": rows})
+    made = set_prose({"description": "", "sections": sections}, "latex")["sections"][1]["rows"][1]
+    assert made[0] == r"\texttt{gauss4}"
+    assert made[2] == r"$C_1$, $a$, spin, $S_i \cdot S_i$, Poisson tensor"
+    assert made[3] == "one map"

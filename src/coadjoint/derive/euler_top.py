@@ -24,7 +24,7 @@ from __future__ import annotations
 from coadjoint.derive.equations import Equations
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field
-from coadjoint.exact.text import element_text
+from coadjoint.exact.text import brief_text
 
 Three = tuple[Element, Element, Element]
 #: Names of n, c and d.
@@ -42,10 +42,9 @@ def find_top(equations: Equations) -> Three | str:
         rate = field.normal(equations.close(equations.exact.rates[i]))
         coefficient = field.normal(rate / (others[0] * others[1])) if rate else field.zero
         if field.reach(coefficient) & {*setting.state}:
-            return (
-                f"the rate of {name} is {element_text(field, rate)}, which is no multiple of the "
-                "product of the two others"
-            )
+            text = brief_text(field, rate)
+            told = f"is {text}, which is" if text else "is"
+            return f"the rate of {name} {told} no multiple of the product of the two others"
         found.append(coefficient)
     return found[0], found[1], found[2]
 

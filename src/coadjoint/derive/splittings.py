@@ -37,6 +37,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.denominators import BudgetSpent
+from coadjoint.exact.text import brief_text
 from coadjoint.poisson.structure import PoissonStructure
 
 #: Parts of which every order is tried.
@@ -190,8 +191,10 @@ class _Search:
         """Refuse what has no flow here."""
         for i, j in product(places, repeat=2):
             if not self.flows.commute(i, j):
+                text = brief_text(self.field, function)
+                told = f"the term {text}" if text else "a term"
                 raise NoFlowError(
-                    f"the term {element_text(self.field, function)} of its energy depends on "
+                    f"{told} of its energy depends on "
                     f"{self.state[min(i, j)]} and {self.state[max(i, j)]}, whose bracket is not 0"
                 )
 

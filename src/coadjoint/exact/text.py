@@ -15,6 +15,8 @@ from coadjoint.exact.rationals import Monomial, Written
 
 #: What comes before the places where functions jump, in the words of a method of proof.
 WHILE = ", where and while "
+#: Characters of an element that a sentence has room for.
+ROOM = 80
 
 
 def element_text(field: Field, element: Element) -> str:
@@ -32,6 +34,17 @@ def element_text(field: Field, element: Element) -> str:
     for other in others:
         first += f" - {other[1:]}" if other.startswith("-") else f" + {other}"
     return first
+
+
+def brief_text(field: Field, element: Element) -> str:
+    """The text of an element that is told within a sentence; "" where it has no room there.
+
+    >>> field = Field(["x", "y"])
+    >>> brief_text(field, field["x"] ** 2), brief_text(field, (field["x"] + field["y"] + 1) ** 9)
+    ('x^2', '')
+    """
+    text = element_text(field, element)
+    return text if len(text) <= ROOM else ""
 
 
 def _fraction(field: Field, quotient: Written) -> str:

@@ -21,9 +21,10 @@ from typing import Final
 from coadjoint.derive import Equations
 from coadjoint.derive.setting import STEP
 from coadjoint.errors import CrossCheckError
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, residue
+from coadjoint.exact.text import brief_text
 from coadjoint.lower.check import call_residue
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
@@ -40,7 +41,7 @@ def why_not_quadratic(equations: Equations) -> str:
     """What keeps rates from being quadratic in the state; "" where they are."""
     setting, field = equations.setting, equations.setting.field
     if equations.kept:
-        return f"its kernel solves for {', '.join(equations.kept[:3])}, which have no closed form"
+        return "its rates are not in closed form: its kernel solves for them"
     if setting.driving:
         return f"it is driven by {', '.join(setting.driving)}"
     if equations.spec.noise:
@@ -50,9 +51,9 @@ def why_not_quadratic(equations: Equations) -> str:
             slopes = [s for s in field.gradient(term, setting.state) if s]
             second = [s for slope in slopes for s in field.gradient(slope, setting.state) if s]
             if any(field.reach(each) & {*setting.state} for each in second):
-                return (
-                    f"the term {element_text(field, term)} of the rate of {name} is not quadratic"
-                )
+                text = brief_text(field, term)
+                told = f"the term {text}" if text else "a term"
+                return f"{told} of the rate of {name} is not quadratic"
     return ""
 
 

@@ -247,17 +247,24 @@ def unit(text: str) -> Written:
 
     >>> unit("kg m^2/s").latex
     '\\mathrm{kg\\,m^{2}/s}'
+    >>> unit("1/s^(1/2)").latex
+    '\\mathrm{1/s^{1/2}}'
     """
-    spaced = text.replace("*", " ")
-    latex = re.sub(r"\^(-?\d+)", r"^{\1}", spaced).replace(" ", r"\,")
+    # the stroke of an exponent is another sign than that between units, until it is printed
+    spaced = re.sub(r"\^\((-?\d+)/(\d+)\)", "^\\1\u2044\\2", text.replace("*", " "))
+    raised = re.compile(r"\^(-?\d+(?:\u2044\d+)?)")
+    latex = raised.sub(r"^{\1}", spaced).replace(" ", r"\,").replace("\u2044", "/")
     pieces = list[str]()
-    for label, exponent, sign in re.findall(r"([^\s/^]+)(?:\^(-?\d+))?([\s/]*)", spaced):
+    for label, exponent, sign in re.findall(
+        r"([^\s/^]+)(?:\^(-?\d+(?:\u2044\d+)?))?([\s/]*)", spaced
+    ):
         shown = f'<mi mathvariant="normal">{label}</mi>'
         if exponent:
             minus = operator("−") if exponent.startswith("-") else ""
-            shown = f"<msup>{shown}{row(minus, f'<mn>{exponent.lstrip(chr(45))}</mn>')}</msup>"
+            size = exponent.removeprefix("-").replace("\u2044", "/")
+            shown = f"<msup>{shown}{row(minus, f'<mn>{size}</mn>')}</msup>"
         pieces.append(shown)
         if sign:
             pieces.append(operator("/") if "/" in sign else '<mspace width="0.2em"/>')
-    typst = re.sub(r"([A-Za-z]+)", r'"\1"', re.sub(r"\^(-?\d+)", r"^(\1)", spaced))
+    typst = re.sub(r"([A-Za-z]+)", r'"\1"', raised.sub(r"^(\1)", spaced).replace("\u2044", "/"))
     return literal(text, rf"\mathrm{{{latex}}}", row(*pieces) if pieces else "<mrow></mrow>", typst)

@@ -44,7 +44,7 @@ _TOKEN: Final = re.compile(
     r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
-    r"|(?P<name>[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
+    r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
     r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
     re.ASCII,
 )
@@ -168,11 +168,22 @@ class _Reader:
         if len(tokens) == 1:
             token = tokens[0]
             lead = token[0] == "A" and self.text[: token.start()].rstrip()[-1:] in ("", ".", ":")
-            return bool(token["rate"]) or bool(token["name"] and _is_symbol(token[0]) and not lead)
+            is_name = token["name"] and (_is_symbol(token[0]) or self._is_known(token[0]))
+            return bool(token["rate"]) or bool(is_name and not lead)
         if len(tokens) == 4 and self._is_plural(first):
             return False
         plain = tokens[0][0] in ("(", "[") and self._find_closing(first) == self.at - 1
         return not plain or (tokens[0][0] == "[" and any(each[0] == "," for each in tokens))
+
+    def _is_known(self, text: str) -> bool:
+        """Whether a name, or that of what it is a component or rate of, has a way of its own.
+
+        Those that are words, such as ``spin``, stay words.
+        """
+        if re.fullmatch(r"d\w+_dt", text):
+            return True
+        of = text.rstrip("0123456789")
+        return not (text.isalpha() and text.islower()) and (text in self.names or of in self.names)
 
     def _is_attached(self, at: int) -> bool:
         """Whether a letter stands right before a token: of a word that has been left."""
@@ -263,7 +274,7 @@ class _Reader:
             loose = self._is_spaced() and self._is_spaced(1) and self._peek(1) != ""
             if sign in ("*", "/") or (sign in _BETWEEN and loose):
                 self.at += 1
-            elif self._is_spaced() and self._stands_beside():
+            elif (self._is_spaced() or self._is_counted()) and self._stands_beside():
                 sign = " "
             else:
                 return made
@@ -275,6 +286,10 @@ class _Reader:
                 self.at = start
                 return made
             made = _multiply(made, sign, factor)
+
+    def _is_counted(self) -> bool:
+        """Whether a number stands right before the next token, in brackets: ``sp(2n)``."""
+        return self.deep > 0 and self.tokens[self.at - 1][0].isdigit()
 
     def _stands_beside(self) -> bool:
         """Whether the last token and the next are factors without a sign: ``2 K``, ``B^T M``."""

@@ -9,8 +9,11 @@ Read next: `templates/document/text.j2`, the shortest of the three.
 
 from __future__ import annotations
 
+import json
+import re
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
 from typing import Any, Final
@@ -19,6 +22,8 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 from markupsafe import escape as escape_html
 
+from coadjoint.methods import MAPPED, NOISY, STRUCTURED
+from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.written import Written
@@ -105,6 +110,17 @@ def leave_out_repeated(sections: Sequence[Mapping[str, Any]]) -> list[dict[str, 
     return made
 
 
+@dataclass(frozen=True)
+class Code:
+    """A name as a person types it."""
+
+    text: str
+
+
+#: What a line of text is made of.
+Part = str | Formula | Code
+
+
 class Prose(Markup):
     """Words with formulas between them, as a format has them, ready to be printed.
 
@@ -115,8 +131,8 @@ class Prose(Markup):
     plain: str
 
     @classmethod
-    def of(cls, parts: Sequence[str | Formula], plain: str, form: str) -> Prose:
-        """Words, escaped, and formulas of `coadjoint.notation.prose`."""
+    def of(cls, parts: Sequence[Part], plain: str, form: str) -> Prose:
+        """Words, escaped, names of code, and formulas of `coadjoint.notation.prose`."""
         escape = _ESCAPES.get(form, _escape_html)
         made = cls("".join(escape(p) if isinstance(p, str) else _set(p, form) for p in parts))
         made.plain = plain
@@ -128,8 +144,16 @@ def _escape_html(text: str) -> str:
     return str(escape_html(make_printable(text)))
 
 
-def _set(formula: Formula, form: str) -> str:
-    """A formula in a line."""
+def _set(formula: Formula | Code, form: str) -> str:
+    """A formula, or a name of code, in a line."""
+    if isinstance(formula, Code):
+        if form == "typst":
+            return f"#raw({json.dumps(make_printable(formula.text), ensure_ascii=False)})"
+        # a line may end behind a _, or names overflow narrow columns
+        if form == "latex":
+            escaped = escape_latex(formula.text).replace(r"\_", r"\_\allowbreak{}")
+            return rf"\texttt{{{escaped}}}"
+        return f"<code>{_escape_html(formula.text).replace('_', '_<wbr>')}</code>"
     if form == "html":
         return " ".join(f"<math>{each}</math>" for each in formula.pieces)
     return f"${formula.written.latex if form == 'latex' else formula.written.typst}$"
@@ -144,6 +168,10 @@ def set_text(text: str, form: str = "html") -> str:
     return Prose.of(read_prose(text), text, form)
 
 
+#: Names of methods, as a reason why some do not apply may have them.
+_METHOD: Final = re.compile(rf"\b({'|'.join(sorted({*STRUCTURED, *MAPPED, *NOISY}))})\b")
+#: Between entries of a list: no comma within brackets.
+_COMMA: Final = re.compile(r", (?![^(]*\))")
 #: Sections whose words name books and routes, and hold no formula.
 _NO_FORMULAS: Final = ("principle", "references")
 
@@ -153,30 +181,93 @@ def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
 
     Names are written as its table of symbols has them. The title is words.
     """
-    sections, names = document["sections"], _list_names(document["sections"])
-
-    def prose(text: str) -> str:
-        parts = read_prose(text, names)
-        return text if parts == [text] else Prose.of(parts, text, form)
-
+    sections = document["sections"]
+    setter = _Setter(_list_names(sections), form)
     made = [dict(part) for part in sections]
     for part in made:
         if part["kind"] == "cost":
-            part["words"] = [(n, Prose.of(read_counts(t), t, form)) for n, t in part["words"]]
+            part["words"] = [(setter.code(n), setter.counts(t)) for n, t in part["words"]]
         elif part["kind"] not in _NO_FORMULAS:
-            part["title"] = prose(part["title"])
-            part["words"] = [(prose(label), prose(text)) for label, text in part["words"]]
-        if part["kind"] in ("verdicts", "symbols"):  # whose labels are names of code
-            part["rows"] = [
-                tuple(
-                    prose(cell) if isinstance(cell, str) and n != 1 else cell
-                    for n, cell in enumerate(row)
-                )
-                for row in part["rows"]
+            part["title"] = setter.prose(part["title"])
+            part["words"] = [tuple(map(setter.prose, words)) for words in part["words"]]
+        if columns := setter.columns(part["kind"]):
+            head, *rows = part["rows"] or [()]
+            part["rows"] = [head] * bool(head) + [
+                tuple(write(cell) for write, cell in zip(columns, row, strict=True)) for row in rows
             ]
         if not part["law_latex"]:
-            part["law"] = prose(part["law"])
-    return {**document, "description": prose(document["description"]), "sections": made}
+            part["law"] = setter.prose(part["law"])
+    return {**document, "description": setter.prose(document["description"]), "sections": made}
+
+
+@dataclass(frozen=True)
+class _Setter:
+    """Texts of a document in a format.
+
+    Attributes:
+        names: How its table of symbols writes names.
+        form: The format.
+    """
+
+    names: Mapping[str, Written]
+    form: str
+
+    def columns(self, kind: str) -> tuple[Callable[[Any], Any], ...]:
+        """How cells of a table are set, by columns, the head apart; none where they stay."""
+
+        def stay(cell: Any) -> Any:
+            return cell
+
+        return {
+            "verdicts": (self.prose, stay, self.prose),
+            "symbols": (stay, self.code, self.prose, stay),
+            "methods": (self.code, stay, self.quantities, self.prose),
+            "unfit": (self.code, self.reason),
+        }.get(kind, ())
+
+    def prose(self, text: str) -> str:
+        """Words with formulas between them."""
+        return self._made(read_prose(text, self.names), text)
+
+    def counts(self, text: str) -> str:
+        """Numbers of operations."""
+        return self._made(read_counts(text), text)
+
+    def code(self, text: str) -> str:
+        """Names of code, with commas between them."""
+        return self._made(_with_commas([Code(each)] for each in text.split(", ")), text)
+
+    def quantities(self, text: str) -> str:
+        """Names of what is kept, each with its sign, or as a word where it has none."""
+        parts = list[list[str | Formula]]()
+        for each in _COMMA.split(text):
+            if each.isidentifier() and not re.fullmatch("[a-z]{2,}", each):
+                sign = self.names.get(each) or name(each)
+                parts.append([Formula(sign, (sign.mathml,))])
+            else:
+                parts.append(self._read(each))
+        return self._made(_with_commas(parts), text)
+
+    def reason(self, text: str) -> str:
+        """A sentence that may name methods."""
+        parts = _METHOD.split(text)
+        read = [[Code(p)] if n % 2 else self._read(p) for n, p in enumerate(parts) if p]
+        return self._made([each for part in read for each in part], text)
+
+    def _read(self, text: str) -> list[str | Formula]:
+        return read_prose(text, self.names)
+
+    def _made(self, parts: Sequence[Part], text: str) -> str:
+        """As a format has it; text that is words alone stays what it is."""
+        return text if parts == [text] else Prose.of(parts, text, self.form)
+
+
+def _with_commas(entries: Iterable[Sequence[Part]]) -> list[Part]:
+    """A list of names."""
+    listed = list[Part]()
+    for n, entry in enumerate(entries):
+        listed += [", "] * bool(n) + [*entry]
+    return listed
 
 
 def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:

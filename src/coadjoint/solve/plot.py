@@ -218,7 +218,8 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
     axes.set_box_aspect(high - low, zoom=1.15)
     axes.zaxis.get_major_locator().set_params(nbins=2)
     axes.set_title(
-        "colour: trace of the contact, gray: path of the centre of mass",
+        "colour: trace of the contact, gray: path of the centre of mass"
+        + ("" if body.is_flat else "\norange cap: where the third axis of the body leaves it"),
         fontsize=9,
         color="#5b6570",
     )

@@ -1,23 +1,22 @@
-"""Bodies that roll on a plane, as a motion shows them: their surface, their contact, their centre.
+"""Bodies that roll or slide on a plane: their surface, their contact, their centre.
 
-The velocity of the centre of mass is ``Y = Omega x s`` with the arm s from the contact, a function
-of the vertical Gamma seen from the body; the generated functions give it for every Gamma, and the
-surface of the body is where arms begin, ``-s``. No name of a variable is known. Comes in: a
-`Solution` with an attitude and a contact. Goes out: a `RollingBody`, and axes on which it is drawn.
-Read next: `coadjoint.solve.plot`.
+The arm s goes from the contact to the centre of mass, a function of the vertical Gamma seen from
+the body; the surface of the body is where arms begin, ``-s``. Comes in: a `Solution`, with an
+attitude and a contact of a body that rolls. Goes out: a `RollingBody`, and axes on which it is
+drawn. Read next: `coadjoint.solve.plot`.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from coadjoint.errors import CoadjointError
+from coadjoint.solve.arms import Arms, list_vectors
 from coadjoint.solve.scenes import angles
+from coadjoint.solve.sliding_bodies import follow_sliding
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,8 +30,6 @@ ROWS, COLUMNS = 24, 48
 #: Part of the height of the sphere that rings leave out at its poles: of a disk that lies flat, no
 #: point is the contact.
 POLE: Final = 0.004
-#: Largest part of Y that is no ``Omega x s``: the generated functions round.
-ROUNDED: Final = 1e-9
 #: Largest difference of the velocities of the centre by splines and by the generated functions,
 #: over the largest of these and of the contact's: splines have errors of their own.
 APART: Final = 0.05
@@ -41,10 +38,12 @@ FLAT: Final = 0.02
 #: How many times the body is drawn along its path at the most, the end included, and how far
 #: apart, in sizes of it.
 PLACES, DISTANCE = 4, 2.5
-#: Colours of the sectors of a surface, by which its turning is seen; pale before its end. Both are
-#: opaque: pieces of a surface that let light through are seen one by one.
-FIELDS: Final = ("#c9d6e4", "#6f8fb0")
-PALE: Final = ("#eef2f6", "#d6dfe8")
+#: Colours of the sectors of a surface and of its cap, by which its turning is seen; pale before its
+#: end. All are opaque: pieces of a surface that let light through are seen one by one.
+FIELDS: Final = ("#c9d6e4", "#6f8fb0", "#d95f02")
+PALE: Final = ("#eef2f6", "#d6dfe8", "#f2c9a6")
+#: Rings of the cap where the third axis of a body leaves it, by which its turning over is seen.
+CAP: Final = 4
 #: Points of a ring in a sector.
 SECTOR: Final = 6
 #: Where the viewer stands.
@@ -87,10 +86,20 @@ class RollingBody:
 
 
 def find_rolling(solution: Solution) -> RollingBody | None:
-    """The body that rolls; None where nothing is an attitude that stands on a plane by an arm."""
-    followed = solution.system.RECONSTRUCTED
-    if solution.batch or len(solution) < 8 or solution.reconstructed is None:
+    """The body that rolls or slides; None where nothing stands on a plane by an arm."""
+    if solution.batch or len(solution) < 8 or not np.isfinite(solution.state).all():
         return None
+    if solution.system.RECONSTRUCTED:
+        return None if solution.reconstructed is None else _find_followed(solution)
+    body = follow_sliding(solution)
+    if body is None:
+        return None
+    return _place(solution, body.arms, body.turned, body.contact, body.unit)
+
+
+def _find_followed(solution: Solution) -> RollingBody | None:
+    """A body that rolls, whose attitude and contact are integrated with the motion."""
+    followed = solution.system.RECONSTRUCTED
     attitudes = [name for name, each in followed.items() if each.shape == (4,) and each.upright]
     places = [name for name, each in followed.items() if each.shape == ()]
     if len(attitudes) != 1 or len(places) != 2 or len(followed) != 3:
@@ -101,20 +110,29 @@ def find_rolling(solution: Solution) -> RollingBody | None:
         return None
     turned, vertical = _turned(solution[attitudes[0]]), followed[attitudes[0]].upright
     contact = np.stack([*(np.ravel(solution[name]) for name in places), np.zeros(len(solution))])
-    for turning, moving in _list_velocities(solution, vertical):
-        arms = _find_arms(solution, (vertical, turning, moving), solution[vertical])
-        if arms is None:
-            continue
-        centre = contact + np.einsum("jkt,kt->jt", turned, arms)
-        velocity = np.einsum("jkt,kt->jt", turned, solution[moving])
-        if _moves_so(np.asarray(solution.time), contact, centre, velocity):
-            surface = _find_surface(solution, (vertical, turning, moving))
-            if surface is None:
-                return None
-            return RollingBody(
-                contact=contact, centre=centre, turned=turned, surface=surface, unit=unit
-            )
+    for turning in list_vectors(solution.system.STATE, but=[vertical]):
+        for moving in list_vectors(solution.system.OBSERVABLES):
+            body = _place(solution, Arms(vertical, turning, moving), turned, contact, unit)
+            if body is not None:
+                return body
     return None
+
+
+def _place(
+    solution: Solution, names: Arms, turned: Array, contact: Array, unit: str
+) -> RollingBody | None:
+    """The body on its contact; None where its centre does not move as it is known to."""
+    arms = names.find(solution, solution[names.vertical])
+    if arms is None:
+        return None
+    centre = contact + np.einsum("jkt,kt->jt", turned, arms)
+    velocity = np.einsum("jkt,kt->jt", turned, solution[names.sliding or names.moving])
+    if not _moves_so(np.asarray(solution.time), contact, centre, velocity):
+        return None
+    surface = _find_surface(solution, names)
+    if surface is None:
+        return None
+    return RollingBody(contact=contact, centre=centre, turned=turned, surface=surface, unit=unit)
 
 
 def draw_rolling(axes: Any, body: RollingBody) -> Callable[[int], None]:
@@ -155,13 +173,15 @@ def _choose_places(body: RollingBody) -> Iterator[int]:
             yield int(at)
 
 
-def _draw_surface(axes: Any, body: RollingBody, at: int, colours: tuple[str, str]) -> Any:
+def _draw_surface(axes: Any, body: RollingBody, at: int, colours: tuple[str, ...]) -> Any:
     """The surface at a sample, in sectors of two colours, above those that are farther away."""
     from matplotlib.colors import to_rgb
 
     depths = TOWARD @ body.centre
     nearness = float((depths[at] - depths.min()) / (np.ptp(depths) or 1.0))
-    sectors = np.broadcast_to(np.arange(COLUMNS) // SECTOR % 2, (ROWS + 1, COLUMNS))
+    sectors = np.tile(np.arange(COLUMNS) // SECTOR % 2, (ROWS + 1, 1))
+    if not body.is_flat:  # of a disk all rings are its rim
+        sectors[-CAP:] = 2
     return axes.plot_surface(
         *body.surface_at(at),
         facecolors=np.array([to_rgb(each) for each in colours])[sectors],
@@ -171,6 +191,7 @@ def _draw_surface(axes: Any, body: RollingBody, at: int, colours: tuple[str, str
         shade=not body.is_flat,  # light on the two sides of a disk, at the same place, would differ
         antialiased=False,
         zorder=4 + nearness,
+        clip_on=False,  # at the border of a box seen from near
     )
 
 
@@ -180,43 +201,6 @@ def _turned(quaternions: Array) -> Array:
 
     matrices: Array = Rotation.from_quat(np.roll(quaternions, -1, axis=0).T).as_matrix()
     return np.moveaxis(matrices, 0, -1)
-
-
-def _list_velocities(solution: Solution, vertical: str) -> Iterator[tuple[str, str]]:
-    """Vectors that may be the angular velocity, and the velocity of the centre that follows."""
-    system = solution.system
-    for turning, own in system.STATE.items():
-        if own.shape == (3,) and turning != vertical:
-            for moving, each in system.OBSERVABLES.items():
-                if each.shape == (3,):
-                    yield turning, moving
-
-
-def _find_arms(solution: Solution, names: tuple[str, str, str], verticals: Array) -> Array | None:
-    """The arms s with ``Y = Omega x s`` for verticals, ``(3, N)``; None where Y is no such thing.
-
-    ``names`` are those of the vertical, of the angular velocity and of the velocity Y.
-    """
-    system, (vertical, turning, moving) = solution.system, names
-    state = np.repeat(np.asarray(solution.state)[:, :1], verticals.shape[1], axis=1)
-    state[system.STATE.rows(vertical)] = verticals
-    columns = []
-    for axis in np.eye(3):
-        state[system.STATE.rows(turning)] = axis[:, None]
-        try:
-            with warnings.catch_warnings(), np.errstate(all="ignore"):
-                warnings.simplefilter("ignore")
-                values = system.observables(state, solution.parameters, target="numpy")
-        except (CoadjointError, TypeError, ValueError):
-            return None  # time, inputs, or a domain that some verticals are not in
-        columns.append(np.asarray(values)[system.OBSERVABLES.rows(moving)])
-    matrix = np.stack(columns, axis=1)  # (3, 3, N), by the components of Y and of Omega
-    size = float(np.abs(matrix).max())
-    if not np.isfinite(size) or not size:
-        return None
-    if np.abs(matrix + matrix.swapaxes(0, 1)).max() > ROUNDED * size:
-        return None
-    return np.stack([-matrix[2, 1], matrix[2, 0], matrix[0, 1]])
 
 
 def _moves_so(time: Array, contact: Array, centre: Array, velocity: Array) -> bool:
@@ -229,7 +213,7 @@ def _moves_so(time: Array, contact: Array, centre: Array, velocity: Array) -> bo
     return bool(left.max() <= APART * max(largest, 1e-12))
 
 
-def _find_surface(solution: Solution, names: tuple[str, str, str]) -> Array | None:
+def _find_surface(solution: Solution, names: Arms) -> Array | None:
     """Where arms begin, for verticals all around: rings about the third axis of the body."""
     height, angle = np.meshgrid(
         np.pi * np.linspace(POLE, 1 - POLE, ROWS),
@@ -238,7 +222,7 @@ def _find_surface(solution: Solution, names: tuple[str, str, str]) -> Array | No
     )
     flat = np.sin(height)
     verticals = np.stack([flat * np.cos(angle), flat * np.sin(angle), np.cos(height)])
-    arms = _find_arms(solution, names, verticals.reshape(3, -1))
+    arms = names.find(solution, verticals.reshape(3, -1))
     if arms is None:
         return None
     rings = -arms.reshape(verticals.shape)
