@@ -89,7 +89,6 @@ ON = ('name       = "so(3)"', 'name = "so(2,1)"')
     [
         ([ON], r"strand on so\(2,1\).*one on so\(3\).*as elastic_chain does"),
         ([('"left"', '"right"')], 'right invariant.*invariance = "left"'),
-        ([CLAMPED, ALONE], 'clamped; expected ends = "periodic"'),
         (
             [("Xi    =", 'G = { role = "advected", representation = "vector" }\nXi    =')],
             "'G' is advected.*as spin_chain_lattice does",
@@ -123,10 +122,38 @@ def test_strands_on_other_algebras_are_refused(name):
     assert shipped("elastic_chain").index
 
 
-def test_the_advice_of_free_ends_is_followed():
-    """Clamped ends have no lattice, and free ones have."""
-    declared = strand(("order = 4", 'order = 4, ends = "free"'), ALONE)
-    assert not lattice_of(declared).index[0].periodic
+def test_walls_hold_a_chain_between_clamped_ends():
+    """Their links are proved to keep Jacobi and the energy; the momentum in space is not claimed.
+
+    Free ends have no walls, and their certificate claims it.
+    """
+    held, free = (
+        lattice_of(strand(("order = 4", f'order = 4, ends = "{ends}"'), ALONE))
+        for ends in ("clamped", "free")
+    )
+    assert not held.index[0].periodic
+    assert not free.index[0].periodic
+    certificate = prove_claims(held)
+    assert certificate.holds, str(certificate)
+    statements = [each.statement for each in certificate.claims]
+    jacobi = "the Poisson bracket satisfies the Jacobi identity, for every N >= 4"
+    assert jacobi in statements
+    assert [each.formula.text for each in held.conserved] == ["energy"]
+    assert [each.formula.text for each in free.conserved] == ["energy", "J"]
+
+
+def test_walls_turn_the_total_momentum_in_space():
+    """Claimed all the same, it is refuted."""
+    text = write_lattice(strand(CLAMPED, ALONE), 6)
+    old = 'conserved = ["energy"]'
+    assert old in text
+    text = text.replace(old, 'conserved = ["energy", "J"]')
+    verdicts = {
+        each.statement.partition(" ")[0]: each.verdict
+        for each in prove_claims(read_spec_text(text, Path("lattice.toml"))).claims
+        if each.kind == "conserved"
+    }
+    assert verdicts["J"] == "refuted"
 
 
 @pytest.mark.parametrize(

@@ -119,9 +119,6 @@ def _check_strand(spec: Spec) -> None:
     if spec.invariance != "left":
         problem = "it is right invariant, and so its strains are not turns in body axes"
         raise refuse(spec, problem, 'invariance = "left"')
-    if spec.space.ends == "clamped":
-        problem, hint = "its ends are clamped", "No body of a lattice is held."
-        raise refuse(spec, problem, 'ends = "periodic" or "free"', hint)
     if others:
         hint = f"{by_hand} spin_chain_lattice does, and give each an advected quantity."
         problem = f"{others[0]!r} is advected along the strand"

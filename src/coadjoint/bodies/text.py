@@ -15,6 +15,8 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from coadjoint.bodies.energy import Strand, pair_components, read_strand, refuse
 from coadjoint.bodies.starts import Starts, find_starts
 from coadjoint.derive.interpret import entries
@@ -25,7 +27,6 @@ from coadjoint.spec import Spec, read_spec_text
 from coadjoint.spec.core.components import kept_places, matrix_size
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from coadjoint.spec.model import Observable, Parameter
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 #: Names for what the strand has not, in the order in which they are tried.
 _NAMES: Final = {
     "index": ("i", "j", "k"),
+    "count": ("n", "m", "count"),
+    "wall": ("E", "B", "C"),
     "distance": ("a", "b", "d"),
     "attitude": ("R", "Q", "A"),
     "momentum": ("J", "M", "N"),
@@ -51,7 +54,7 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     """The spec of a lattice of rigid bodies whose limit is a strand, as text.
 
     Args:
-        spec: A strand on so(3), left invariant, around a circle or between free ends, whose energy
+        spec: A strand on so(3), left invariant, around a circle or between ends, whose energy
             per length is the sum of a function of momenta and a polynomial of strains.
         bodies: How many there are by default; as many as the strand has points if left out.
 
@@ -120,7 +123,7 @@ class _Lattice:
         spec, space = strand.spec, strand.spec.space
         assert space is not None, spec.name
         self.strand, self.spec, self.bodies, self.length = strand, spec, bodies, space.length
-        self.is_open = space.has_ends
+        self.is_open, self.is_clamped = space.has_ends, space.ends == "clamped"
         taken = {strand.momentum.name, *(each.name for each in spec.parameters)} - {self.length}
         taken |= {each.name for each in spec.observables}
         self.names = {use: self._choose(use, names, taken) for use, names in _NAMES.items()}
@@ -164,14 +167,19 @@ class _Lattice:
         yield "\n".join([*rows, 'routes = ["lie-poisson"]'])
         yield f"description = {_quote(self._describe())}"
         ring = json.dumps(not self.is_open)
-        yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring} }}"
+        count = f", count = {_quote(self.names['count'])}" if self._has_walls else ""
+        yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring}{count} }}"
         yield '[algebra]\nname = "so(3)"\ninvariance = "left"'
         yield "[variables]\n" + "\n".join(self._variables())
         yield "[parameters]\n" + "\n".join(self._parameters())
         terms = [f"  sum({i}, {self.write(self.strand.kinetic)})"]
         if self.strand.potential:
             yield "[definitions]\n" + "\n".join(self._definitions())
-            terms.append(f"+ sum({i}, {self._call_potential()})")
+            turned = f"transpose({R})"
+            terms.append(f"+ sum({i}, {self._call(f'{turned}*{self.attitude}[{i}+1]')})")
+        if self._has_walls:  # the first wall has the attitude 1
+            last = f"transpose({self.attitude}[{self.names['count']}-1])*{self.names['wall']}"
+            terms += [f"+ {self._call(link)}" for link in (f"{self.attitude}[0]", last)]
         lines = "\n".join(terms)
         yield f'# the energy over {self.distance}\n[hamiltonian]\nh = """\n{lines}\n"""'
         left = self._left_out()
@@ -183,6 +191,7 @@ class _Lattice:
 
     def _describe(self) -> str:
         row = "a row with free ends" if self.is_open else "a ring"
+        row = "a row between two walls, which stand still," if self.is_clamped else row
         closes = "" if self.is_open else ", and the ring closes exactly"
         begin = "the profiles of the strand say"
         if self._starts.attitudes is None:
@@ -222,7 +231,7 @@ class _Lattice:
             own, doc, name = each.default, each.doc, each.name
             if each.name == self.length:
                 name, doc = self.distance, "distance of bodies"
-                own = None if own is None else (own[0] / self.bodies,)
+                own = None if own is None else (own[0] / (self.bodies + self.is_clamped),)
             keys = [f"shape = {json.dumps(each.shape)}"] if each.shape else []
             keys += [f"form = {_quote(each.form)}"] if each.form else []
             keys += ["positive = true"] if each.positive else []
@@ -230,6 +239,11 @@ class _Lattice:
                 keys.append(f"default = {_write_default(own, each.shape)}")
             keys += [f"doc = {_quote(doc)}"] if doc else []
             yield f"{name} = {{ {', '.join(keys)}{_unit(each.unit)} }}"
+        if self._has_walls:
+            wall = np.eye(3) if self._starts.wall is None else self._starts.wall
+            rows = json.dumps(_write_numbers(wall))
+            doc = "attitude of the wall behind the last body; that of the first wall is 1"
+            yield f'{self.names["wall"]} = {{ shape = [3, 3], default = {rows}, doc = "{doc}" }}'
 
     # -- the potential --------------------------------------------------------------------
 
@@ -262,9 +276,13 @@ class _Lattice:
         if arguments:
             yield f'"{names["potential"]}({arguments})" = {_quote(self._write_potential())}'
 
-    def _call_potential(self) -> str:
+    @property
+    def _has_walls(self) -> bool:
+        """Whether there are links to walls, which turn with nothing."""
+        return self.is_clamped and any(self._uses)
+
+    def _call(self, link: str) -> str:
         """The potential of a link."""
-        link = f"transpose({self.body})*{self.attitude}[{self.place}+1]"
         values = [f"{function}({link})" for function, _ in self._arguments()]
         return f"{self.names['potential']}({', '.join(values)})"
 
@@ -318,7 +336,11 @@ class _Lattice:
 
     def _is_kept(self, name: str) -> bool:
         """Whether the lattice keeps it: of the strand's, linear functions of momenta it keeps."""
-        if name in ("energy", self.names["momentum"]):
+        if name == "energy":
+            return True
+        if self.is_clamped:  # walls turn bodies
+            return False
+        if name == self.names["momentum"]:
             return True
         claimed = {each.formula.text for each in self.spec.conserved if not each.where}
         momenta, field = self.strand.momentum.components, self.strand.field
