@@ -10,7 +10,7 @@ from coadjoint.bodies import write_lattice
 from coadjoint.bodies.energy import pair_components, read_strand
 from coadjoint.errors import SpecError
 from coadjoint.spec import read_spec_text
-from tests.bodies.lattices import STIFF, lattice_of, strand
+from tests.bodies.lattices import STIFF, TOPS, lattice_of, strand
 from tests.specs import prove_claims, shipped
 
 a, t = sympy.symbols("a t")
@@ -90,8 +90,12 @@ ON = ('name       = "so(3)"', 'name = "so(2,1)"')
         ([ON], r"strand on so\(2,1\).*one on so\(3\).*as elastic_chain does"),
         ([('"left"', '"right"')], 'right invariant.*invariance = "left"'),
         (
-            [("Xi    =", 'G = { role = "advected", representation = "vector" }\nXi    =')],
-            "'G' is advected.*as spin_chain_lattice does",
+            [("Xi    =", 'G = { role = "advected", representation = "symmetric" }\nXi    =')],
+            "'G' is advected, and no vector.*as spin_chain_lattice does",
+        ),
+        (
+            [*TOPS, ("w*Gamma[3]", "w*Gamma[3]*dot(Xi, Xi)")],
+            "advected quantities and strains together",
         ),
         ([(STIFF, f"{STIFF} - dot(Omega, Xi)")], "momenta and strains together"),
         ([(STIFF, f"{STIFF} - dot(Xi, Xi)/L")], "names the length L"),
@@ -168,6 +172,22 @@ def test_the_certificate_proves_jacobi_and_the_total_momentum(old, new, holds):
     assert verdicts[jacobi] == "proved"
     (kept,) = (v for s, v in verdicts.items() if s.startswith("J is conserved"))
     assert (kept == "proved") == holds
+
+
+@pytest.mark.parametrize(
+    ("new", "verdict"), [("(R[i]*Gamma[i])[3]", "proved"), ("Gamma[i, 3]", "refuted")]
+)
+def test_advected_vectors_stay_in_space(new, verdict):
+    """In body axes they turn; the total momentum in space is not claimed, as they turn bodies."""
+    text, old = write_lattice(strand(*TOPS), 4), '"(R[i]*Gamma[i])[3]"'
+    assert old in text
+    declared = read_spec_text(text.replace(old, f'"{new}"'), Path("lattice.toml"))
+    assert [each.formula.text for each in declared.conserved] == ["energy"]
+    claims = prove_claims(declared).claims
+    verdicts = {each.verdict for each in claims if each.statement.startswith(f"{new} is a Casimir")}
+    assert verdicts == {verdict}
+    rest = {each.verdict for each in claims if not each.statement.startswith(new)}
+    assert rest == {"proved"}
 
 
 def test_what_the_strand_keeps_in_body_axes_stays():

@@ -9,7 +9,7 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.solve.strands import transport
-from tests.bodies.lattices import STIFF, compile_rates, family_of, lattice_of, strand
+from tests.bodies.lattices import STIFF, TOPS, compile_rates, family_of, lattice_of, strand
 from tests.derive.test_lattice_limit import PI, STRAIN, a, curve
 from tests.fields import precessing_wave
 from tests.specs import shipped
@@ -76,6 +76,25 @@ def _differences(rates, of):
         found = rates(state, [*given.values(), distance])[9:, 1]
         errors.append([one - other for one, other in zip(found, known, strict=True)])
     return list(zip(*errors, strict=True))
+
+
+def test_tops_of_a_lattice_turn_as_those_of_the_strand():
+    """The torque of the field on a body, and the rate of the field, are those at each point."""
+    declared = strand(*TOPS)
+    family, points = family_of(lattice_of(declared, 4)), derive(declared, "lie-poisson")
+    names = [str(each) for each in family.states]
+    rates = dict(zip(names, family.rates, strict=True))
+    Pi = sympy.Matrix(sympy.symbols("Pi1:4"))
+    Gamma = sympy.Matrix(sympy.symbols("Gamma1:4"))
+    w, inertia = sympy.Symbol("w"), sympy.symbols("I1:4")
+    Omega = sympy.Matrix([p / i for p, i in zip(Pi, inertia, strict=True)])
+    torque = sympy.Matrix([0, 0, w]).cross(Gamma)
+    expected = [*(-torque), *Gamma.cross(Omega)]
+    known = dict(zip(points.variables, points.rates, strict=True))
+    for place, name in enumerate(["Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"]):
+        parts = (x[name] if place >= 3 else w * sympy.diff(x[name], w) for x in (rates, known))
+        assert [sympy.expand(part - expected[place]) for part in parts] == [0, 0], name
+    assert any(expected[:3])
 
 
 CLAMPED = (("order = 4", 'order = 4, ends = "clamped"'), ('"energy", "P"', '"energy"'))

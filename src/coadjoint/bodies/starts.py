@@ -1,16 +1,16 @@
-r"""Where bodies begin: momenta of the profile, and attitudes that its strain turns into.
+r"""Where bodies begin: fields of the profiles, and attitudes that its strain turns into.
 
 From the attitude 1 of the first body, :math:`\partial_s R = R\,\hat\Xi` is solved from body to body
 by Magnus's steps of order 6. Around a ring this closes where the holonomy is 1 alone.
 
-Comes in: the Spec of a strand, and how many bodies there are. Goes out: their momenta and
-attitudes.
+Comes in: the Spec of a strand, and how many bodies there are. Goes out: their momenta,
+advected vectors and attitudes.
 Read next: `coadjoint.bodies.text`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
@@ -40,13 +40,13 @@ class Starts:
     """Where bodies begin.
 
     Attributes:
-        momenta: ``(N, 3)``, or None without a profile.
+        fields: Momenta and advected vectors ``(N, 3)`` by name, where they have profiles.
         attitudes: ``(N, 3, 3)``, or None where bodies stand alike.
         gap: How far the holonomy of the strain is from 1, where that keeps a ring from closing.
         wall: ``(3, 3)``, the attitude of the wall behind the last body, or None where it is 1.
     """
 
-    momenta: Array | None = None
+    fields: Mapping[str, Array]
     attitudes: Array | None = None
     gap: float = 0.0
     wall: Array | None = None
@@ -64,22 +64,24 @@ def find_starts(strand: Strand, bodies: int) -> Starts:
     is_clamped = space.ends == "clamped"
     pieces = bodies + 1 if is_clamped else bodies
     first = Fraction(1, 2 * bodies) if space.ends == "free" else Fraction(0)
-    momenta = None
-    if strand.momentum.name in spec.profiles:
-        places = (first + Fraction(n + is_clamped, pieces) for n in range(bodies))
-        momenta = _evaluate(strand, strand.momentum.name, places)
+    places = [first + Fraction(n + is_clamped, pieces) for n in range(bodies)]
+    fields = {
+        each.name: _evaluate(strand, each.name, places)
+        for each in (strand.momentum, *strand.advected)
+        if each.name in spec.profiles
+    }
     if strand.strain.name not in spec.profiles:
-        return Starts(momenta)
+        return Starts(fields)
     links = bodies - 1 if space.ends == "free" else pieces  # a free chain has one less than a ring
     frames = _find_frames(strand, pieces, links, first)
     gap = 0.0 if space.has_ends else float(np.abs(frames[-1] - np.eye(3)).max())
     if gap > CLOSED:
-        return Starts(momenta, None, gap)
+        return Starts(fields, None, gap)
     if np.abs(frames - np.eye(3)).max() <= CLOSED:
-        return Starts(momenta)
+        return Starts(fields)
     if is_clamped:
-        return Starts(momenta, frames[1:-1], wall=frames[-1])
-    return Starts(momenta, frames[:bodies])
+        return Starts(fields, frames[1:-1], wall=frames[-1])
+    return Starts(fields, frames[:bodies])
 
 
 def _evaluate(strand: Strand, name: str, places: Iterable[Fraction]) -> Array:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
     from coadjoint.spec.model import Observable, Parameter
 
+    Array = NDArray[np.float64]
+
 #: Names for what the strand has not, in the order in which they are tried.
 _NAMES: Final = {
     "index": ("i", "j", "k"),
@@ -55,7 +57,8 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
 
     Args:
         spec: A strand on so(3), left invariant, around a circle or between ends, whose energy
-            per length is the sum of a function of momenta and a polynomial of strains.
+            per length is the sum of a function of momenta and advected vectors and a polynomial
+            of strains.
         bodies: How many there are by default; as many as the strand has points if left out.
 
     Returns:
@@ -126,6 +129,7 @@ class _Lattice:
         self.is_open, self.is_clamped = space.has_ends, space.ends == "clamped"
         taken = {strand.momentum.name, *(each.name for each in spec.parameters)} - {self.length}
         taken |= {each.name for each in spec.observables}
+        taken |= {each.name for each in strand.advected}
         self.names = {use: self._choose(use, names, taken) for use, names in _NAMES.items()}
         self.place = self.names["index"]
         self.distance = self.names["distance"]
@@ -147,12 +151,13 @@ class _Lattice:
 
     def write(self, element: Element) -> str:
         """An element as a formula, with momenta of a body."""
-        known = dict[str, str]()
-        for each in self.spec.parameters:
-            known |= _place_components(each)
-        momentum = self.strand.momentum
-        for n, component in enumerate(momentum.components, 1):
-            known[component] = f"{momentum.name}[{self.place}, {n}]"
+        known = {
+            component: f"{each.name}[{self.place}, {n}]"
+            for each in (self.strand.momentum, *self.strand.advected)
+            for n, component in enumerate(each.components, 1)
+        }
+        for parameter in self.spec.parameters:
+            known |= _place_components(parameter)
         text = element_text(self.strand.field, element)
         return re.sub(r"[A-Za-z]\w*", lambda found: known.get(found[0], found[0]), text)
 
@@ -172,7 +177,7 @@ class _Lattice:
         yield '[algebra]\nname = "so(3)"\ninvariance = "left"'
         yield "[variables]\n" + "\n".join(self._variables())
         yield "[parameters]\n" + "\n".join(self._parameters())
-        terms = [f"  sum({i}, {self.write(self.strand.kinetic)})"]
+        terms = [f"  sum({i}, {self.write(self.strand.own)})"]
         if self.strand.potential:
             yield "[definitions]\n" + "\n".join(self._definitions())
             turned = f"transpose({R})"
@@ -187,6 +192,8 @@ class _Lattice:
         yield note + "[observables]\n" + "\n".join(self._observables.values())
         kept = [name for name in ("energy", *self._observables) if self._is_kept(name)]
         casimirs = [f"trace({R}*transpose({R}))", f"det({R})"]
+        in_space = [f"({R}*{each.name}[{i}])" for each in self.strand.advected]
+        casimirs += [f"{vector}[{n}]" for vector in in_space for n in (1, 2, 3)]
         yield f"[claims]\ncasimirs = {json.dumps(casimirs)}\nconserved = {json.dumps(kept)}"
 
     def _describe(self) -> str:
@@ -209,22 +216,21 @@ class _Lattice:
         return find_starts(self.strand, self.bodies)
 
     def _variables(self) -> Iterator[str]:
-        i, starts, each = self.place, self._starts, self.strand.momentum
-        rows = (
-            (self.attitude, "attitude", starts.attitudes, "", "from a body to space"),
-            (
-                each.name,
-                "momentum",
-                starts.momenta,
-                _unit(each.unit),
-                each.doc or "angular momenta in body axes, per length",
-            ),
-        )
-        for name, role, given, unit, doc in rows:
-            default = "" if given is None else f", default = {json.dumps(_write_numbers(given))}"
-            yield (
-                f'{name} = {{ role = "{role}", index = "{i}"{default}{unit}, doc = {_quote(doc)} }}'
-            )
+        starts, Pi = self._starts, self.strand.momentum
+        doc = Pi.doc or "angular momenta in body axes, per length"
+        yield self._variable(self.attitude, "attitude", starts.attitudes, "from a body to space")
+        yield self._variable(Pi.name, "momentum", starts.fields.get(Pi.name), doc, Pi.unit)
+        for each in self.strand.advected:
+            doc = each.doc or "in body axes"
+            given = starts.fields.get(each.name)
+            yield self._variable(each.name, "advected", given, doc, each.unit)
+
+    def _variable(self, name: str, role: str, given: Array | None, doc: str, unit: str = "") -> str:
+        """The line of a variable."""
+        default = "" if given is None else f", default = {json.dumps(_write_numbers(given))}"
+        more = ', representation = "vector"' if role == "advected" else ""
+        keys = f'role = "{role}"{more}, index = "{self.place}"{default}{_unit(unit)}'
+        return f"{name} = {{ {keys}, doc = {_quote(doc)} }}"
 
     def _parameters(self) -> Iterator[str]:
         for each in self.spec.parameters:
@@ -305,7 +311,7 @@ class _Lattice:
 
     @cached_property
     def _observables(self) -> Mapping[str, str]:
-        """The total momentum in space, and what the strand has of momenta alone, by names."""
+        """The total momentum in space, and what the strand has without strains, by names."""
         i, J, Pi = self.place, self.names["momentum"], self.strand.momentum
         doc = f"total angular momentum in space, over {self.distance}"
         total = f"sum({i}, {self.body}*{Pi.name}[{i}])"
@@ -324,13 +330,14 @@ class _Lattice:
         return rows
 
     def _of_momenta(self, each: Observable) -> tuple[Element, ...] | None:
-        """An observable of the strand by components, if it is one of momenta alone."""
+        """An observable of the strand by components, if it names no strains."""
         if len(each.formula.shape) > 1:
             return None
         equations, field = self.strand.equations, self.strand.field
         values = entries(equations.setting.value(each.formula))
         closed = tuple(map(equations.close, values))
-        known = {*self.strand.momentum.components, *field.adjoined}
+        own = (self.strand.momentum, *self.strand.advected)
+        known = {*(n for x in own for n in x.components), *field.adjoined}
         known |= {n for x in self.spec.parameters for n in x.components} - {self.length}
         return closed if all(field.reach(value) <= known for value in closed) else None
 
@@ -338,7 +345,7 @@ class _Lattice:
         """Whether the lattice keeps it: of the strand's, linear functions of momenta it keeps."""
         if name == "energy":
             return True
-        if self.is_clamped:  # walls turn bodies
+        if self.is_clamped or self.strand.advected:  # walls and fields turn bodies
             return False
         if name == self.names["momentum"]:
             return True
@@ -393,7 +400,7 @@ def _write_default(values: tuple[Fraction, ...], shape: tuple[int, ...]) -> str:
     return rows[0] if len(shape) == 1 else f"[{', '.join(rows)}]"
 
 
-def _write_numbers(values: NDArray[np.float64]) -> object:
+def _write_numbers(values: Array) -> object:
     """Lists of numbers, those that are not whole as texts of decimals."""
     if values.ndim:
         return [_write_numbers(value) for value in values]
