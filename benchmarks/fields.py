@@ -29,7 +29,7 @@ from coadjoint.solve.folders import load_folder
 
 POINTS, CALLS = 4096, 2000
 #: By how much an order may miss that of the spec, and the most that holonomies and energies change.
-NEAR, HOLONOMY, ROUNDING = 0.2, 1e-9, 1e-12
+NEAR, HOLONOMY, ROUNDING = 0.1, 1e-9, 1e-12
 
 
 def load(name: str, size: int) -> Any:
@@ -104,6 +104,30 @@ def find_orders() -> list[Figure]:
     return figures
 
 
+def find_casimirs() -> list[Figure]:
+    """How far all tr W^k of fluids by matrices change, next to the sum of powers of sizes."""
+    figures = []
+    for name in ("zeitlin_su_n", "zeitlin_torus"):
+        system = load_folder(systems_folder() / name)
+        n = system.index.size
+        for method, most in (("isospectral_midpoint", ROUNDING), ("midpoint", None)):
+            found = system.simulate(None, (0, 10), step=0.02, method=method, samples=2)
+            ends = (found.state[:, place].reshape(n, n) for place in (0, -1))
+            # i W is Hermitian
+            one, other = (np.linalg.eigvalsh(1j * (X - X.T) / 2 - (X + X.T) / 2) for X in ends)
+            changes = [
+                abs(np.sum(other**k) - np.sum(one**k)) / np.sum(np.abs(one) ** k)
+                for k in range(2, n + 1)
+            ]
+            change = float(max(changes))
+            what = f"{name}, {n} rows, {method} of step 0.02: largest change of the {len(changes)} "
+            what += "Casimirs over t = 10"
+            target = "none" if most is None else f"<= {most:g}"
+            met = None if most is None else change <= most
+            figures.append(Figure(what, target, f"{change:.1e}", met))
+    return figures
+
+
 def find_kept() -> list[Figure]:
     """How far the energy and the trace of the holonomy of a motion change."""
     system = load("spin_chain", 128)
@@ -136,9 +160,9 @@ def find_kept() -> list[Figure]:
 def measure() -> list[Figure]:
     """All figures; the file of results is written."""
     speed, table = compete()
-    figures = [speed, *find_orders(), *find_kept()]
+    figures = [speed, *find_orders(), *find_kept(), *find_casimirs()]
     options = {f"options {n}": " ".join(flags) for n, flags in enumerate((*FUSED, *UNFUSED))}
-    setting = {"what": "fields along a circle", **options}
+    setting = {"what": "fields along a circle, and fluids by matrices", **options}
     write("fields", setting, (), figures, [table])
     return figures
 

@@ -15,6 +15,19 @@ CHAIN = shipped("spin_chain").path.read_text(encoding="utf-8")
 STIFF = "- dot(Xi, diag(K)*Xi)/2"
 
 
+#: What makes the chain one of tops in a field that is given along it.
+TOPS = (
+    (
+        "[parameters]\n",
+        'Gamma = { role = "advected", representation = "vector" }\n\n[parameters]\n'
+        "w = { default = 1 }\n",
+    ),
+    (STIFF, f"{STIFF} - w*Gamma[3]"),
+    ('"energy", "P"', '"energy"'),
+    ("[profiles]\n", '[profiles]\nGamma = "vector(sin(2*pi*s/L), 0, cos(2*pi*s/L))"\n'),
+)
+
+
 def strand(*changes, name="chain"):
     """The spin chain with some pieces replaced, each of which is there."""
     text = CHAIN

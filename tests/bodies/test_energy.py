@@ -10,7 +10,7 @@ from coadjoint.bodies import write_lattice
 from coadjoint.bodies.energy import pair_components, read_strand
 from coadjoint.errors import SpecError
 from coadjoint.spec import read_spec_text
-from tests.bodies.lattices import STIFF, lattice_of, strand
+from tests.bodies.lattices import STIFF, TOPS, lattice_of, strand
 from tests.specs import prove_claims, shipped
 
 a, t = sympy.symbols("a t")
@@ -89,10 +89,13 @@ ON = ('name       = "so(3)"', 'name = "so(2,1)"')
     [
         ([ON], r"strand on so\(2,1\).*one on so\(3\).*as elastic_chain does"),
         ([('"left"', '"right"')], 'right invariant.*invariance = "left"'),
-        ([CLAMPED, ALONE], 'clamped; expected ends = "periodic"'),
         (
-            [("Xi    =", 'G = { role = "advected", representation = "vector" }\nXi    =')],
-            "'G' is advected.*as spin_chain_lattice does",
+            [("Xi    =", 'G = { role = "advected", representation = "symmetric" }\nXi    =')],
+            "'G' is advected, and no vector.*as spin_chain_lattice does",
+        ),
+        (
+            [*TOPS, ("w*Gamma[3]", "w*Gamma[3]*dot(Xi, Xi)")],
+            "advected quantities and strains together",
         ),
         ([(STIFF, f"{STIFF} - dot(Omega, Xi)")], "momenta and strains together"),
         ([(STIFF, f"{STIFF} - dot(Xi, Xi)/L")], "names the length L"),
@@ -123,10 +126,38 @@ def test_strands_on_other_algebras_are_refused(name):
     assert shipped("elastic_chain").index
 
 
-def test_the_advice_of_free_ends_is_followed():
-    """Clamped ends have no lattice, and free ones have."""
-    declared = strand(("order = 4", 'order = 4, ends = "free"'), ALONE)
-    assert not lattice_of(declared).index[0].periodic
+def test_walls_hold_a_chain_between_clamped_ends():
+    """Their links are proved to keep Jacobi and the energy; the momentum in space is not claimed.
+
+    Free ends have no walls, and their certificate claims it.
+    """
+    held, free = (
+        lattice_of(strand(("order = 4", f'order = 4, ends = "{ends}"'), ALONE))
+        for ends in ("clamped", "free")
+    )
+    assert not held.index[0].periodic
+    assert not free.index[0].periodic
+    certificate = prove_claims(held)
+    assert certificate.holds, str(certificate)
+    statements = [each.statement for each in certificate.claims]
+    jacobi = "the Poisson bracket satisfies the Jacobi identity, for every N >= 4"
+    assert jacobi in statements
+    assert [each.formula.text for each in held.conserved] == ["energy"]
+    assert [each.formula.text for each in free.conserved] == ["energy", "J"]
+
+
+def test_walls_turn_the_total_momentum_in_space():
+    """Claimed all the same, it is refuted."""
+    text = write_lattice(strand(CLAMPED, ALONE), 6)
+    old = 'conserved = ["energy"]'
+    assert old in text
+    text = text.replace(old, 'conserved = ["energy", "J"]')
+    verdicts = {
+        each.statement.partition(" ")[0]: each.verdict
+        for each in prove_claims(read_spec_text(text, Path("lattice.toml"))).claims
+        if each.kind == "conserved"
+    }
+    assert verdicts["J"] == "refuted"
 
 
 @pytest.mark.parametrize(
@@ -141,6 +172,22 @@ def test_the_certificate_proves_jacobi_and_the_total_momentum(old, new, holds):
     assert verdicts[jacobi] == "proved"
     (kept,) = (v for s, v in verdicts.items() if s.startswith("J is conserved"))
     assert (kept == "proved") == holds
+
+
+@pytest.mark.parametrize(
+    ("new", "verdict"), [("(R[i]*Gamma[i])[3]", "proved"), ("Gamma[i, 3]", "refuted")]
+)
+def test_advected_vectors_stay_in_space(new, verdict):
+    """In body axes they turn; the total momentum in space is not claimed, as they turn bodies."""
+    text, old = write_lattice(strand(*TOPS), 4), '"(R[i]*Gamma[i])[3]"'
+    assert old in text
+    declared = read_spec_text(text.replace(old, f'"{new}"'), Path("lattice.toml"))
+    assert [each.formula.text for each in declared.conserved] == ["energy"]
+    claims = prove_claims(declared).claims
+    verdicts = {each.verdict for each in claims if each.statement.startswith(f"{new} is a Casimir")}
+    assert verdicts == {verdict}
+    rest = {each.verdict for each in claims if not each.statement.startswith(new)}
+    assert rest == {"proved"}
 
 
 def test_what_the_strand_keeps_in_body_axes_stays():

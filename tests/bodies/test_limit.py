@@ -9,7 +9,7 @@ import sympy
 
 from coadjoint.derive import derive
 from coadjoint.solve.strands import transport
-from tests.bodies.lattices import STIFF, compile_rates, family_of, lattice_of, strand
+from tests.bodies.lattices import STIFF, TOPS, compile_rates, family_of, lattice_of, strand
 from tests.derive.test_lattice_limit import PI, STRAIN, a, curve
 from tests.fields import precessing_wave
 from tests.specs import shipped
@@ -76,6 +76,76 @@ def _differences(rates, of):
         found = rates(state, [*given.values(), distance])[9:, 1]
         errors.append([one - other for one, other in zip(found, known, strict=True)])
     return list(zip(*errors, strict=True))
+
+
+def test_tops_of_a_lattice_turn_as_those_of_the_strand():
+    """The torque of the field on a body, and the rate of the field, are those at each point."""
+    declared = strand(*TOPS)
+    family, points = family_of(lattice_of(declared, 4)), derive(declared, "lie-poisson")
+    names = [str(each) for each in family.states]
+    rates = dict(zip(names, family.rates, strict=True))
+    Pi = sympy.Matrix(sympy.symbols("Pi1:4"))
+    Gamma = sympy.Matrix(sympy.symbols("Gamma1:4"))
+    w, inertia = sympy.Symbol("w"), sympy.symbols("I1:4")
+    Omega = sympy.Matrix([p / i for p, i in zip(Pi, inertia, strict=True)])
+    torque = sympy.Matrix([0, 0, w]).cross(Gamma)
+    expected = [*(-torque), *Gamma.cross(Omega)]
+    known = dict(zip(points.variables, points.rates, strict=True))
+    for place, name in enumerate(["Pi1", "Pi2", "Pi3", "Gamma1", "Gamma2", "Gamma3"]):
+        parts = (x[name] if place >= 3 else w * sympy.diff(x[name], w) for x in (rates, known))
+        assert [sympy.expand(part - expected[place]) for part in parts] == [0, 0], name
+    assert any(expected[:3])
+
+
+CLAMPED = (("order = 4", 'order = 4, ends = "clamped"'), ('"energy", "P"', '"energy"'))
+
+
+def miss_between_walls(window, distance, turned):
+    """How far momenta are from K u_ss at each body between two walls, next to these as well.
+
+    All are turned about the first axis by ``u = s/3 + s^2/4 + s^3/5``, the second wall by
+    ``turned`` times as much.
+    """
+    equations = derive(window, "lie-poisson")
+    count = len(equations.variables) // 12
+
+    def u(s):
+        return s / 3 + s**2 / 4 + s**3 / 5
+
+    def turn(angle):
+        c, s = np.cos(angle), np.sin(angle)
+        return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+    s = distance * np.arange(1, count + 2)
+    bodies, wall = [turn(u(each)) for each in s[:-1]], turn(turned * u(s[-1]))
+    state = np.concatenate([*(R.ravel() for R in bodies), np.zeros(3 * count)])
+    given = [1.0, 2.0, 3.0, 3.0, 2.0, 1.0, distance, *wall.ravel()]
+    function = sympy.lambdify(
+        [*equations.variables, *equations.setting.parameters], equations.rates
+    )
+    found = np.array(function(*state, *given), dtype=float)[9 * count :: 3]
+    return np.abs(found - 3.0 * (0.5 + 1.2 * s[:-1])).max()
+
+
+def test_rates_between_walls_tend_to_those_of_clamped_ends():
+    """With order 2 at all bodies; with a wall that is turned otherwise they tend to nothing."""
+    window = lattice_of(strand(*CLAMPED), 6).family.windows[0]
+    misses = [miss_between_walls(window, a, 1) for a in (0.002, 0.001)]
+    assert misses[1] < 1e-5
+    np.testing.assert_allclose(np.log2(misses[0] / misses[1]), 2, atol=0.1)
+    assert miss_between_walls(window, 0.001, 1.1) > 1
+
+
+def test_bodies_between_walls_begin_as_the_strand_is_turned():
+    """At equal distances from one another and from both walls; of the second one by the strain."""
+    old = '"vector(0, sin(2*pi*s/L)/2, 0)"'
+    declared = lattice_of(strand(*CLAMPED, (old, '"vector(1/20, 0, 0)"')), 4)
+    (E,) = (each.default for each in declared.parameters if each.name == "E")
+    (a,) = (each.default for each in declared.parameters if each.name == "a")
+    assert a == (2,)
+    assert np.array(E, dtype=float).reshape(3, 3)[2, 1] == pytest.approx(np.sin(0.5), abs=1e-12)
+    rows = np.array(declared.family.defaults["R"], dtype=float).reshape(3, 3, 4)
+    np.testing.assert_allclose(rows[2, 1], np.sin(np.arange(1, 5) / 10), atol=1e-12)
 
 
 def wave_error(rates_of, N):

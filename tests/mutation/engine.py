@@ -533,6 +533,13 @@ MUTANTS = (
         tests=("tests/prove/test_truncated.py",),
     ),
     *of(
+        "prove/unitary",
+        "find_phases: flip m1",
+        "Entries.by_constants: rewrite self.invariance == 'left' -> True",
+        "list_claims: rewrite same.verdict is not Verdict.PROVED -> False",
+        tests=("tests/prove/test_unitary.py -k 'claim or side or phases'",),
+    ),
+    *of(
         "algebra/waves",
         "find_entries: drop sign turned",
         "find_entries: flip sine sin",

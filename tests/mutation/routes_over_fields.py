@@ -83,7 +83,7 @@ FIELDS = (
     *core_of(
         "lie-poisson",
         "truncated",
-        "derive_truncated _find_scale multiply_out _commute",
+        "derive_truncated _find_scale multiply_out commute_entries _split _commute",
         systems=(),
         tests=MATRICES,
     ),

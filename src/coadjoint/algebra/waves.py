@@ -18,21 +18,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import cos, pi, sin
 
-#: ``cos(2 pi t/n)`` of a few n, by t up to (n - 1)/2: numbers times square roots.
-_COSINES = {
-    3: (((Fraction(1), 1),), ((Fraction(-1, 2), 1),)),
-    5: (
-        ((Fraction(1), 1),),
-        ((Fraction(-1, 4), 1), (Fraction(1, 4), 5)),
-        ((Fraction(-1, 4), 1), (Fraction(-1, 4), 5)),
-    ),
-}
-#: ``sin(2 pi/n)``, and over it ``sin(2 pi t/n)``, as texts.
-_SINES = {
-    3: ("sqrt(3)/2", ("0", "1")),
-    5: ("sqrt((5 + sqrt(5))/8)", ("0", "1", "(sqrt(5) - 1)/2")),
-}
-
 
 def residue(k: int, n: int) -> int:
     """The one from -(n - 1)/2 to (n - 1)/2.
@@ -75,27 +60,37 @@ def find_entries(n: int, parts: Sequence[float]) -> list[list[float]]:
     return whole
 
 
-def find_weight(n: int, k2: int, step: int) -> tuple[tuple[Fraction, int], ...]:
-    """What an entry adds to V, so many points along the diagonal of k2: numbers times roots.
+def find_weight(n: int, k2: int, step: int) -> dict[int, Fraction]:
+    """What an entry adds to V, so many points along the diagonal of k2: factors of cosines by t.
 
-    ``V = (1/n) sum over k1 of cos(2 pi k1 step/n) W/(k1^2 + k2^2)``, for 3 and 5 rows.
+    ``V = (1/n) sum over k1 of cos(2 pi t/n) W/(k1^2 + k2^2)``, where t is the size of the residue
+    of ``k1 step``.
+
+    >>> find_weight(3, 0, 1)
+    {1: Fraction(2, 3)}
     """
     found = dict[int, Fraction]()
     for k1 in range(n):
         square = residue(k1, n) ** 2 + residue(k2, n) ** 2
-        for value, root in _COSINES[n][abs(residue(k1 * step, n))] if square else ():
-            found[root] = found.get(root, Fraction(0)) + value / (n * square)
-    return tuple((value, root) for root, value in sorted(found.items()))
+        if square:
+            t = abs(residue(k1 * step, n))
+            found[t] = found.get(t, Fraction(0)) + Fraction(1, n * square)
+    return found
 
 
-def list_cosines(n: int) -> tuple[list[str], str, tuple[str, ...]]:
-    """``cos(2 pi t/n)`` by t up to (n - 1)/2, sin(2 pi/n), and sin(2 pi t/n) over it; n is 3 or 5.
+def write_cosine(t: int, n: int) -> str:
+    """``cos(2 pi t/n)`` as a formula, whose value the exact field has.
 
-    >>> list_cosines(3)
-    (['1', '-1/2'], 'sqrt(3)/2', ('0', '1'))
+    >>> write_cosine(2, 5), write_cosine(0, 5)
+    ('cos(2*pi*2/5)', '1')
     """
-    cosines = [
-        " + ".join(f"{value}" + f"*sqrt({root})" * (root > 1) for value, root in parts)
-        for parts in _COSINES[n]
-    ]
-    return cosines, *_SINES[n]
+    return f"cos(2*pi*{t}/{n})" if t else "1"
+
+
+def write_sine(t: int, n: int) -> str:
+    """``sin(2 pi t/n)`` as a formula.
+
+    >>> write_sine(1, 5), write_sine(0, 5)
+    ('sin(2*pi*1/5)', '0')
+    """
+    return f"sin(2*pi*{t}/{n})" if t else "0"

@@ -23,6 +23,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from coadjoint.algebra.catalogue import algebra_by_name
+from coadjoint.algebra.representation import defining
 from coadjoint.derive import Equations, derive
 from coadjoint.errors import SpecError
 from coadjoint.exact import Element, Field
@@ -39,7 +40,8 @@ class Strand:
         equations: By one of its routes.
         momentum: Its angular momentum per length.
         strain: What its attitude turns by along it.
-        kinetic: The part of the energy per length that depends on momenta.
+        advected: Vectors that turn with the bodies.
+        own: The part of the energy per length without strains, of momenta and advected vectors.
         potential: The other part: the factor of each monomial of strains, by their exponents.
     """
 
@@ -47,7 +49,8 @@ class Strand:
     equations: Equations
     momentum: Variable
     strain: Variable
-    kinetic: Element
+    advected: tuple[Variable, ...]
+    own: Element
     potential: dict[tuple[int, ...], Element]
 
     @property
@@ -83,20 +86,24 @@ def read_strand(spec: Spec) -> Strand:
     field = equations.setting.field
     assert equations.exact.energy is not None, "a strand has an energy"
     energy = equations.close(equations.exact.energy)
-    _check_names(spec, field, energy, (*momentum.components, *strain.components))
-    potential = field.substitute(energy, dict.fromkeys(momentum.components, field.zero))
-    kinetic = energy - potential
-    if any(field.gradient(kinetic, strain.components)):
-        problem = "its energy has a term of momenta and strains together"
-        hint = "Momenta are those of bodies, and strains stand between them."
-        raise refuse(spec, problem, "a function of momenta and one of strains, added", hint)
-    monomials = dict(_list_monomials(spec, field, potential, strain.components))
+    advected = tuple(each for each in spec.having_role("advected") if not each.strain)
+    moved = {name for each in (momentum, *advected) for name in each.components}
+    _check_names(spec, field, energy, (*moved, *strain.components))
+    monomials = dict(_list_monomials(spec, field, energy, strain.components))
+    own = monomials.pop((0,) * len(strain.components), field.zero)
+    together = {n for factor in monomials.values() for n in field.reach(factor) & moved}
+    if together:
+        kind = "momenta" if together & {*momentum.components} else "advected quantities"
+        problem = f"its energy has a term of {kind} and strains together"
+        hint = f"{kind.capitalize()} are those of bodies, and strains stand between them."
+        raise refuse(spec, problem, f"a function of {kind} and one of strains, added", hint)
     return Strand(
         spec=spec,
         equations=equations,
         momentum=momentum,
         strain=strain,
-        kinetic=kinetic,
+        advected=advected,
+        own=own,
         potential=monomials,
     )
 
@@ -105,10 +112,9 @@ def _check_strand(spec: Spec) -> None:
     """What can be seen before anything is derived.
 
     Raises:
-        SpecError: It is no strand on so(3) of momenta and a strain alone.
+        SpecError: It is no strand on so(3) of momenta, a strain and advected vectors.
     """
     strains = [each for each in spec.variables if each.strain]
-    others = [each.name for each in spec.having_role("advected") if not each.strain]
     by_hand = "Declare such bodies by [index], as"
     if spec.space is None or spec.algebra is None or not strains:
         problem = "it has no strain"
@@ -119,13 +125,13 @@ def _check_strand(spec: Spec) -> None:
     if spec.invariance != "left":
         problem = "it is right invariant, and so its strains are not turns in body axes"
         raise refuse(spec, problem, 'invariance = "left"')
-    if spec.space.ends == "clamped":
-        problem, hint = "its ends are clamped", "No body of a lattice is held."
-        raise refuse(spec, problem, 'ends = "periodic" or "free"', hint)
-    if others:
-        hint = f"{by_hand} spin_chain_lattice does, and give each an advected quantity."
-        problem = f"{others[0]!r} is advected along the strand"
-        raise refuse(spec, problem, "momenta and a strain alone", hint)
+    vector = defining(spec.algebra)
+    for each in spec.having_role("advected"):
+        own = each.representation
+        if not each.strain and (own is None or own.matrices != vector.matrices or each.form):
+            hint = f"{by_hand} spin_chain_lattice does, and give each an advected quantity."
+            problem = f"{each.name!r} is advected, and no vector"
+            raise refuse(spec, problem, 'representation = "vector"', hint)
     momenta = spec.having_role("momentum")
     if [each.block for each in momenta] != [(0, 1, 2)] or strains[0].shape != (3,):
         problem = "its momentum or its strain is no vector along the whole algebra"

@@ -15,6 +15,8 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from coadjoint.bodies.energy import Strand, pair_components, read_strand, refuse
 from coadjoint.bodies.starts import Starts, find_starts
 from coadjoint.derive.interpret import entries
@@ -25,14 +27,17 @@ from coadjoint.spec import Spec, read_spec_text
 from coadjoint.spec.core.components import kept_places, matrix_size
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from coadjoint.spec.model import Observable, Parameter
 
+    Array = NDArray[np.float64]
+
 #: Names for what the strand has not, in the order in which they are tried.
 _NAMES: Final = {
     "index": ("i", "j", "k"),
+    "count": ("n", "m", "count"),
+    "wall": ("E", "B", "C"),
     "distance": ("a", "b", "d"),
     "attitude": ("R", "Q", "A"),
     "momentum": ("J", "M", "N"),
@@ -51,8 +56,9 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     """The spec of a lattice of rigid bodies whose limit is a strand, as text.
 
     Args:
-        spec: A strand on so(3), left invariant, around a circle or between free ends, whose energy
-            per length is the sum of a function of momenta and a polynomial of strains.
+        spec: A strand on so(3), left invariant, around a circle or between ends, whose energy
+            per length is the sum of a function of momenta and advected vectors and a polynomial
+            of strains.
         bodies: How many there are by default; as many as the strand has points if left out.
 
     Returns:
@@ -120,9 +126,10 @@ class _Lattice:
         spec, space = strand.spec, strand.spec.space
         assert space is not None, spec.name
         self.strand, self.spec, self.bodies, self.length = strand, spec, bodies, space.length
-        self.is_open = space.has_ends
+        self.is_open, self.is_clamped = space.has_ends, space.ends == "clamped"
         taken = {strand.momentum.name, *(each.name for each in spec.parameters)} - {self.length}
         taken |= {each.name for each in spec.observables}
+        taken |= {each.name for each in strand.advected}
         self.names = {use: self._choose(use, names, taken) for use, names in _NAMES.items()}
         self.place = self.names["index"]
         self.distance = self.names["distance"]
@@ -144,12 +151,13 @@ class _Lattice:
 
     def write(self, element: Element) -> str:
         """An element as a formula, with momenta of a body."""
-        known = dict[str, str]()
-        for each in self.spec.parameters:
-            known |= _place_components(each)
-        momentum = self.strand.momentum
-        for n, component in enumerate(momentum.components, 1):
-            known[component] = f"{momentum.name}[{self.place}, {n}]"
+        known = {
+            component: f"{each.name}[{self.place}, {n}]"
+            for each in (self.strand.momentum, *self.strand.advected)
+            for n, component in enumerate(each.components, 1)
+        }
+        for parameter in self.spec.parameters:
+            known |= _place_components(parameter)
         text = element_text(self.strand.field, element)
         return re.sub(r"[A-Za-z]\w*", lambda found: known.get(found[0], found[0]), text)
 
@@ -164,14 +172,19 @@ class _Lattice:
         yield "\n".join([*rows, 'routes = ["lie-poisson"]'])
         yield f"description = {_quote(self._describe())}"
         ring = json.dumps(not self.is_open)
-        yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring} }}"
+        count = f", count = {_quote(self.names['count'])}" if self._has_walls else ""
+        yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring}{count} }}"
         yield '[algebra]\nname = "so(3)"\ninvariance = "left"'
         yield "[variables]\n" + "\n".join(self._variables())
         yield "[parameters]\n" + "\n".join(self._parameters())
-        terms = [f"  sum({i}, {self.write(self.strand.kinetic)})"]
+        terms = [f"  sum({i}, {self.write(self.strand.own)})"]
         if self.strand.potential:
             yield "[definitions]\n" + "\n".join(self._definitions())
-            terms.append(f"+ sum({i}, {self._call_potential()})")
+            turned = f"transpose({R})"
+            terms.append(f"+ sum({i}, {self._call(f'{turned}*{self.attitude}[{i}+1]')})")
+        if self._has_walls:  # the first wall has the attitude 1
+            last = f"transpose({self.attitude}[{self.names['count']}-1])*{self.names['wall']}"
+            terms += [f"+ {self._call(link)}" for link in (f"{self.attitude}[0]", last)]
         lines = "\n".join(terms)
         yield f'# the energy over {self.distance}\n[hamiltonian]\nh = """\n{lines}\n"""'
         left = self._left_out()
@@ -179,10 +192,13 @@ class _Lattice:
         yield note + "[observables]\n" + "\n".join(self._observables.values())
         kept = [name for name in ("energy", *self._observables) if self._is_kept(name)]
         casimirs = [f"trace({R}*transpose({R}))", f"det({R})"]
+        in_space = [f"({R}*{each.name}[{i}])" for each in self.strand.advected]
+        casimirs += [f"{vector}[{n}]" for vector in in_space for n in (1, 2, 3)]
         yield f"[claims]\ncasimirs = {json.dumps(casimirs)}\nconserved = {json.dumps(kept)}"
 
     def _describe(self) -> str:
         row = "a row with free ends" if self.is_open else "a ring"
+        row = "a row between two walls, which stand still," if self.is_clamped else row
         closes = "" if self.is_open else ", and the ring closes exactly"
         begin = "the profiles of the strand say"
         if self._starts.attitudes is None:
@@ -200,29 +216,28 @@ class _Lattice:
         return find_starts(self.strand, self.bodies)
 
     def _variables(self) -> Iterator[str]:
-        i, starts, each = self.place, self._starts, self.strand.momentum
-        rows = (
-            (self.attitude, "attitude", starts.attitudes, "", "from a body to space"),
-            (
-                each.name,
-                "momentum",
-                starts.momenta,
-                _unit(each.unit),
-                each.doc or "angular momenta in body axes, per length",
-            ),
-        )
-        for name, role, given, unit, doc in rows:
-            default = "" if given is None else f", default = {json.dumps(_write_numbers(given))}"
-            yield (
-                f'{name} = {{ role = "{role}", index = "{i}"{default}{unit}, doc = {_quote(doc)} }}'
-            )
+        starts, Pi = self._starts, self.strand.momentum
+        doc = Pi.doc or "angular momenta in body axes, per length"
+        yield self._variable(self.attitude, "attitude", starts.attitudes, "from a body to space")
+        yield self._variable(Pi.name, "momentum", starts.fields.get(Pi.name), doc, Pi.unit)
+        for each in self.strand.advected:
+            doc = each.doc or "in body axes"
+            given = starts.fields.get(each.name)
+            yield self._variable(each.name, "advected", given, doc, each.unit)
+
+    def _variable(self, name: str, role: str, given: Array | None, doc: str, unit: str = "") -> str:
+        """The line of a variable."""
+        default = "" if given is None else f", default = {json.dumps(_write_numbers(given))}"
+        more = ', representation = "vector"' if role == "advected" else ""
+        keys = f'role = "{role}"{more}, index = "{self.place}"{default}{_unit(unit)}'
+        return f"{name} = {{ {keys}, doc = {_quote(doc)} }}"
 
     def _parameters(self) -> Iterator[str]:
         for each in self.spec.parameters:
             own, doc, name = each.default, each.doc, each.name
             if each.name == self.length:
                 name, doc = self.distance, "distance of bodies"
-                own = None if own is None else (own[0] / self.bodies,)
+                own = None if own is None else (own[0] / (self.bodies + self.is_clamped),)
             keys = [f"shape = {json.dumps(each.shape)}"] if each.shape else []
             keys += [f"form = {_quote(each.form)}"] if each.form else []
             keys += ["positive = true"] if each.positive else []
@@ -230,6 +245,11 @@ class _Lattice:
                 keys.append(f"default = {_write_default(own, each.shape)}")
             keys += [f"doc = {_quote(doc)}"] if doc else []
             yield f"{name} = {{ {', '.join(keys)}{_unit(each.unit)} }}"
+        if self._has_walls:
+            wall = np.eye(3) if self._starts.wall is None else self._starts.wall
+            rows = json.dumps(_write_numbers(wall))
+            doc = "attitude of the wall behind the last body; that of the first wall is 1"
+            yield f'{self.names["wall"]} = {{ shape = [3, 3], default = {rows}, doc = "{doc}" }}'
 
     # -- the potential --------------------------------------------------------------------
 
@@ -262,9 +282,13 @@ class _Lattice:
         if arguments:
             yield f'"{names["potential"]}({arguments})" = {_quote(self._write_potential())}'
 
-    def _call_potential(self) -> str:
+    @property
+    def _has_walls(self) -> bool:
+        """Whether there are links to walls, which turn with nothing."""
+        return self.is_clamped and any(self._uses)
+
+    def _call(self, link: str) -> str:
         """The potential of a link."""
-        link = f"transpose({self.body})*{self.attitude}[{self.place}+1]"
         values = [f"{function}({link})" for function, _ in self._arguments()]
         return f"{self.names['potential']}({', '.join(values)})"
 
@@ -287,7 +311,7 @@ class _Lattice:
 
     @cached_property
     def _observables(self) -> Mapping[str, str]:
-        """The total momentum in space, and what the strand has of momenta alone, by names."""
+        """The total momentum in space, and what the strand has without strains, by names."""
         i, J, Pi = self.place, self.names["momentum"], self.strand.momentum
         doc = f"total angular momentum in space, over {self.distance}"
         total = f"sum({i}, {self.body}*{Pi.name}[{i}])"
@@ -306,19 +330,24 @@ class _Lattice:
         return rows
 
     def _of_momenta(self, each: Observable) -> tuple[Element, ...] | None:
-        """An observable of the strand by components, if it is one of momenta alone."""
+        """An observable of the strand by components, if it names no strains."""
         if len(each.formula.shape) > 1:
             return None
         equations, field = self.strand.equations, self.strand.field
         values = entries(equations.setting.value(each.formula))
         closed = tuple(map(equations.close, values))
-        known = {*self.strand.momentum.components, *field.adjoined}
+        own = (self.strand.momentum, *self.strand.advected)
+        known = {*(n for x in own for n in x.components), *field.adjoined}
         known |= {n for x in self.spec.parameters for n in x.components} - {self.length}
         return closed if all(field.reach(value) <= known for value in closed) else None
 
     def _is_kept(self, name: str) -> bool:
         """Whether the lattice keeps it: of the strand's, linear functions of momenta it keeps."""
-        if name in ("energy", self.names["momentum"]):
+        if name == "energy":
+            return True
+        if self.is_clamped or self.strand.advected:  # walls and fields turn bodies
+            return False
+        if name == self.names["momentum"]:
             return True
         claimed = {each.formula.text for each in self.spec.conserved if not each.where}
         momenta, field = self.strand.momentum.components, self.strand.field
@@ -371,7 +400,7 @@ def _write_default(values: tuple[Fraction, ...], shape: tuple[int, ...]) -> str:
     return rows[0] if len(shape) == 1 else f"[{', '.join(rows)}]"
 
 
-def _write_numbers(values: NDArray[np.float64]) -> object:
+def _write_numbers(values: Array) -> object:
     """Lists of numbers, those that are not whole as texts of decimals."""
     if values.ndim:
         return [_write_numbers(value) for value in values]

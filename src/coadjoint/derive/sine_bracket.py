@@ -18,7 +18,7 @@ from itertools import product
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from coadjoint.algebra.waves import list_cosines, residue
+from coadjoint.algebra.waves import residue, write_cosine, write_sine
 from coadjoint.derive.interpret import interpret
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.truncated import put_numbers
@@ -88,10 +88,9 @@ class _Circle:
     def __init__(self, equations: Equations, rows: int) -> None:
         self.rows, self.field = rows, equations.setting.field
         self._setting = equations.setting
-        cosines, sine, shares = list_cosines(rows)
-        self._cosines = [self.read(each) for each in cosines]
-        first = self.read(sine)
-        self._sines = [first * self.read(each) for each in shares]
+        places = range(rows // 2 + 1)
+        self._cosines = [self.read(write_cosine(t, rows)) for t in places]
+        self._sines = [self.read(write_sine(t, rows)) for t in places]
 
     def read(self, text: str) -> Element:
         """A formula without variables, as an element."""

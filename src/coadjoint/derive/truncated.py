@@ -22,7 +22,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.symbols import choose_names
 from coadjoint.derive.written import Written
 from coadjoint.errors import DerivationError
-from coadjoint.exact import Element
+from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import Matrix, product
 from coadjoint.families import Family, MatrixMotion, Sum, Total
 from coadjoint.spec.core.expressions import read_expression
@@ -143,26 +143,35 @@ def multiply_out(equations: Equations) -> tuple[Element, ...]:
     field, energy = equations.setting.field, equations.exact.energy
     assert energy is not None, equations.spec.name
     state = equations.setting.state
-    n = isqrt(len(state))
+    own = tuple(field[name] for name in state)
+    return commute_entries(field, own, tuple(field.gradient(energy, state)))
 
-    def split(entries: tuple[Element, ...]) -> tuple[Matrix, Matrix]:
-        rows = [entries[i * n : (i + 1) * n] for i in range(n)]
-        turned = list(zip(*rows, strict=True))
-        pairs = [list(zip(a, b, strict=True)) for a, b in zip(rows, turned, strict=True)]
-        return (
-            tuple(tuple((a - b) / 2 for a, b in row) for row in pairs),
-            tuple(tuple((a + b) / 2 for a, b in row) for row in pairs),
-        )
 
-    own = split(tuple(field[name] for name in state))
-    slopes = split(tuple(field.gradient(energy, state)))
+def commute_entries(
+    field: Field, W: tuple[Element, ...], V: tuple[Element, ...]
+) -> tuple[Element, ...]:
+    """The entries of the commutator of two matrices, by theirs."""
+    n = isqrt(len(W))
+    own, other = _split(W), _split(V)
     parts = [
-        _commute(own[0], slopes[0], 1),
-        _commute(own[1], slopes[1], -1),
-        _commute(own[0], slopes[1], 1),
-        _commute(own[1], slopes[0], 1),
+        _commute(own[0], other[0], 1),
+        _commute(own[1], other[1], -1),
+        _commute(own[0], other[1], 1),
+        _commute(own[1], other[0], 1),
     ]
     return tuple(field.sum(part[i][j] for part in parts) for i in range(n) for j in range(n))
+
+
+def _split(entries: tuple[Element, ...]) -> tuple[Matrix, Matrix]:
+    """A and B of entries of A + B."""
+    n = isqrt(len(entries))
+    rows = [entries[i * n : (i + 1) * n] for i in range(n)]
+    turned = list(zip(*rows, strict=True))
+    pairs = [list(zip(a, b, strict=True)) for a, b in zip(rows, turned, strict=True)]
+    return (
+        tuple(tuple((a - b) / 2 for a, b in row) for row in pairs),
+        tuple(tuple((a + b) / 2 for a, b in row) for row in pairs),
+    )
 
 
 def _commute(a: Matrix, b: Matrix, sign: int) -> list[list[Element]]:

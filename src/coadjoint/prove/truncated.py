@@ -4,13 +4,13 @@ For a few N the motion is written out on the dual of u(N), and all claims are pr
 other system; there it is decided as well that the rates by structure constants are the commutator
 :math:`\dot W = [W, V]`, which loops compute. What follows from this form holds for every N:
 
-* :math:`\frac{d}{dt} \mathrm{tr}\, W^k = k\, \mathrm{tr}(W^{k-1} [W, V]) = 0`, since the trace of a
-  product does not change where factors go round;
+* the Jacobi identity, and that the N traces of powers of W are Casimirs, and all there are
+  (`coadjoint.prove.unitary`);
 * the energy :math:`h = -\tfrac12 \mathrm{tr}(W V)` has the rate :math:`-\mathrm{tr}(V [W, V]) = 0`,
   since L, of which V is the inverse times W, has a symmetric matrix on each diagonal.
 
 On the torus it is decided as well that the rates are those by the sine bracket of waves
-(`coadjoint.derive.sine_bracket`), for the least N.
+(`coadjoint.derive.sine_bracket`), for the least N, and that waves have this bracket, for every N.
 
 Comes in: the certificates of a few N. Goes out: one certificate, in which each claim says for which
 N it holds. Read next: `coadjoint.derive.truncated`.
@@ -26,6 +26,7 @@ from coadjoint.derive import derive
 from coadjoint.derive.sine_bracket import multiply_waves
 from coadjoint.derive.truncated import derive_truncated, multiply_out
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
+from coadjoint.prove.unitary import claim_sine_bracket, list_claims
 from coadjoint.prove.zero import decide_zero, make_entry
 from coadjoint.spec.model import Spec
 
@@ -137,20 +138,16 @@ def _follow(spec: Spec, few: str) -> list[Claim]:
     rows, least = spec.family.index.name, spec.family.least
     odd = "odd " * (not spec.family.index.allows(least + 1))
     scope = f"for every {odd}{rows} >= {least}"
+    found = list_claims(spec.family.windows[0].invariance, scope, rows)
+    if spec.family.index.surface == "torus":
+        found.append(claim_sine_bracket(scope, rows))
     return [
-        Claim(
-            statement=f"tr W^k is conserved, k = 1 to {rows}, {scope}",
-            kind="conserved",
-            verdict=Verdict.PROVED,
-            method="its rate is k tr(W^(k-1) [W, V]), in which factors go round",
-            seconds=0.0,
-        ),
+        *found,
         Claim(
             statement=f"the energy is conserved, {scope}",
             kind="conserved",
             verdict=Verdict.PROVED,
             method="V = dh/dW as L is symmetric on each diagonal, and tr(V [W, V]) = 0; its rate "
             f"vanishes by normal forms, for {few}",
-            seconds=0.0,
         ),
     ]

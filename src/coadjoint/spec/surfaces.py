@@ -96,16 +96,12 @@ def _list_on_torus(n: int, names: Sequence[str]) -> Iterator[str]:
                 for d in sorted({k2, -k2})
                 for i in range(n)
             ]
-            parts = [_write_part(*part) for part in waves.find_weight(n, k2, 2 * step) if part[0]]
-            if parts:
-                share = "" if step else "1/2*"
-                yield f"{share}({' + '.join(parts)})*({' + '.join(pairs)})"
-
-
-def _write_part(value: Fraction, root: int) -> str:
-    """A number times a square root."""
-    above = "" if root == 1 else f"*sqrt({root})"
-    return f"({value.numerator}/{value.denominator}){above}"
+            parts = [
+                f"({value.numerator}/{value.denominator})*{waves.write_cosine(t, n)}"
+                for t, value in waves.find_weight(n, k2, 2 * step).items()
+            ]
+            share = "" if step else "1/2*"
+            yield f"{share}({' + '.join(parts)})*({' + '.join(pairs)})"
 
 
 def _write_term(value: Fraction, root: int, one: str, other: str) -> str:
