@@ -74,17 +74,9 @@ LONG = {
 
 #: Systems whose kernels loop over members or points.
 LOOPED = (*FAMILIES, *FIELDS)
-#: One system for each kind of text, of those that take little time: bodies, constraints, forces,
-#: canonical coordinates, equal members, a field. `.ci/run` does the same for every system.
-SAMPLE = (
-    "chaplygin_sleigh",
-    "heavy_top_damped",
-    "kapitza_top",
-    "rigid_body_attitude",
-    "se2_pendulum",
-    "sp2_strand",
-    "toda_lattice",
-)
+#: Constraints, forces on a body, a field, equal members, of those that take little time. `.ci/run`
+#: does the same for every system.
+SAMPLE = ("chaplygin_sleigh", "heavy_top_damped", "sp2_strand", "toda_lattice")
 
 
 def check_rows(specs, complete):
@@ -94,7 +86,7 @@ def check_rows(specs, complete):
     came before in a process.
     """
     outcome = check(specs, ROOT / "generated", jobs=2, complete=complete)
-    assert len(outcome.rows) == len(specs) >= 7
+    assert len(outcome.rows) == len(specs) >= 4
     assert not outcome.failures
     for row in outcome.rows:
         assert row.proved == row.claims >= (6 if row.system in LOOPED else 7)
