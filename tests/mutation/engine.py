@@ -534,7 +534,7 @@ MUTANTS = (
     ),
     *of(
         "prove/unitary",
-        "find_phases: flip m1",
+        "find_phases: flip m2 n1",
         "Entries.by_constants: rewrite self.invariance == 'left' -> True",
         "list_claims: rewrite same.verdict is not Verdict.PROVED -> False",
         tests=("tests/prove/test_unitary.py -k 'claim or side or phases'",),

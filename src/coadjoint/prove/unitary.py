@@ -98,7 +98,8 @@ def list_claims(invariance: str, scope: str, rows: str) -> list[Claim]:
     ]
     start = perf_counter()
     violation = algebra_by_name(f"entries({ROWS_OF_THREE})").jacobi_violation()
-    jacobi = Decision(Verdict.PROVED if violation is None else Verdict.REFUTED, CONSTANTS)
+    verdict = Verdict.PROVED if violation is None else Verdict.REFUTED
+    jacobi = Decision(verdict=verdict, method=CONSTANTS)
     claims.append(
         _enter(
             f"the bracket of u({rows}) satisfies the Jacobi identity, {scope}",
