@@ -18,7 +18,7 @@ from coadjoint.resources import derivations_folder
 from tests import specs
 
 # Trees of expressions make no cycles, and many are alive: collections would only look at them.
-gc.set_threshold(50_000, 20, 20)
+gc.set_threshold(500_000, 20, 100)
 # A run in the background ignores Ctrl-C, and its children would, too: tests send it to them.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -80,7 +80,7 @@ def optimized(monkeypatch):
 
 #: Names of all that was collected, before some of it is left out.
 COLLECTED = pytest.StashKey[frozenset[str]]()
-#: Cases that take more than a third of a second of processor time, where a shorter one of the same
+#: Cases that take more than a fifth of a second of processor time, where a shorter one of the same
 #: test is left: only under `make test-all`. Times are those of `pytest --durations`.
 LONG_CASES = frozenset(
     line
