@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_circulant
 
-from coadjoint.errors import CoadjointError, KernelArgumentError, ShockWarning
+from coadjoint.errors import CoadjointError, KernelArgumentError, ResourceError, ShockWarning
 from coadjoint.systems import (
     burgers,
     camassa_holm,
@@ -93,6 +93,23 @@ def test_too_few_points_for_the_differences_are_refused():
     """Seven points for KdV's differences of order 6 would meet themselves."""
     with pytest.raises(KernelArgumentError, match="at least 9"):
         kdv.system.resize({"s": 8})
+
+
+def test_fields_of_unequal_lengths_are_refused():
+    """Momenta at 32 points, strains at 16."""
+    ring = spin_chain.system.resize({"s": 32})
+    state = {"Pi": np.ones((3, 32)), "Xi": np.ones((3, 16))}
+    message = r"state\['Xi'\] has the shape \(3, 16\); expected \(3, 32\)"
+    with pytest.raises(KernelArgumentError, match=message):
+        ring.simulate(state, (0, 1))
+
+
+def test_fields_beyond_the_memory_are_refused_before_any_work():
+    """So many points, and so many samples of few."""
+    with pytest.raises(ResourceError, match=r"take about .* GB; .* Choose a smaller size of s\.$"):
+        spin_chain.system.resize({"s": 10**12})
+    with pytest.raises(KernelArgumentError, match=r"samples take .* GB, and this machine has"):
+        spin_chain.system.resize({"s": 32}).simulate(None, (0, 1), samples=10**12)
 
 
 @pytest.mark.parametrize("N", [5, 6, 40, 257])

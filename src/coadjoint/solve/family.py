@@ -389,9 +389,9 @@ def check_memory(name: str, index: Index, rows: int) -> None:
     needed, there = rows * ROW_BYTES, find_memory()
     if needed > there * SHARE:
         raise ResourceError(
-            f"{name} with {index.size} members {index.name} has {rows} rows, which take about "
+            f"{name} has {rows} rows at the size of {index.name} that is chosen, which take about "
             f"{needed / 1e9:.1f} GB; expected at most half of the {there / 1e9:.1f} GB of this "
-            "machine. Take fewer members.",
+            f"machine. Choose a smaller size of {index.name}.",
             found=needed,
             expected=int(there * SHARE),
         )
