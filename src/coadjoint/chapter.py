@@ -76,7 +76,11 @@ def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     claims = certificate["claims"]
     counts = Counter(claim["verdict"] for claim in claims)
     total = ", ".join(f"{number} {verdict}" for verdict, number in counts.items())
-    words = [(about, " ".join(sentences)) for about, sentences in _sentences(claims)]
+    words = [
+        ("" if place else about, sentence)  # the subject stands beside the first of its claims
+        for about, sentences in _sentences(claims)
+        for place, sentence in enumerate(sentences)
+    ]
     words += [
         (
             "Found",

@@ -17,6 +17,7 @@ from coadjoint.derive.setting import shape
 from coadjoint.derive.theorems import Theorem, find_theorem
 from coadjoint.exact import Element
 from coadjoint.notation import names
+from coadjoint.notation.tex import to_mathml
 from coadjoint.notation.written import Written, enclose
 from coadjoint.spec.model import Shape
 
@@ -64,14 +65,17 @@ def partial(function: str, name: str) -> Left:
     return names.partial(symbol(function), symbol(name))
 
 
-def component(text: str, latex: str, n: int) -> Left:
+def component(text: str, latex: str, typst: str, n: int) -> Left:
     """A component of a vector that is written out: ``(M eta')_1``."""
-    inner = f"<mrow><mo>(</mo><mtext>{text}</mtext><mo>)</mo></mrow>"
-    return Left(
-        f"({text})_{n}",
-        f"({latex})_{{{n}}}",
-        f"<msub>{inner}<mn>{n}</mn></msub>",
-        f'("{text}")_{n}',
+    maths = to_mathml(latex)
+    assert maths is not None, latex
+    inner = maths.removeprefix("<math>").removesuffix("</math>")
+    vector = enclose([Written(text=text, latex=latex, mathml=inner, typst=typst)], "()")
+    return Written(
+        text=f"{vector.text}_{n}",
+        latex=f"{vector.latex}_{{{n}}}",
+        mathml=f"<msub>{vector.mathml}<mn>{n}</mn></msub>",
+        typst=f"{vector.typst}_{n}",
     )
 
 

@@ -95,7 +95,10 @@ def _steps(
             "d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f",
             r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
             r"\rangle + B_k f",
-            ((component("M eta'", r"M \dot\eta", n), value) for n, value in enumerate(known, 1)),
+            (
+                (component("M eta'", r"M \dot\eta", "M dot(eta)", n), value)
+                for n, value in enumerate(known, 1)
+            ),
             by="hamel",
         ),
     )

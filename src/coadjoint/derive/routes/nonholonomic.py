@@ -142,6 +142,7 @@ def _steps(
     setting, of, velocities = motion.frame.setting, motion.distribution, motion.frame.velocities
     kinematics = motion.kinematics.definitions
     row, row_latex = "B^T M B eta'", r"B^T M B \dot\eta"
+    row_typst = "B^T M B dot(eta)"
     followed = rates_followed(setting, of)
     return (
         write_step(
@@ -193,7 +194,7 @@ def _steps(
             f"{row} = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
             rf"{row_latex} = B^T (\mathrm{{ad}}^*_\xi p + (\partial l/\partial a) \diamond a + f"
             r" - M c - \partial_z p \, \dot z)",
-            ((component(row, row_latex, n), value) for n, value in enumerate(known, 1)),
+            ((component(row, row_latex, row_typst, n), x) for n, x in enumerate(known, 1)),
             by="nonholonomic",
         ),
         write_step(
