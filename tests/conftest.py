@@ -80,7 +80,7 @@ def optimized(monkeypatch):
 
 #: Names of all that was collected, before some of it is left out.
 COLLECTED = pytest.StashKey[frozenset[str]]()
-#: Cases that take more than a fifth of a second of processor time, where a shorter one of the same
+#: Cases that take more than a tenth of a second of processor time, where a shorter one of the same
 #: test is left: only under `make test-all`. Times are those of `pytest --durations`.
 LONG_CASES = frozenset(
     line
