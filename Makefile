@@ -28,7 +28,7 @@ check: setup  ## lint, types and specs
 	$(BIN)/mypy
 	$(BIN)/tombi lint --offline --quiet derivations
 
-test: setup  ## run the tests; campaigns, and long cases beside shorter ones, are left out
+test: setup  ## run the tests; campaigns, and long cases of tests with shorter ones, are left out
 	$(BIN)/python -P -m pytest -q -n $(JOBS) --dist worksteal -m "not campaign and not long"
 
 test-all: setup  ## run all tests

@@ -81,7 +81,7 @@ def optimized(monkeypatch):
 #: Names of all that was collected, before some of it is left out.
 COLLECTED = pytest.StashKey[frozenset[str]]()
 #: Cases that take more than a tenth of a second of processor time, where a shorter one of the same
-#: test is left: only under `make test-all`. Times are those of `pytest --durations`.
+#: test is left: only under `make test-all`. Times are those of a whole run, children counted.
 LONG_CASES = frozenset(
     line
     for line in (Path(__file__).parent / "long_cases.txt").read_text(encoding="utf-8").splitlines()

@@ -77,7 +77,7 @@ def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     counts = Counter(claim["verdict"] for claim in claims)
     total = ", ".join(f"{number} {verdict}" for verdict, number in counts.items())
     words = [
-        ("" if place else about, sentence)  # the subject stands beside the first of its claims
+        ("" if place else about, sentence)  # the first claim names the subject
         for about, sentences in _sentences(claims)
         for place, sentence in enumerate(sentences)
     ]

@@ -21,7 +21,7 @@ from coadjoint.spec import Spec
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
-#: Longest components, in characters of MathML, that a notebook shows beside the vectors.
+#: Longest components, in characters of MathML, that a notebook shows with the vectors.
 LONGEST_MOTION: Final = 20_000
 
 
