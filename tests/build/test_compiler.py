@@ -244,6 +244,31 @@ def test_a_warning_is_an_error(tmp_path):
         compile_kernel(find_compiler(), folder, "exact")
 
 
+def test_what_an_optimiser_suspects_is_no_error(tmp_path):
+    """GCC warns of rows that two loops fill and read, where it does not see that they fit."""
+    header = f"{SIMPLE['kernel.h']}void choose(int *);\n"
+    body = """#include "kernel.h"
+double twice(double x)
+{
+    double y;
+    int chosen = x > 0.0;
+    if (chosen)
+        y = 2.0 * x;
+    choose(&chosen);
+    return chosen ? y : 0.0;
+}
+void choose(int *chosen)
+{
+    *chosen = *chosen > 0;
+}
+"""
+    found = find_compiler()
+    folder = sources(tmp_path, **{"kernel.h": header, "kernel.c": body})
+    assert compile_kernel(found, folder, "exact").is_file()
+    for build in ("exact", "fast"):
+        assert ("-Wno-maybe-uninitialized" in found.flags(build)) == found.is_gnu
+
+
 def test_a_hanging_compiler_is_stopped(monkeypatch, tmp_path):
     """The limit is named, and nothing of it is left running."""
     fake = script(tmp_path, "slow", "sleep 61 & echo $! > started; wait")

@@ -69,9 +69,11 @@ _GNU = (
     "-fno-tree-slp-vectorize",
     "--param=vect-epilogues-nomask=0",
 )
-#: GCC fuses a product and a sum with the first alone of all that the second level has in addition.
-#: It sees less there, so that it takes rows that loops fill for uninitialised.
-_FUSING = ("-fexpensive-optimizations", "-Wno-maybe-uninitialized")
+#: GCC takes rows that one loop fills and another reads for uninitialised where it does not see that
+#: both have the same length: that depends on the processor and on what stands in one function.
+_UNSURE = ("-Wno-maybe-uninitialized",)
+#: It fuses a product and a sum with the first alone of all that the second level has in addition.
+_FUSING = ("-fexpensive-optimizations",)
 #: What is run for some points alone, and fused, needs none of the first level's other long passes
 #: (docs/decisions/compiler.md has the figures): as many operations are fused without them.
 _HASTY = ("-fno-tree-loop-optimize", "-fno-tree-dse", "-fno-dse", "-fira-region=one")
@@ -109,7 +111,7 @@ class Compiler:
         Raises:
             CompilerError: The environment asks for no level of optimisation.
         """
-        own = _GNU if self.is_gnu and source.is_loops else ()
+        own = _UNSURE * self.is_gnu + _GNU * (self.is_gnu and source.is_loops)
         lowest = int(build == "fast")  # without optimisation nothing is fused
         level = min(source.level, max(_allowed_level(), lowest))
         fusing = _FUSING if self.is_gnu and level == 1 else ()
