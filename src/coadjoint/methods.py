@@ -302,13 +302,13 @@ _ENTRIES: Final = (
             needs=(*_ORBITS, "sandwich"),
             keeps=f"{_ON_ORBITS}; the spectrum of the matrix",
             theorem=f"{steps}the isospectral midpoint, a Poisson map on the dual of an algebra of "
-            "matrices (K. Modin and M. Viviani, Foundations of Computational Mathematics 20 (2020) "
-            "889)",
-            expects="a motion that is the bracket with its energy alone, of the momentum of an "
-            "algebra of 4 to 28 matrices of numbers on which tr(A B) is not degenerate and which "
-            "has all products B W B, or lacks multiples of 1 or i alone: so(n), so(p,q), su(n), "
-            "u(n), sl(n), gl(n) and sp(2n), in a basis in which B W B takes at most "
-            f"{C_STATEMENTS} statements",
+            "matrices with all products B A B (K. Modin and M. Viviani, Foundations of "
+            "Computational Mathematics 20 (2020) 889)",
+            expects="a motion that is the bracket with its energy alone, on the dual of an algebra "
+            "of 3 to 28 matrices other than so(3) that has all products B A B, or lacks multiples "
+            "of 1 or i alone: so(n), so(p,q), se(n), su(n), u(n), sl(n), gl(n), sp(2n), symmetric "
+            "matrices with the bracket X N Y - Y N X, and so(n) with symmetric matrices that turn, "
+            f"in a basis in which these products take at most {C_STATEMENTS} statements",
         )
         for suffix, order, steps in (
             ("", 2, ""),

@@ -57,13 +57,25 @@ LONG_BRACKETS = ("n_link_chain", "veselova_so4")
 
 #: Systems on so(n), n above 3, in the basis of the planes, and on su(4).
 MATRICES = (
+    "bargmann",
+    "bloch_iserles_2",
+    "bloch_iserles_3",
     "complex_rigid_body",
+    "cosserat_rod",
+    "galilei",
+    "kirchhoff",
+    "kirchhoff_clebsch",
     "manakov_so4",
     "manakov_so6",
+    "quadratic_potential_so3",
+    "quadratic_potential_so4",
+    "se2_pendulum",
+    "sl2_r2",
     "so4_body",
     "so5_body",
     "so6_body",
     "so8_body",
+    "steklov",
     "zeitlin_su_4",
 )
 

@@ -643,8 +643,10 @@ MUTANTS = (
     ),
     *of(
         "derive/sandwich",
-        "_emit: rewrite a + field['_bwz'] * b -> a",
-        "_find_products: rewrite sign * each -> each",
+        "_emit: rewrite a + own['_bwz'] * b -> a",
+        "_find_signs: rewrite sign * each -> each",
+        "act: rewrite product(B, self.middle) -> product(self.middle, B)",
+        "_find_products: rewrite product(product(right, inner), left) -> product(right, inner)",
         tests=("tests/derive/test_sandwich.py",),
     ),
     *of(

@@ -164,14 +164,14 @@ def test_a_linear_term_takes_the_energy_from_the_spherical_midpoint_alone():
 
 
 def test_another_algebra_takes_the_spheres():
-    """On sl(2,R) orbits are no spheres, and the general method of orbits is the default."""
+    """On sl(2,R) orbits are no spheres, and the method of matrices with products is the default."""
     changed = ('name = "so(3)"', 'name = "sl(2,R)"')
     casimir = ('casimirs = ["dot(Pi, Pi)"]', "")
     facts, methods = judge(spec(HAMILTONIAN, changed, casimir))
     assert facts.spheres == ()
     assert not methods["spherical_midpoint"].applies
     assert methods["spherical_midpoint"].decides.startswith("it expects a motion")
-    assert default(methods) == "coadjoint_mean"
+    assert default(methods) == "isospectral_midpoint4"
 
 
 def test_friction_takes_the_bracket():

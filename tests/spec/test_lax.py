@@ -62,6 +62,23 @@ def test_integrals_have_names_of_their_own():
 # -- brackets of matrices -------------------------------------------------------------------------
 
 
+def test_the_matrix_in_the_middle_of_a_bracket_is_found():
+    """N of ``X N Y - Y N X``; there is none of another bracket, and 1 of the commutator."""
+    algebra = shipped("bloch_iserles_3").algebra
+    rows = ((0, 1, "N12"), (0, 2, "N13"), (1, 2, "N23"))
+    wanted = {(i, j): name for i, j, name in rows} | {(j, i): f"-{name}" for i, j, name in rows}
+    assert {place: str(value) for place, value in algebra.middle.items()} == wanted
+    text = text_of("bloch_iserles_2")
+    twice = spec(text, (BRACKET, f"2*({BRACKET})")).algebra
+    assert {place: str(value) for place, value in twice.middle.items()} == {
+        (0, 1): "2*N12",
+        (1, 0): "-2*N12",
+    }
+    other = spec(text, (BRACKET, "X*Y*N - Y*X*N + transpose(X*Y*N - Y*X*N)")).algebra
+    assert other.elements
+    assert not other.middle
+
+
 def test_a_bracket_of_matrices_gives_constants_with_parameters():
     """``[E11, E12] = N12 E11``, since E11 N E12 has the entry N12/2 twice, by the parameter N."""
     algebra = shipped("bloch_iserles_2").algebra

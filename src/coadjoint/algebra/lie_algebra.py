@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations, combinations_with_replacement
+from itertools import combinations, combinations_with_replacement, product
 from types import MappingProxyType
 from typing import Any
 
@@ -22,8 +22,11 @@ from coadjoint.algebra.matrices import (
     commutator,
     convert_entries,
     entries_text,
+    size,
     take_image,
+    unit,
 )
+from coadjoint.algebra.matrices import product as multiply
 from coadjoint.errors import AlgebraError, LimitError
 from coadjoint.exact.bilinear import sum_products
 from coadjoint.exact.dense import total
@@ -80,6 +83,7 @@ class LieAlgebra(Invariants):
         matrices: A matrix for each basis vector where a matrix form is known, else empty.
         elements: The matrices that the basis vectors are, where the bracket is not their
             commutator; else empty.
+        middle: The matrix N where it is ``X N Y - Y N X``; else empty.
 
     Raises:
         AlgebraError: The constants violate the Jacobi identity; the message names the triple.
@@ -91,6 +95,7 @@ class LieAlgebra(Invariants):
     blocks: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     matrices: tuple[SparseMatrix, ...] = ()
     elements: tuple[SparseMatrix, ...] = ()
+    middle: SparseMatrix = field(default_factory=dict)
 
     def __repr__(self) -> str:
         listed = ", ".join(self.basis[:8]) + ", ..." * (len(self.basis) > 8)
@@ -119,7 +124,7 @@ class LieAlgebra(Invariants):
         It moves parameters and irrational numbers into another field, or puts numbers for them.
         """
         rows: list[Mapping[Any, Any]]
-        rows = [*self.constants.values(), *self.matrices, *self.elements]
+        rows = [*self.constants.values(), *self.matrices, *self.elements, self.middle]
         if all(isinstance(value, int | Fraction) for row in rows for value in row.values()):
             return self
         constants = {
@@ -130,7 +135,11 @@ class LieAlgebra(Invariants):
         matrices = tuple(convert_entries(matrix, convert) for matrix in self.matrices)
         elements = tuple(convert_entries(matrix, convert) for matrix in self.elements)
         return take_image(
-            self, constants=MappingProxyType(constants), matrices=matrices, elements=elements
+            self,
+            constants=MappingProxyType(constants),
+            matrices=matrices,
+            elements=elements,
+            middle=convert_entries(self.middle, convert),
         )
 
     def bracket(self, xi: Sequence[Any], eta: Sequence[Any]) -> tuple[Any, ...]:
@@ -357,7 +366,31 @@ def from_bracket(
         if i < j:
             brackets[i, j] = coordinates
     made = from_brackets(name, basis, brackets)
-    return replace(made, elements=tuple(dict(matrix) for matrix in elements))
+    middle = _find_middle(elements, bracket)
+    return replace(made, elements=tuple(dict(matrix) for matrix in elements), middle=middle)
+
+
+def _find_middle(
+    elements: Sequence[SparseMatrix],
+    bracket: Callable[[SparseMatrix, SparseMatrix], SparseMatrix],
+) -> SparseMatrix:
+    """The N of a bracket ``X N Y - Y N X`` of these matrices; empty where it is another.
+
+    Of X = e_r e_a^T and Y = e_b e_b^T the first product alone has the entry ``N_ab``, at (r, b).
+    """
+    count = size(elements)
+    if count < 2:
+        return {}
+    middle = dict[tuple[int, int], Any]()
+    for a, b in product(range(count), repeat=2):
+        r = (b + 1) % count
+        if value := bracket(unit(r, a), unit(b, b)).get((r, b)):
+            middle[a, b] = value
+    for X, Y in combinations(elements, 2):
+        first, other = (multiply(multiply(one, middle), two) for one, two in ((X, Y), (Y, X)))
+        if combination([(1, first), (-1, other), (-1, bracket(X, Y))]):
+            return {}
+    return middle
 
 
 def _independent(name: str, basis: Sequence[str], matrices: Sequence[SparseMatrix]) -> Span:

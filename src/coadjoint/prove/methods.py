@@ -409,7 +409,7 @@ def _prefer_first(facts: Facts) -> Sequence[str]:
     if facts.tensor == "linear" and facts.is_hamiltonian:
         if facts.spheres and not any(each.tangent for each in facts.spheres):
             return ["spherical_midpoint", "coadjoint_mean"]
-        general = ["isospectral_midpoint4", "spherical_midpoint", "coadjoint_mean"]
+        general = ["spherical_midpoint", "isospectral_midpoint4", "coadjoint_mean"]
         return ["splitting4", *general] if facts.is_separable else general
     if facts.is_canonical:
         return ["splitting4"] if facts.is_separable else []
