@@ -39,8 +39,10 @@ PROJECTED: Final = 5
 HELD: Final = 1e-9
 #: Steps that the state would need to change by its own size, about.
 STEPS: Final = 20
-#: Steps of the longest of the three runs that tell the order, and of the run that tells drifts.
+#: Steps of the longest of the three runs that tell the order, by what part of these those of
+#: further runs are, and steps of the run that tells drifts.
 HALVED: Final = 8
+LATER: Final = (8, 16)
 DRIFTING: Final = 100
 #: Components of a state beyond which a compiled solver takes less time than NumPy, with compiling.
 LARGE: Final = 8
@@ -247,13 +249,15 @@ def _measure(runs: Runs, method: JudgedMethod) -> Measured:
 def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     """The order by three runs with steps that are halved, and whether some reached the end.
 
-    Where it is too low, steps may be too long for it: halves of them are asked once.
+    Where it is too low, steps may be too long for it: those of a run more are half as long.
     """
     first = runs.step * (2.0 if method.order > 4 else 1.0)
     ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
     order, reached = _compare(ends)
-    if order is not None and not order > method.order - SHY:
-        ends = [*ends[1:], runs.run(method.name, first / 8, HALVED * 8, runs.states)]
+    for part in LATER:
+        if order is None or order > method.order - SHY:
+            break
+        ends = [*ends[1:], runs.run(method.name, first / part, HALVED * part, runs.states)]
         again, _ = _compare(ends)
         order = order if again is None else again
     return order, reached
