@@ -130,7 +130,25 @@ ADVICE = [
         'Write unit = "1/s".',
         write("m/s", "1/s"),
     ),
+    (
+        RIGID_BODY.replace(
+            "[parameters]", '[time]\nt = {}\n[forces]\nOmega = "-t*Omega"\n[parameters]'
+        ),
+        [],
+        'Write name = "t".',
+        write("t = {}", 'name = "t"'),
+    ),
     # -- constraints
+    (
+        BODY_OF_AXES.replace(
+            "[constraints]", '[constraints]\nboth = ["Omega1 == 0", "Omega2 == 0"]'
+        ),
+        [],
+        "Write each equation under a name of its own, as both1 and both2.",
+        write(
+            'both = ["Omega1 == 0", "Omega2 == 0"]', 'both1 = "Omega1 == 0"\nboth2 = "Omega2 == 0"'
+        ),
+    ),
     (
         BODY_OF_AXES,
         write('"velocity"', '"velocity", default = [1, 2, 3]'),

@@ -96,6 +96,18 @@ INDEXED = [
     ),
     (CHAIN, [("size = 6", "size = 2")], "Choose a larger size.", [("size = 2", "size = 3")]),
     (
+        CHAIN,
+        [("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + q[n]^2")],
+        'With count = "n" in [index], n is the number of members, and x[n-1] of the last.',
+        [("q[n]^2", "q[n-1]^2"), ("{ size = 6 }", '{ size = 6, count = "n" }')],
+    ),
+    (
+        CHAIN,
+        [("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + q[7]^2"), ("size = 6", "first = 1, size = 6")],
+        'With count = "n" in [index], n is the number of members, and x[n] of the last.',
+        [("q[7]^2", "q[n]^2"), ("first = 1", 'first = 1, count = "n"'), ('"P"]', '"energy"]')],
+    ),
+    (
         RIGID_BODY,
         [("shape = [3]", 'shape = ["n"]')],
         'Declare what it counts: [index] i = { size = 8, count = "n" }.',

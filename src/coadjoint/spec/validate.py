@@ -65,8 +65,9 @@ def validate(source: Source) -> Head:
         return SpecFile.model_validate(document)
     except ValidationError as error:
         details = _drop_echoes(error.errors(include_url=False))
-        faults = [_fault(source, document, detail) for detail in details[:MOST_FAULTS]]
-        raise join_faults(faults, len(details) - len(faults)) from None
+        groups = _join_kinds(document, details)
+        faults = [_fault(source, document, *group) for group in groups[:MOST_FAULTS]]
+        raise join_faults(faults, len(groups) - len(faults)) from None
 
 
 # -- TOML -----------------------------------------------------------------------------------------
@@ -123,8 +124,22 @@ def _span(source: Source, place: re.Match[str] | None) -> Span:
 # -- keys and values ------------------------------------------------------------------------------
 
 
-def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> CoadjointError:
-    """One fault that pydantic found, in our words."""
+def _join_kinds(
+    document: dict[str, Any], details: list[ErrorDetails]
+) -> list[tuple[ErrorDetails, ...]]:
+    """Faults, those of one value together, which none of the kinds fits that it may have."""
+    groups: dict[KeyPath, list[ErrorDetails]] = {}
+    for detail in details:
+        path = tuple(detail["loc"])
+        is_of_value = detail["type"] not in ("missing", "extra_forbidden")
+        groups.setdefault(_find_present(path, document) if is_of_value else path, []).append(detail)
+    return [tuple(group) for group in groups.values()]
+
+
+def _fault(
+    source: Source, document: dict[str, Any], detail: ErrorDetails, *others: ErrorDetails
+) -> CoadjointError:
+    """One fault that pydantic found, in our words; others of the same value say what else fits."""
     path, kind = tuple(detail["loc"]), detail["type"]
     present = _find_present(path, document)
     if kind == "missing":
@@ -135,6 +150,7 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
     if kind == "extra_forbidden":
         return _unknown_key(source, path)
     expected, given = _describe_expected(detail), detail["input"]
+    expected = " or ".join(dict.fromkeys((expected, *map(_describe_expected, others))))
     literal = kind == "literal_error" and isinstance(given, str)
     limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
@@ -142,10 +158,19 @@ def _fault(source: Source, document: dict[str, Any], detail: ErrorDetails) -> Co
         f"found {show_value(given)}",
         given,
         expected,
-        did_you_mean(given, re.findall("'([^']+)'", expected)) if literal else "",
+        did_you_mean(given, re.findall("'([^']+)'", expected))
+        if literal
+        else _advise(present, given),
         kind=LimitError if limit else SpecError,
         limit=limit,
     )
+
+
+def _advise(path: KeyPath, given: Any) -> str:
+    """What to write in the place of a list of texts in a table of named ones."""
+    if path[:1] != ("constraints",) or not isinstance(given, list):
+        return ""
+    return f"Write each equation under a name of its own, as {path[-1]}1 and {path[-1]}2."
 
 
 def _advise_routes(document: Mapping[str, Any]) -> str:
@@ -195,7 +220,10 @@ def _unknown_key(source: Source, path: KeyPath) -> CoadjointError:
     known = _keys(path)
     problem = f"unknown key {show_value(path[-1])}"
     expected = f"one of {list_names(known, most=len(known))}"
-    return source.at_key(path, problem, str(path[-1]), expected, did_you_mean(str(path[-1]), known))
+    hint = did_you_mean(str(path[-1]), known)
+    if not hint and path[:1] == ("time",):
+        hint = f'Write name = "{path[-1]}".'
+    return source.at_key(path, problem, str(path[-1]), expected, hint)
 
 
 def _find_present(path: KeyPath, document: Any) -> KeyPath:

@@ -194,7 +194,16 @@ def _check_free(found: Mapping[str, Node], members: Members, *, free: bool = Tru
             name = node.name if isinstance(node, Member) else members.index
             problem = f"the index {index!r} is not that of a sum around it"
             expected = f"{name}[{members.index}] inside sum({members.index}, ...)"
-            raise fault_at(node, problem, index, expected)
+            raise fault_at(node, problem, index, expected, _tell_count(members, index))
+
+
+def _tell_count(members: Members, name: str = "n") -> str:
+    """How the number of members, and so the last one, is named."""
+    if members.number or name == members.index:
+        return ""
+    last = f"x[{name}]" if members.first else f"x[{name}-1]"
+    told = f"{name} is the number of members, and {last} of the last."
+    return f'With count = "{name}" in [index], {told}'
 
 
 def _is_band(node: Node) -> bool:
@@ -322,7 +331,7 @@ def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Membe
     if at is None:
         problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
         expected = f"members {members.first} to {members.last}"
-        raise fault_at(node, problem, str(numbers[0]), expected)
+        raise fault_at(node, problem, str(numbers[0]), expected, _tell_count(members))
     own = member_name(name, at + (0 if members.from_zero else members.first))
     if numbers[1:]:
         return Index(name=own, indices=numbers[1:], within=node.within, **where)
