@@ -75,6 +75,24 @@ def test_paths_between_steps_are_cubics():
     assert path(np.array([0.0, h / 2, h])).shape == (2, 3)
 
 
+@pytest.mark.parametrize("order", [2, 4])
+def test_roundings_of_steps_do_not_add_up(order):
+    """Of an oscillator over 4000 steps; without what steps leave out its energy drifts more."""
+
+    def drift(*, is_kept):
+        first = np.array([1.0, 0.3])
+        rates = lambda _, y: np.array([y[1], -y[0]])  # noqa: E731
+        solver = WaveGauss(rates, 0.0, first, 1e9, step=0.05, order=order)
+        sizes = []
+        for _ in range(4000):
+            solver.step()
+            solver._left_out *= is_kept
+            sizes.append(solver.y @ solver.y)
+        return np.abs(np.array(sizes) / (first @ first) - 1).max()
+
+    assert drift(is_kept=True) < 1.5e-15 < drift(is_kept=False)
+
+
 def test_the_last_step_ends_where_the_run_does():
     """An end that is no whole number of steps."""
     system, _ = chain()
