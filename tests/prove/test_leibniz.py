@@ -140,7 +140,7 @@ def test_the_certificate_says_by_how_much():
     told = "is 9.5e-06 of its largest term at 32 points and 5.9e-07 at 64"
     assert told in own.method
     assert "exp(cos(2*pi*s/L - n^2))*u_a" in own.method
-    assert own.scope == "at 32 and 64 points, by doubles"
+    assert own.scope == "for these functions and fields, in doubles"
     assert "2.8e-08 of its largest term at 12 points and less than 1e-12 at 24" in other.method
 
 

@@ -23,7 +23,7 @@ from coadjoint.derive.records import Kept
 from coadjoint.exact import Element
 from coadjoint.poisson.jacobi import schouten_bracket, slopes_by
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.leibniz import POINTS, WAVES, tell_defect
+from coadjoint.prove.leibniz import tell_defect
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec.core.members import member_name
 
@@ -228,9 +228,8 @@ def _about_jacobi(grid: Grid, where: str) -> Iterator[Examined]:
 
 def _measure(grid: Grid, reason: str, *, by_waves: bool = False) -> Discovery:
     """By how much the Jacobi identity fails, at so many points and about such fields."""
-    few, many = WAVES if by_waves else POINTS
     told = tell_defect(grid, by_waves=by_waves)
-    return Discovery(f"{reason}: {told}", f"at {few} and {many} points, by doubles")
+    return Discovery(f"{reason}: {told}", "for these functions and fields, in doubles")
 
 
 def is_constant(tensor: Sequence[Sequence[Element]], ring: Equations) -> bool:
