@@ -153,7 +153,9 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     check_loops(family, loops)
     progress("render")
     plane = [n for n, kept in grid.exact.items() if kept] if isinstance(grid, TorusGrid) else None
-    facts, methods = judge_family(windows, declared, family, loops, certificate, in_plane=plane)
+    over = "equal members" if grid is None else "points"
+    given = (windows, declared, family, loops, certificate)
+    facts, methods = judge_family(*given, over=over, in_plane=plane)
     supported = certificate.count(Verdict.SUPPORTED)
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)

@@ -86,6 +86,7 @@ def test_methods_are_listed_with_what_decides(run):
         ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
         ("toda_lattice", "do not apply: its solvers are loops over equal members, without it."),
+        ("kdv", "do not apply: its solvers are loops over points, without it."),
         ("bloch", '"auto" with step= takes dop853.'),
     ],
 )

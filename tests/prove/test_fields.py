@@ -12,7 +12,6 @@ from coadjoint.derive.fields.structure import field_operator
 from coadjoint.errors import ClaimError
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove.fields import (
-    _about_strand,
     decide_density,
     decide_jacobi,
     decide_skew,
@@ -106,24 +105,6 @@ def test_the_bracket_of_the_circle_needs_its_factor_two():
     spoiled = (((Term(-(m**2), 1, one), Term(-one, 1, m**2), Term(-one, 3, one)),),)
     assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
     assert decide_jacobi(spoiled, jets).verdict is Verdict.REFUTED
-
-
-@pytest.mark.parametrize("name", ["spin_chain", "sp2_strand", "spin_chain_chiral"])
-def test_the_holonomy_of_a_strand_keeps_its_trace(name, monkeypatch):
-    """Left and right invariant; with the other sign of the bracket the curvature is not zero."""
-    first = emitted(name)
-    ((statement, kind, decide),) = _about_strand(first)
-    side = "S psi" if name == "sp2_strand" else "psi Xi"
-    assert statement == (
-        f"the trace of the holonomy of dpsi/ds = {side} around the circle is conserved"
-    )
-    assert kind == "lax"
-    found = decide()
-    assert found.verdict is Verdict.PROVED
-    assert "zero curvature" in found.method
-    sign = first.setting.sign
-    monkeypatch.setattr(type(first.setting), "sign", property(lambda _: -sign))
-    assert decide().verdict is Verdict.REFUTED
 
 
 def test_the_holonomy_of_a_wrong_pair_is_not_claimed_as_proved():

@@ -95,6 +95,20 @@ def test_too_few_points_for_the_differences_are_refused():
         kdv.system.resize({"s": 8})
 
 
+def test_fields_are_told_by_their_points():
+    """What is printed, wrong names of a size, and methods that do not apply."""
+    system = kdv.system.resize({"s": 32})
+    assert repr(system) == "<System kdv: 32 points along s; state m; parameters c, L>"
+    assert "32 points along s" in repr(system.with_derivatives("fourier"))
+    message = (
+        r"expected a number of points along s\. .*\[space\] s = \{ length = \.\.\., size = 1000"
+    )
+    with pytest.raises(KernelArgumentError, match=message):
+        system.resize({"i": 32})
+    with pytest.raises(KernelArgumentError, match="does not apply to its points"):
+        system.simulate(None, (0, 1), method="gauss4", step=0.1)
+
+
 def test_fields_of_unequal_lengths_are_refused():
     """Momenta at 32 points, strains at 16."""
     ring = spin_chain.system.resize({"s": 32})

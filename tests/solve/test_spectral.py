@@ -112,7 +112,7 @@ def test_the_trace_of_the_holonomy_of_the_spin_chain_is_kept():
     [
         {"method": "taylor"},
         {"method": "dop853"},
-        {"method": "gauss4", "step": 0.1},
+        {"method": "coadjoint_mean", "step": 0.1},
     ],
     ids=lambda each: str(each),
 )

@@ -202,7 +202,8 @@ size_option = click.option(
     metavar="INDEX=N",
     multiple=True,
     callback=_read_sizes,
-    help="How many members an index counts, e.g. i=12. Default: that of the spec.",
+    help="How many members an index counts, or points a field has along a coordinate, e.g. i=12 "
+    "or s=512. Default: that of the spec.",
 )
 
 #: The option ``--seconds`` of every command that derives.

@@ -36,7 +36,7 @@ from coadjoint.spec.model import Windows
 LOOPED: Final = ("midpoint", "spherical_midpoint", "sequence")
 #: The two flows of a splitting: positions move with the momenta at rest, and the other way round.
 FLOWS: Final = ("flow1", "flow2")
-_NONE: Final = "its solvers are loops over equal members, without it"
+_NONE: Final = "its solvers are loops over {}, without it"
 _SPHERES: Final = (
     "it expects members that are vectors of three components, each with the bracket of so(3) or a "
     "multiple of it"
@@ -219,6 +219,7 @@ def judge_family(
     loops: Mapping[str, Loops],
     certificate: Certificate,
     *,
+    over: str = "equal members",
     in_plane: Sequence[str] | None = None,
 ) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
     """The facts of a system of equal members, and every method judged by them.
@@ -229,12 +230,14 @@ def judge_family(
         family: Those of the generic member.
         loops: Its functions.
         certificate: What is proved for every number of members.
+        over: What its solvers are loops over, in words.
         in_plane: Where the members are points of a plane, the integrals that truncated series keep.
     """
     facts = FamilyFacts(windows, declared, family, loops, certificate)
     looped = {*LOOPED, *(["isospectral_midpoint"] if family.matrices is not None else [])}
-    refusals = {name: _NONE for name, x in STRUCTURED.items() if x.file not in looped}
-    refusals |= {name: _NONE for name in MAPPED if name not in SPLITTINGS}
+    none = _NONE.format(over)
+    refusals = {name: none for name, x in STRUCTURED.items() if x.file not in looped}
+    refusals |= {name: none for name in MAPPED if name not in SPLITTINGS}
     if not facts.spheres:
         spheres = (name for name, x in STRUCTURED.items() if x.file == "spherical_midpoint")
         refusals |= dict.fromkeys(spheres, _SPHERES)

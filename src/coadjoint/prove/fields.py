@@ -33,6 +33,7 @@ from coadjoint.exact import Element, Field, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
+from coadjoint.prove.strands import about_strand, decide_holonomy
 from coadjoint.prove.torus import about_torus
 from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 
@@ -51,7 +52,7 @@ def about_fields(routes: Sequence[Equations]) -> Iterator[Examined]:
     yield from _about_densities(first)
     for equations in routes:
         yield from _about_pair(first, routes, equations)
-    yield from _about_strand(first)
+    yield from about_strand(first)
     if first.spec.in_plane:
         yield from about_torus(make_torus(first), partial(decide_density, first))
     else:
@@ -328,52 +329,5 @@ def _about_pair(
             f"the trace of the holonomy of dpsi/d{space.name} = psi L around the circle is "
             f"conserved, for every {pair.spectral} for which L is finite",
             "lax",
-            lambda: _decide_holonomy(lax_decision(motion, pair), "M"),
+            lambda: decide_holonomy(lax_decision(motion, pair), "M"),
         )
-
-
-def _about_strand(first: Equations) -> Iterator[Examined]:
-    """The holonomy of the strain of a strand."""
-    setting, space, energy = first.setting, first.spec.space, first.exact.energy
-    strains = [each for each in setting.advected if each.strain]
-    if space is None or space.has_ends or energy is None or not strains:
-        return
-    (strain,) = strains
-    side = f"psi {strain.name}" if first.spec.invariance == "left" else f"{strain.name} psi"
-    yield (
-        f"the trace of the holonomy of dpsi/d{space.name} = {side} around the circle is conserved",
-        "lax",
-        partial(_decide_curvature, first, strain.components, energy),
-    )
-
-
-def _decide_curvature(first: Equations, strains: Sequence[str], energy: Element) -> Decision:
-    """Zero curvature, ``dXi/dt - dOmega/ds = [Xi, Omega]`` with Omega = dh/dmu; on the right minus.
-
-    The bracket is that of the structure constants, and knows nothing of how the strain is advected.
-    """
-    setting, jets = first.setting, jets_of(first.setting)
-    field = setting.field
-    omega = [field.derivative(energy, mu) for mu in setting.momenta]
-    rates = dict(zip(setting.state, first.exact.rates, strict=True))
-    turned = {n: list[Element]() for n in range(len(strains))}
-    for (a, b), row in setting.algebra.constants.items():
-        for c, value in row.items():
-            part = field[strains[a]] * omega[b] - field[strains[b]] * omega[a]
-            turned[c].append(part * value)
-    defects = [
-        rates[name] - jets.total(omega[n]) - field.sum(turned[n]) * setting.sign
-        for n, name in enumerate(strains)
-    ]
-    return _decide_holonomy(decide_zero(defects, field), "the velocity")
-
-
-def _decide_holonomy(decision: Decision, by: str) -> Decision:
-    """What zero curvature says of the holonomy."""
-    if decision.verdict is not Verdict.PROVED:
-        return decision
-    method = (
-        f"{decision.method}: zero curvature, so that the rate of the holonomy is its commutator "
-        f"with {by} at the first point"
-    )
-    return replace(decision, method=method)

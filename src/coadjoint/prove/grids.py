@@ -3,7 +3,8 @@
 Comes in: a `Grid`. Goes out: statements. The energy is kept since the matrix of the bracket is
 antisymmetric. Other sums are kept if the variation of their rate over an endless grid vanishes;
 what is no sum of differences changes by terms of the order of the differences. The Jacobi identity
-of a bracket with differences fails by Leibniz' rule, which no difference obeys.
+of a bracket with differences fails by Leibniz' rule, which no difference obeys, and a number says
+by how much.
 Read next: `coadjoint.prove.fields`.
 """
 
@@ -12,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
+from typing import Final, TypeVar
 
 from coadjoint.derive import Equations
 from coadjoint.derive.fields.grid import Grid
@@ -22,8 +23,15 @@ from coadjoint.derive.records import Kept
 from coadjoint.exact import Element
 from coadjoint.poisson.jacobi import schouten_bracket, slopes_by
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.leibniz import tell_defect
 from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
 from coadjoint.spec.core.members import member_name
+
+#: Why Fourier derivatives do not obey Leibniz' rule.
+WAVES_FAIL: Final = (
+    "a product of two fields may have waves that N points show as others, of which Leibniz' rule "
+    "fails"
+)
 
 
 def about_grid(grid: Grid) -> Iterator[Examined]:
@@ -48,7 +56,7 @@ def about_grid(grid: Grid) -> Iterator[Examined]:
             lambda: _decide_by_parts(grid),
         )
     yield from _about_sums(grid, where)
-    yield _about_jacobi(grid, where)
+    yield from _about_jacobi(grid, where)
 
 
 def count_points(ring: Equations, grid: Grid) -> int:
@@ -179,7 +187,7 @@ def _give(found: Found) -> Found:
     return found
 
 
-def _about_jacobi(grid: Grid, where: str) -> Examined:
+def _about_jacobi(grid: Grid, where: str) -> Iterator[Examined]:
     """Whether the bracket at N points is a Poisson bracket."""
     ring = grid.windows[0]
     field, tensor = ring.setting.field, ring.exact.poisson_tensor
@@ -192,20 +200,36 @@ def _about_jacobi(grid: Grid, where: str) -> Examined:
     if not defects and (pointwise or is_constant(tensor, ring)):
         method = f"normal form, for {size} points; points commute" if pointwise else "constants"
         decision = Decision(verdict=Verdict.PROVED, method=method)
-        return f"the bracket satisfies the Jacobi identity, {where}", "jacobi", lambda: decision
+        yield f"the bracket satisfies the Jacobi identity, {where}", "jacobi", lambda: decision
+        return
     if not defects:
         method = f"normal form, for {size} points"
         discovery = Discovery(method, f"for {size} points")
-        return "the bracket satisfies the Jacobi identity", "jacobi", lambda: discovery
-    a, b, c = (ring.setting.state[n] for n in next(iter(defects)))
+        yield "the bracket satisfies the Jacobi identity", "jacobi", lambda: discovery
+        return
+    triple = ", ".join(ring.setting.state[n] for n in next(iter(defects)))
     by = "" if grid.ends else f" by O(h^{_order(grid)})"  # near ends it is less
-    method = f"differences do not obey Leibniz' rule: of the triple {a}, {b}, {c} and others"
-    discovery = Discovery(method, f"for {size} points")
-    return (
+    yield (
         f"the Jacobi identity of the bracket fails at N points{by}",
         "jacobi",
-        lambda: discovery,
+        partial(
+            _measure,
+            grid,
+            f"differences do not obey Leibniz' rule, of the triple {triple} and others",
+        ),
     )
+    if not grid.ends:
+        yield (
+            "the Jacobi identity of the bracket fails at N points with Fourier derivatives",
+            "jacobi",
+            partial(_measure, grid, WAVES_FAIL, by_waves=True),
+        )
+
+
+def _measure(grid: Grid, reason: str, *, by_waves: bool = False) -> Discovery:
+    """By how much the Jacobi identity fails, at so many points and about such fields."""
+    told = tell_defect(grid, by_waves=by_waves)
+    return Discovery(f"{reason}: {told}", "for these functions and fields, in doubles")
 
 
 def is_constant(tensor: Sequence[Sequence[Element]], ring: Equations) -> bool:

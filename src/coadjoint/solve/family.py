@@ -247,8 +247,16 @@ class FamilySystem(System):
             KernelArgumentError: No such index, or too few members.
             ResourceError: So many members do not fit into memory.
         """
-        size = check_sizes(self.name, self.index, self.small, sizes)
+        size = check_sizes(self.name, self.index, self.small, sizes, self.counted)
         return self._copy(replace(self.index, size=size))
+
+    @property
+    def counted(self) -> str:
+        """What its index counts: ``members``, ``rows`` of matrices, or ``points`` of fields."""
+        if self.index.of_rows:
+            return "rows"
+        is_field = (self.symbol, self.spectral, self.profiles) != (None, None, None)
+        return "points" if is_field else "members"
 
     def _copy(self, index: Index, **changed: Any) -> Self:
         """The same for another index, and what else is changed."""
@@ -325,9 +333,12 @@ class FamilySystem(System):
 
     def __repr__(self) -> str:
         state, parameters = (", ".join(each) for each in (self.STATE, self.PARAMETERS))
-        members = f"{self.size} members {self.index.name}"
-        if self.index.of_rows:
-            members = f"{self.size} entries of {self.index.find_size(self.size)} rows"
+        size, index = self.size, self.index
+        members = {
+            "members": f"{size} members {index.name}",
+            "rows": f"{size} entries of {index.find_size(size)} rows",
+            "points": f"{size} points along {index.name}",
+        }[self.counted]
         told = f"{members}; state {state}; parameters {parameters or 'none'}"
         driving = {"inputs": self.INPUTS, "noise": self.NOISE, "time": self.TIME}
         told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
@@ -347,18 +358,36 @@ def _find_resized(
     return system
 
 
-def check_sizes(name: str, index: Index, small: int, sizes: Mapping[str, int]) -> int:
+#: What an index counts: the table of specs that declares it, and its words before its name.
+_TABLES: Final = {
+    "members": ("index", "for the index"),
+    "rows": ("truncation", "for the index"),
+    "points": ("space", "along"),
+}
+
+
+def check_sizes(
+    name: str, index: Index, small: int, sizes: Mapping[str, int], counted: str = "members"
+) -> int:
     """The number of members that is asked for.
+
+    Args:
+        name: The system.
+        index: Its index.
+        small: The fewest that there may be.
+        sizes: What is asked for.
+        counted: What the index counts, as `FamilySystem.counted`.
 
     Raises:
         KernelArgumentError: No such index, or too few members.
     """
     if list(sizes) != [index.name]:
-        what, table = ("rows", "truncation") if index.of_rows else ("members", "index")
+        table, before = _TABLES[counted]
+        declared = f"{{ {'length = ..., ' * (counted == 'points')}size = 1000 }}"
         raise KernelArgumentError(
-            f"sizes of {name} are {dict(sizes)!r}; expected a number of {what} for the index "
+            f"sizes of {name} are {dict(sizes)!r}; expected a number of {counted} {before} "
             f"{index.name}. Choose it, sizes={{{index.name!r}: 1000}}, or declare it, [{table}] "
-            f"{index.name} = {{ size = 1000 }}.",
+            f"{index.name} = {declared}.",
             found=list(sizes),
             expected=[index.name],
         )

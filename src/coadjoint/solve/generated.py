@@ -101,7 +101,8 @@ def find_missing_maps(system: System, reconstruct: Any) -> dict[str, str]:
 def _list_missing(system: FamilySystem, names: Iterable[str]) -> dict[str, str]:
     """Why methods do not apply to equal members, as far as they do not."""
     known = {each.name for each in system.METHODS}
-    reason = f"it does not apply to its equal members: see `coadjoint show {system.name} --methods`"
+    of = "points" if system.counted == "points" else "equal members"
+    reason = f"it does not apply to its {of}: see `coadjoint show {system.name} --methods`"
     return dict.fromkeys((name for name in names if name not in known), reason)
 
 

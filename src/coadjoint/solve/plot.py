@@ -369,8 +369,10 @@ def _tell_rows(solution: Solution) -> str:
     """What the rows of a quantity are numbers of."""
     if not isinstance(solution.system, FamilySystem):
         return "component"
-    is_field = solution.system.symbol is not None or bool(solution.system.connections)
-    return f"point {solution.system.index.name}" if is_field else "member"
+    system = solution.system
+    if system.counted != "points":
+        return "member"
+    return f"point {system.index.name}" if system.torus is None else "point"
 
 
 def _draw_drift(axes: Any, solution: Solution) -> None:

@@ -67,8 +67,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
 
-#: The method with steps of one length of fields by Fourier derivatives.
-_BY_WAVES = "midpoint"
+#: The methods with steps of one length of fields by Fourier derivatives, and their orders.
+_BY_WAVES = {"midpoint": 2, "gauss4": 4, "gauss6": 6, "gauss8": 8}
 #: How the reason begins for which a step of it fails.
 NOT_SOLVED = "the equation of a step is not solved"
 
@@ -126,8 +126,9 @@ def simulate(
             obstacles |= dict.fromkeys(
                 (*STRUCTURED, *MAPPED), f"Python leads the steps: {stepwise}"
             )
-        if system.obstacle:  # whose midpoint is one of Python's, not a generated one
-            obstacles.pop(_BY_WAVES)
+        if system.obstacle:  # whose methods are Python's, not generated ones
+            for each in system.METHODS:
+                obstacles.pop(each.name)
         without = (
             ""
             if obstacle
@@ -270,17 +271,17 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
-    direct = _find_direction(system, packed) if name == _BY_WAVES else None
+    direct = _find_direction(system, packed) if name in _BY_WAVES else None
 
     def begin(time: float, state: Array, end: float) -> OdeSolver:
         import scipy.integrate  # which takes longer than a run of a generated solver
 
         driving.enter(time)
-        if name == _BY_WAVES:
-            from coadjoint.solve.wave_midpoint import WaveMidpoint
+        if name in _BY_WAVES:
+            from coadjoint.solve.wave_gauss import WaveGauss
 
-            length = request.step or 0.0
-            return WaveMidpoint(rates, time, state, end, step=length, direct=direct)
+            length, order = request.step or 0.0, _BY_WAVES[name]
+            return WaveGauss(rates, time, state, end, step=length, order=order, direct=direct)
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
@@ -297,8 +298,8 @@ def _simulate_alone(system: System, request: Request) -> Solution:
 
 def _find_direction(
     system: System, parameters: Array
-) -> Callable[[Array, float], Callable[[Array], Array]] | None:
-    """What directs sweeps of the midpoint: the linear part of fields, where there is one."""
+) -> Callable[[Array, Array], Callable[[Array], Array]] | None:
+    """What directs sweeps of Gauss's methods: the linear part of fields, where there is one."""
     from coadjoint.solve.stiff_waves import find_stiff_waves  # which reads formulas
 
     waves = find_stiff_waves(system, parameters)
@@ -347,10 +348,10 @@ def _make_solution(
         times, states = times[-1:], states[:, -1:]
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
-    by_waves = request.method == _BY_WAVES
+    by_waves = request.method in _BY_WAVES
     course = Course(
         method=request.method,
-        order=2 if by_waves else None,
+        order=_BY_WAVES.get(request.method),
         rtol=None if by_waves else request.rtol,
         atol=None if by_waves else request.atol,
         step=request.step,

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.families import Spectral
+    from coadjoint.methods import JudgedMethod
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
 
@@ -63,15 +64,20 @@ class SpectralSystem(FamilySystem):
         for name in ("_kernels", "_solvers"):
             self.__dict__.pop(name, None)
         self.differences = system
-        self.METHODS = tuple(
-            replace(
-                each,
-                exactly=tuple(x for x in each.exactly if x == "energy"),
-                nearly=(*each.nearly, *(x for x in each.exactly if x != "energy")),
-                is_poisson=False,
-            )
-            for each in system.METHODS
-            if each.name == "midpoint"
+        midpoints = [_judge(each) for each in system.METHODS if each.name == "midpoint"]
+        self.METHODS = (
+            *midpoints,  # what it keeps is quadratic, and Gauss's methods keep all that is
+            *(
+                replace(
+                    each,
+                    name=f"gauss{2 * stages}",
+                    order=2 * stages,
+                    cost=each.cost.replace("one midpoint", f"{stages} stages"),
+                    rank=0,
+                )
+                for each in midpoints
+                for stages in (2, 3, 4)
+            ),
         )
         kept = (
             replace(each, conserved=each.name == "energy") for each in system.OBSERVABLES.values()
@@ -98,6 +104,16 @@ class SpectralSystem(FamilySystem):
 
     def __repr__(self) -> str:
         return f"{super().__repr__()[:-1]}; Fourier derivatives>"
+
+
+def _judge(method: JudgedMethod) -> JudgedMethod:
+    """The midpoint by Fourier derivatives: of what it keeps, the energy alone is kept by these."""
+    return replace(
+        method,
+        exactly=tuple(x for x in method.exactly if x == "energy"),
+        nearly=(*method.nearly, *(x for x in method.exactly if x != "energy")),
+        is_poisson=False,
+    )
 
 
 class _SpectralKernels(Kernels):

@@ -118,7 +118,7 @@ def _read_path(said: Mapping[str, Any]) -> Any:
     """An interpolant of SciPy: an object of one of its classes, with arrays and numbers alone."""
     from scipy.integrate import DenseOutput
 
-    from coadjoint.solve.wave_midpoint import Cubic
+    from coadjoint.solve.wave_gauss import Cubic
 
     known: dict[str, Any] = {each.__name__: each for each in (*DenseOutput.__subclasses__(), Cubic)}
     path: Any = object.__new__(known[said["class"]])

@@ -2,15 +2,15 @@ r"""Stiff waves: the linear part of fields by Fourier derivatives, wave by wave.
 
 About constant fields, the means of those at hand, a wave :math:`\hat u_n e^{i \kappa_n s}` moves by
 :math:`\dot{\hat u}_n = L(\kappa_n) \hat u_n`, with a matrix L for several fields: what their rates
-have of the first degree, with all derivatives, how short the waves may be. The equation of an
-implicit midpoint, :math:`m = x_0 + \tfrac{h}{2} f(m)`, is then solved by sweeps
+have of the first degree, with all derivatives, how short the waves may be. The equation of the
+stages of an implicit method, :math:`Z = h (A \otimes 1) f(x_0 + Z)`, is then solved by sweeps
 
-.. math:: m \leftarrow m + (1 - \tfrac{h}{2} L)^{-1} \big(x_0 + \tfrac{h}{2} f(m) - m\big),
+.. math:: Z \leftarrow Z + (1 - h A \otimes L)^{-1} \big(h (A \otimes 1) f(x_0 + Z) - Z\big),
 
-that come together where the rest of f is small over half a step, however stiff L is. The equation
-that they solve has no L in it.
+with a matrix of s n rows for s stages of n fields for each wave. They come together where the rest
+of f is small over a step, however stiff L is. The equation that they solve has no L in it.
 Comes in: a `SpectralSystem` and parameters. Goes out: what takes a residual to a correction.
-Read next: `coadjoint.solve.wave_midpoint`.
+Read next: `coadjoint.solve.wave_gauss`.
 
 Source:
     Kennedy and Carpenter, Applied Numerical Mathematics 44 (2003) 139, have what is stiff and
@@ -108,28 +108,31 @@ class StiffWaves:
             found += formula.evaluate(values)[0] * self._waves.find_symbol(order) * moved[of]
         return found
 
-    def direct(self, state: Array, half: float) -> Correct:
-        """What takes residuals to corrections: the inverse of ``1 - half L``, or nothing.
+    def direct(self, state: Array, scaled: Array) -> Correct:
+        """What takes residuals to corrections: the inverse of ``1 - h A x L``, or nothing.
 
         Args:
             state: ``(n,)``; L is taken about its means.
-            half: Half of the step.
+            scaled: h A of a method with s stages, ``(s, s)``.
         """
+        stages, fields = len(scaled), len(self._names)
         with np.errstate(all="ignore"):
             matrices = self.find_matrices(state)
         if not np.isfinite(matrices).all():
             return _leave
         try:
-            inverse = np.linalg.inv(np.eye(len(self._names)) - half * matrices)
+            whole = np.einsum("ij,wab->wiajb", scaled, matrices)
+            rows = stages * fields
+            inverse = np.linalg.inv(np.eye(rows) - whole.reshape(-1, rows, rows))
         except np.linalg.LinAlgError:
             return _leave
 
         def correct(residual: Array) -> Array:
             from scipy import fft
 
-            waves = fft.rfft(residual.reshape(len(self._names), self._size), axis=1)
+            waves = fft.rfft(residual.reshape(rows, self._size), axis=1)
             solved = np.einsum("wab,bw->aw", inverse, waves)
-            found: Array = fft.irfft(solved, n=self._size, axis=1).ravel()
+            found: Array = fft.irfft(solved, n=self._size, axis=1).reshape(residual.shape)
             return found
 
         return correct

@@ -136,8 +136,8 @@ class System(Functions):
 
         Fourier derivatives are exact for smooth periodic fields but for rounding, as soon as there
         are enough points. Python leads the steps between transforms of SciPy, so that methods
-        ``scipy:NAME`` apply, and the midpoint with steps of one length, to one after the other;
-        generated solvers need differences.
+        ``scipy:NAME`` apply, and with steps of one length the midpoint and Gauss's methods, to one
+        after the other; generated solvers need differences.
 
         Raises:
             KernelArgumentError: Another name, or a system without fields.

@@ -67,7 +67,7 @@ class Rings:
 
         place = self.point.placer(calculus, value, self.point.converter(field))
         totals = {
-            name: field.sum(place(density)(i) * self._weigh(i, size) for i in range(size)) / inverse
+            name: field.sum(place(density)(i) * self.weigh(i, size) for i in range(size)) / inverse
             for name, density in self.point.densities.items()
         }
         tensor = self._tensor(setting, calculus, place, names, size)
@@ -112,16 +112,16 @@ class Rings:
                 for term in entry:
                     left, right = place(term.left), place(term.right)
                     for i in range(size):
-                        for j, weight in self._matrix_row(term.order, i, size, n):
+                        for j, weight in self.matrix_row(term.order, i, size, n):
                             scale = calculus.inverse ** (term.order + 1)
-                            part = left(i) * right(j) * (weight / self._weigh(j, size)) * scale
+                            part = left(i) * right(j) * (weight / self.weigh(j, size)) * scale
                             rows.setdefault((names[a, i], names[b, j]), []).append(part)
         known = {pair: field.sum(parts) for pair, parts in rows.items()}
         return tuple(
             tuple(known.get((a, b), field.zero) for b in setting.state) for a in setting.state
         )
 
-    def _matrix_row(
+    def matrix_row(
         self, derivative: int, i: int, size: int, n: int
     ) -> Iterator[tuple[int, Fraction]]:
         """A row of the matrix of a difference, times the power of the spacing, for a field."""
@@ -132,7 +132,7 @@ class Rings:
         for r, c in row.items():
             yield (i + r) % size, c
 
-    def _weigh(self, i: int, size: int) -> Fraction:
+    def weigh(self, i: int, size: int) -> Fraction:
         """The weight of a point in sums."""
         order, has_ends = self.point.order, self.space.has_ends
         return find_weight(order, find_place(order, i, size)) if has_ends else Fraction(1)

@@ -1,13 +1,16 @@
-"""The implicit midpoint by Fourier derivatives: what it keeps, its order, and steps too long."""
+"""Gauss's methods by Fourier derivatives: what they keep, their orders, and steps too long."""
+
+from functools import partialmethod
 
 import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.solve import wave_gauss
 from coadjoint.solve.stiff_waves import StiffWaves
-from coadjoint.solve.wave_midpoint import WaveMidpoint
-from coadjoint.systems import camassa_holm, euler_2d, kdv, spin_chain
-from tests.fields import cnoidal_wave
+from coadjoint.solve.wave_gauss import WaveGauss
+from coadjoint.systems import camassa_holm, euler_2d, kdv, spin_chain, spin_chain_chiral
+from tests.fields import cnoidal_wave, precessing_wave
 
 N, L = 32, 10.0
 OPTIONS = {"samples": 5}
@@ -63,13 +66,31 @@ def test_errors_fall_with_the_square_of_the_step():
 def test_paths_between_steps_are_cubics():
     """In the middle of a step, half of both ends and an eighth of the slopes between them."""
     h, first = 0.4, np.array([1.0, 0.0])
-    solver = WaveMidpoint(lambda _, y: np.array([y[1], -y[0]]), 0.0, first, h, step=h)
+    solver = WaveGauss(lambda _, y: np.array([y[1], -y[0]]), 0.0, first, h, step=h)
     assert solver.step() is None
     path, last = solver.dense_output(), solver.y
     middle = (first + last) / 2 + h / 8 * np.array([first[1] - last[1], last[0] - first[0]])
     np.testing.assert_allclose(path(h / 2), middle, atol=1e-15)
     np.testing.assert_array_equal(path(h), last)
     assert path(np.array([0.0, h / 2, h])).shape == (2, 3)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_roundings_of_steps_do_not_add_up(order):
+    """Of an oscillator over 4000 steps; without what steps leave out its energy drifts more."""
+
+    def drift(*, is_kept):
+        first = np.array([1.0, 0.3])
+        rates = lambda _, y: np.array([y[1], -y[0]])  # noqa: E731
+        solver = WaveGauss(rates, 0.0, first, 1e9, step=0.05, order=order)
+        sizes = []
+        for _ in range(4000):
+            solver.step()
+            solver._left_out *= is_kept
+            sizes.append(solver.y @ solver.y)
+        return np.abs(np.array(sizes) / (first @ first) - 1).max()
+
+    assert drift(is_kept=True) < 1.5e-15 < drift(is_kept=False)
 
 
 def test_the_last_step_ends_where_the_run_does():
@@ -86,12 +107,13 @@ def test_the_last_step_ends_where_the_run_does():
 POINTS, CIRCLE, CHARGE = 128, 12.0, 1.3
 
 
-def cnoidal(h, end, points=POINTS):
+def cnoidal(h, end, points=POINTS, method="midpoint"):
     """A run along the wave, and by how much it misses the wave at its end."""
     s = np.arange(points) * CIRCLE / points
     system = kdv.system.resize({"s": points}).with_derivatives("fourier")
     start, given = cnoidal_wave(s, 0.0)[0].ravel(), {"c": CHARGE, "L": CIRCLE}
-    run = system.simulate(start, (0, end), step=h, samples=3, parameters=given)
+    options = {"step": h, "samples": 3, "method": method}
+    run = system.simulate(start, (0, end), parameters=given, **options)
     return run, np.abs(run.state[:, -1] - cnoidal_wave(s, end)[0].ravel()).max()
 
 
@@ -115,6 +137,88 @@ def test_steps_are_long_where_third_derivatives_are_stiff(monkeypatch):
     spoil(monkeypatch, 0)
     assert cnoidal(2e-4, 4e-3)[0].status == "NOT_SOLVED"
     assert cnoidal(3e-5, 6e-4)[0].status == "OK"
+
+
+#: Steps at which orders show above rounding, along the waves of `cnoidal` and `precessing`.
+STEPS = {"gauss4": (0.04, 0.05), "gauss6": (0.08, 0.2), "gauss8": (0.16, 1.0)}
+
+
+def precessing(h, end, method):
+    """A run along the precessing wave of the chiral model, and by how much it misses the wave."""
+    s = np.arange(N) * L / N
+    system = spin_chain_chiral.system.resize({"s": N}).with_derivatives("fourier")
+    start = precessing_wave(s, 0.0, L)[0].ravel()
+    run = system.simulate(start, (0, end), step=h, samples=2, method=method)
+    return run, np.abs(run.state[:, -1] - precessing_wave(s, end, L)[0].ravel()).max()
+
+
+@pytest.mark.parametrize("method", STEPS)
+def test_errors_along_exact_waves_fall_with_the_order(method):
+    """By 2^p with half the step, with the energy to rounding; of KdV however stiff it is."""
+    order, (stiff, mild) = int(method[-1]), STEPS[method]
+    runs = [precessing(h, 2.0, method) for h in (mild, mild / 2)]
+    assert np.log2(runs[0][1] / runs[1][1]) == pytest.approx(order, abs=0.02 * order)
+    runs += [cnoidal(stiff, 0.8, 64, method)]
+    for run, error in runs:
+        assert run.status == "OK"
+        assert run.settings["order"] == order
+        assert run.drift["energy"] < 2e-15
+        assert error < 1e-8
+
+
+def test_the_order_four_of_a_stiff_wave_is_that_of_the_method():
+    """Of KdV with steps far beyond those of explicit methods; the mass is kept as well."""
+    (run, large), (_, small) = (cnoidal(h, 0.8, 64, "gauss4") for h in (0.08, 0.04))
+    assert np.log2(large / small) == pytest.approx(4, abs=0.02)
+    np.testing.assert_allclose(run["M"], run["M"][0], rtol=1e-14)
+
+
+def test_another_tableau_has_another_order(monkeypatch):
+    """Radau IA, of order 3 with two stages, loses the energy that Gauss's method keeps."""
+    radau = np.array([[1, -1], [1, 5 / 3]]) / 4, np.array([1, 3]) / 4
+    right = [precessing(h, 1.0, "gauss4") for h in (0.2, 0.1)]
+    monkeypatch.setattr(wave_gauss, "list_weights", lambda _: radau)
+    wrong = [precessing(h, 1.0, "gauss4") for h in (0.2, 0.1)]
+    assert np.log2(wrong[0][1] / wrong[1][1]) == pytest.approx(3, abs=0.1)
+    assert wrong[0][1] > 50 * right[0][1]
+    assert wrong[0][0].drift["energy"] > 1e-9
+
+
+def test_stiff_sweeps_are_of_all_stages_together(monkeypatch):
+    """With the part of each stage alone there are more than twice as many, to the same stages."""
+    own, made = StiffWaves.direct, list[int]()
+
+    def count(self, state, scaled, *, alone):
+        correct = own(self, state, np.diag(np.diag(scaled)) if alone else scaled)
+        return lambda residual: made.append(alone) or correct(residual)
+
+    states = []
+    for alone in (False, True):
+        monkeypatch.setattr(StiffWaves, "direct", partialmethod(count, alone=alone))
+        states.append(cnoidal(0.05, 0.1, 64, "gauss4")[0].state)
+    np.testing.assert_allclose(*states, rtol=1e-11)
+    assert made.count(True) > 2 * made.count(False) > 0
+
+
+def test_the_traces_of_the_chiral_chain_are_kept_by_order_four():
+    """Of a field that is no wave: the holonomy, and L at two parameters, to errors of the step.
+
+    With half the step they change by a 16th, and by much less than by the midpoint.
+    """
+    w, changes = 2 * np.pi * np.arange(N) / N, {}
+    Pi = [0.3 * np.cos(w), 0.15 * np.sin(w), 0.5 + 0 * w]
+    Xi = [0.3 + 0 * w, np.sin(w) / 4, np.cos(w) / 5]
+    system = spin_chain_chiral.system.resize({"s": N}).with_derivatives("fourier")
+    for method, h in (("gauss4", 0.2), ("gauss4", 0.1), ("midpoint", 0.1)):
+        options = {"step": h, "method": method, "samples": 2}
+        run = system.simulate(np.concatenate([*Pi, *Xi]), (0, 2), **options)
+        assert run.drift["energy"] < 2e-15
+        changes[method, h] = [np.abs(x - x[0]).max() for x in run.traces().values()]
+    assert len(changes["gauss4", 0.1]) == 3
+    for large, small, low in zip(*changes.values(), strict=True):
+        assert small < 1e-6
+        assert large / small == pytest.approx(16, rel=0.15)
+        assert low > 100 * small
 
 
 @pytest.mark.parametrize(
@@ -175,7 +279,10 @@ def test_the_linear_part_is_that_of_rates(system, count):
     [
         ({"method": "midpoint"}, "expected step="),
         ({"step": 0.1, "newton": True}, "expected newton=False"),
-        ({"method": "gauss4", "step": 0.1}, "'midpoint', 'scipy:DOP853'"),
+        (
+            {"method": "rk4", "step": 0.1},
+            "'midpoint', 'gauss4', 'gauss6', 'gauss8', 'scipy:DOP853'",
+        ),
         ({"method": "midpoint", "step": 0.1, "rtol": 1e-3}, "one or the other"),
     ],
 )
