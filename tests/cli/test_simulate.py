@@ -298,6 +298,31 @@ def with_defaults(state, path):
     return Quantities(*(replace(each, default=default(each.name)) for each in state.values()))
 
 
+PUSHED = """
+title = "A mass that is pushed"
+routes = ["euler-lagrange"]
+[variables]
+x = { role = "coordinate" }
+v = { role = "velocity", of = "x" }
+[inputs]
+f = {}
+[lagrangian]
+l = "v^2/2"
+[forces]
+v = "f"
+"""
+
+
+def test_an_input_without_a_value_is_asked_for(run, folder):
+    """In words of the command line, and what they say works."""
+    (folder / "pushed.toml").write_text(PUSHED)
+    short = ("simulate", "pushed.toml", "--samples", "2", "--time", "0.1")
+    refused = run(*short)
+    assert refused.exit_code == 2
+    assert "no default for the input f; expected a value. Write --input f=0," in refused.stderr
+    assert run(*short, "--input", "f=0").exit_code == 0
+
+
 def test_constant_inputs_come_from_the_command_line(run, folder):
     """A force of 4 N moves 2 kg from rest by 4 m in 2 s; the default, 3 N, by 3 m."""
     (folder / "pushed.toml").write_text(POINT)

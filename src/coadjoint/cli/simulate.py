@@ -32,6 +32,7 @@ from coadjoint.cli.members import (
     seed_option,
 )
 from coadjoint.cli.output import json_option, print_json, print_table, progress_bars, say
+from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable
 
 if TYPE_CHECKING:
@@ -200,6 +201,8 @@ def command(
         check_traced(loaded)
     given: Mapping[str, Any] = chosen_parameters(loaded.PARAMETERS, parameters)
     driven: Mapping[str, Any] | None = chosen_parameters(loaded.INPUTS, inputs) or None
+    if members is None:
+        check_inputs(loaded, driven or {})
     state, followed = take_reconstructed(loaded, state)
     start = find_start(loaded, state, given, driven)
     run = Members(state=start, parameters=given, inputs=driven, followed=followed)
@@ -309,6 +312,24 @@ def chosen_parameters(
         name: values[0] if len(values) == 1 and name not in vectors else values
         for name, values in given
     }
+
+
+def check_inputs(system: System, given: Mapping[str, Any]) -> None:
+    """Every input has a value.
+
+    Raises:
+        KernelArgumentError: One has no default, and none is given.
+    """
+    named = {each.name: each for each in system.INPUTS.values() if not each.default}
+    lacking = [n for n, each in named.items() if given.keys().isdisjoint({n, *each.components})]
+    if lacking:
+        first = named[lacking[0]]
+        value = ",".join("0" for _ in first.components)
+        raise KernelArgumentError(
+            f"{system.name} has no default for the input {', '.join(lacking)}; expected a value. "
+            f"Write --input {first.name}={value}, or give a default in [inputs].",
+            found=first.name,
+        )
 
 
 def default_state(quantities: Quantities) -> list[float]:
