@@ -188,12 +188,11 @@ def _observables(equations: Equations, names: Names) -> Iterator[Section]:
     """Observables and Casimirs as they are declared, and the values of momentum maps."""
     spec, field = equations.spec, equations.setting.field
     lines = [
-        equal(symbol(f"casimir{n}"), names.write(each.sums or each.tree))
+        equal(symbol(f"casimir{n}"), names.write(each.typed))
         for n, each in enumerate(spec.casimirs, 1)
     ]
     lines += [
-        equal(symbol(each.name), names.write(each.formula.sums or each.formula.tree))
-        for each in spec.observables
+        equal(symbol(each.name), names.write(each.formula.typed)) for each in spec.observables
     ]
     named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
     lines += [
@@ -233,7 +232,7 @@ def _chart(chart: Equations) -> Iterator[Section]:
 def _definitions(definitions: Sequence[Definition], names: Names) -> Section:
     """The short names of a spec; the steps below show what they stand for in its place."""
     lines = tuple(
-        equal(symbol(each.name), names.write(each.tree))
+        equal(names.write(tree.Name(each.name)), names.write(each.typed))
         for each in definitions
         if not each.arguments
     )

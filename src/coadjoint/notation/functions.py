@@ -98,6 +98,17 @@ def write_rate(of: Written) -> Written:
     )
 
 
+def write_noise(of: Written, process: Written) -> Written:
+    """What a process moves, times its increment in the sense of Stratonovich."""
+    increment = Written(
+        text=f"o {process.text}",
+        latex=rf"\circ {process.latex}",
+        mathml=row(operator("∘"), process.mathml),
+        typst=f"compose {process.typst}",
+    )
+    return multiply([of, increment])
+
+
 def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Written:
     """A sum over members, with the two sides of its condition before its term."""
     *sides, term = below

@@ -92,8 +92,19 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     if along:
         of = name(along["of"], bold=bold)
         return replace(differentiate_along(of, len(along["s"])), text=shown)
+    if plain[:1] == "d" and _is_symbol(plain[1:]) and not _is_symbol(plain):
+        return replace(differential(name(plain[1:], bold=bold)), text=shown)
     symbol, below = _split_name(plain, bold=bold)
     return replace(attach(symbol, below=below, dot=dot), text=shown)
+
+
+def differential(of: Written) -> Written:
+    r"""The differential of a symbol.
+
+    >>> differential(name("W1")).latex == name("dW1").latex == "dW_1"
+    True
+    """
+    return literal(f"d{of.text}", f"d{of.latex}", row("<mi>d</mi>", of.mathml), f"d {of.typst}")
 
 
 def spell(text: str) -> tuple[str, str]:

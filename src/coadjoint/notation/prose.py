@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from coadjoint.notation.functions import CALLS, RELATIONS, write_rate, write_sum
-from coadjoint.notation.names import member, name, partial, spell
+from coadjoint.notation.names import differential, member, name, partial, spell
 from coadjoint.notation.written import (
     ATOM,
     CROSS,
@@ -392,8 +392,7 @@ class _Reader:
         if text in self.names:
             return self.names[text]
         if text[0] == "d" and text[1:] and _is_symbol(text[1:]) and not _is_letter(text):
-            own = self._symbol(text[1:])
-            return literal(text, f"d{own.latex}", row("<mi>d</mi>", own.mathml), f"d {own.typst}")
+            return replace(differential(self._symbol(text[1:])), text=text)
         return name(text)
 
     def _differentiate(self, token: re.Match[str]) -> Written:
