@@ -30,6 +30,8 @@ from coadjoint.spec.core.expressions import read_expression
         ("vphi", r"v_{\phi}"),
         ("ptheta", r"p_{\theta}"),
         ("psi", r"\psi"),
+        ("M_vpsi", r"M_{v_{\psi}}"),
+        ("dW1", "dW_1"),
         ("M12", "M_{12}"),
         ("M_1_10", "M_{1,10}"),
         ("r_0_1", "r_{0,1}"),

@@ -37,6 +37,7 @@ RELATIONS: Final[Mapping[str, tuple[str, str, str]]] = {
     "<": ("<", "&lt;", "<"),
     ">": (">", "&gt;", ">"),
     "<=": (r"\le", "≤", "<="),
+    "~=": (r"\approx", "≈", "approx"),
     ">=": (r"\ge", "≥", ">="),
 }
 #: Functions that have a sign, by name.

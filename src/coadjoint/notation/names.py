@@ -80,8 +80,8 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
 
     >>> name("Pi1", dot=True).latex, name("Gamma", bold=True).latex
     ('\\dot{\\Pi}_1', '\\boldsymbol{\\Gamma}')
-    >>> name("M_1_10").latex, name("rolling_reaction2").latex
-    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2')
+    >>> name("M_1_10").latex, name("rolling_reaction2").latex, name("M_vpsi").latex
+    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
     """
     shown = f"d{text}/dt" if dot else text
     plain = text.removeprefix("_")
@@ -147,7 +147,7 @@ def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:
     if symbol is None:
         return _word(parts["base"], bold=bold), below
     if words:
-        below = [_letter(words, bold=False) or _word(words, bold=False), *below]
+        below = [_write_below(words), *below]
     return symbol, below
 
 
@@ -186,6 +186,14 @@ def _split_word(base: str) -> tuple[str, str]:
     head, _, rest = base.partition("_")
     plain = head.rstrip("0123456789")
     return (head, rest) if rest and _letter(plain, bold=False) is not None else (base, "")
+
+
+def _write_below(words: str) -> Written:
+    """What a word below a letter is, which may be a velocity or momentum of an angle itself."""
+    symbol, below = _split_word(words)
+    if below in GREEK and symbol in ("v", "p"):
+        return attach(literal(symbol), below=[_letter(below, bold=False) or literal(below)])
+    return _letter(words, bold=False) or _word(words, bold=False)
 
 
 def _letter(base: str, *, bold: bool) -> Written | None:

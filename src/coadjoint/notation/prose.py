@@ -45,7 +45,7 @@ _TOKEN: Final = re.compile(
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
-    r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
+    r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|~=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
     re.ASCII,
 )
 _RELATIONS: Final = {**RELATIONS, "->": (r"\to", "→", "->")}
@@ -493,6 +493,8 @@ def _multiply(left: Written, sign: str, right: Written) -> Written:
     """Two factors with a sign between them, which may be a blank."""
     if sign in _BETWEEN:
         return between(left, _BETWEEN[sign], right)
+    if sign == "*" and right.text.startswith("10^") and left.mathml.startswith("<mn>"):
+        return between(left, CROSS, right)  # two numbers side by side would be one
     if sign != "/":
         return multiply([left, right])
     first, *others = left.factors or (left,)
