@@ -62,6 +62,14 @@ def test_numbers_of_methods_are_told_in_few_digits():
     assert "0.0977644349517698" in claim["method"]
 
 
+def test_what_stands_behind_a_route_is_no_name_of_it():
+    """The routes are listed, and what is said of both comes once."""
+    claim = {"kind": "legendre", "verdict": "proved", "method": "normal form"}
+    claims = [claim | {"statement": f"it solves on the route {r}: A x = b"} for r in "ab"]
+    ((_, text),) = by_kind(complete(RECORD, {"claims": claims}, None))["proofs"]["words"]
+    assert text == "Proved: it solves on the routes a and b: A x = b. Method: normal form."
+
+
 def test_references_are_sources_and_theorems():
     """Each source by itself."""
     words = by_kind(complete(RECORD, {}, None))["references"]["words"]

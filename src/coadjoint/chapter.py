@@ -104,32 +104,46 @@ def _find_usual(claims: Iterable[Mapping[str, Any]]) -> str:
 
 def _sentences(claims: Iterable[Mapping[str, Any]], usual: str) -> Iterator[tuple[str, list[str]]]:
     """For each subject its sentences; claims that differ by the route alone are one sentence."""
-    subjects: dict[str, dict[tuple[str, str, str], list[str]]] = {}
+    subjects: dict[str, dict[tuple[str, str, str, str], list[str]]] = {}
     for claim in claims:
-        statement, _, route = claim["statement"].partition(_ON_ROUTE)
+        statement, route, behind = _split_route(claim["statement"])
         about = _ABOUT.get(claim.get("kind", ""), claim.get("kind", "claims").capitalize())
-        key = (statement, claim["verdict"], claim["method"])
+        key = (statement, behind, claim["verdict"], claim["method"])
         subjects.setdefault(about, {}).setdefault(key, []).extend([route] if route else [])
     for about, entries in subjects.items():
-        yield (
-            about,
-            [
-                _sentence(statement, verdict, "" if method == usual else method, routes)
-                for (statement, verdict, method), routes in entries.items()
-            ],
-        )
+        sentences = [
+            _sentence(f"{statement}{_tell_routes(routes)}{behind}", verdict, method, usual)
+            for (statement, behind, verdict, method), routes in entries.items()
+        ]
+        yield about, sentences
 
 
-def _sentence(statement: str, verdict: str, method: str, routes: Sequence[str]) -> str:
+def _split_route(statement: str) -> tuple[str, str, str]:
+    """What a statement says before it names a route, the route, and what it says behind it.
+
+    >>> _split_route("it solves on the route nonholonomic: A x = b")
+    ('it solves', 'nonholonomic', ': A x = b')
+    """
+    lead, _, rest = statement.partition(_ON_ROUTE)
+    route = re.match(r"[\w-]*", rest)
+    assert route is not None, "which may be empty"
+    return lead, route[0], rest[route.end() :]
+
+
+def _tell_routes(routes: Sequence[str]) -> str:
+    """On which routes a claim holds."""
+    if not routes:
+        return ""
+    listed = ", ".join(routes[:-1]) + " and " * (len(routes) > 1) + routes[-1]
+    return f" on the route{'s' * (len(routes) > 1)} {listed}"
+
+
+def _sentence(statement: str, verdict: str, method: str, usual: str) -> str:
     """A claim with its verdict and its method, unless that is the usual one."""
     told = "supported by numbers, and not proved" if verdict == "numerically supported" else verdict
-    where = ""
-    if routes:
-        listed = ", ".join(routes[:-1]) + " and " * (len(routes) > 1) + routes[-1]
-        where = f" on the route{'s' * (len(routes) > 1)} {listed}"
     # statements are sentences, or what there is: "an invariant measure: dPi dGamma"
-    how = f" Method: {shorten_numbers(method)}." if method else ""
-    return f"{told.capitalize()}: {statement}{where}.{how}"
+    how = "" if method == usual else f" Method: {shorten_numbers(method)}."
+    return f"{told.capitalize()}: {statement}.{how}"
 
 
 def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -1,13 +1,18 @@
 """Captions of pictures say what each colour is."""
 
+import io
+
 import numpy as np
 import pytest
 
-from coadjoint.solve.illustrate import describe
+from coadjoint.cli.simulate import find_start
+from coadjoint.solve.illustrate import _take_colours, describe
+from coadjoint.solve.plot import COLOURS
 from coadjoint.systems import (
     chaplygin_ball,
     euler_disk,
     kepler,
+    knife_edge_cvt,
     n_body,
     rigid_body,
     roller_racer,
@@ -40,3 +45,29 @@ def test_a_caption_tells_the_colours_of_its_picture(module, told, untold):
     assert [each for each in told if each not in caption] == []
     assert [each for each in untold if each in caption] == []
     assert np.isfinite(motion.state).all()
+
+
+def test_a_time_without_a_unit_is_a_number():
+    """ "over 20", and not "over 20 1"."""
+    motion = knife_edge_cvt.simulate(
+        find_start(knife_edge_cvt.system, ()), (0, 1), samples=20, progress=False
+    )
+    assert "over 20, by" in describe(motion)
+
+
+def test_lines_keep_their_colours_among_those_of_a_surface():
+    """A thin line has too few dots for a colour of its own, among all those of a surface."""
+    from matplotlib.colors import to_rgb
+    from PIL import Image
+
+    orange = tuple(round(255 * part) for part in to_rgb(COLOURS[1]))
+    picture = Image.effect_noise((300, 300), 200).convert("RGB")
+    picture.paste(orange, (10, 150, 290, 151))
+    place = io.BytesIO()
+    picture.save(place, format="png")
+    with Image.open(io.BytesIO(_take_colours(place))) as small:
+        colours = small.convert("RGB").getcolors()
+        assert (280, orange) in colours
+        assert 20 < len(colours) <= 64
+    plain = {colour for _, colour in picture.quantize(64).convert("RGB").getcolors()}
+    assert orange not in plain

@@ -12,7 +12,7 @@ from typing import Final
 #: Significant digits beyond which a decimal is shortened, and how many are left of it.
 MOST, LEFT = 6, 4
 #: Digits beyond which a whole number is told by a power of two, and how far it may be from one.
-LONG, NEAR = 16, 1000
+LONG, NEAR = 16, 10_000
 _NUMBER: Final = re.compile(
     r"(?P<lead>the value |= )?(?<![\w./])(?P<number>-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w/]|\.\d)"
 )

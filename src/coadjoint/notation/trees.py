@@ -158,5 +158,9 @@ def _place(member: tree.Member) -> Written:
 def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:
     """A fraction; a plain number below stands before what it divides."""
     if isinstance(node.right, tree.Number) and not isinstance(node.left, tree.Number | tree.Name):
+        first, *others = top.factors or (top,)
+        if others and first.text.isdigit():  # 3 x/20, and not 1/20 3 x
+            whole = multiply([number(int(first.text) / node.right.value), *others])
+            return replace(whole, sign=whole.sign * top.sign)
         return multiply([number(1 / node.right.value), top])
     return divide(top, bottom)

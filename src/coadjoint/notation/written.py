@@ -270,13 +270,14 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
     comma = "".join(piece for part in inner for piece in (operator(","), part.mathml)).removeprefix(
         operator(",")
     )
-    latex_name = rf"\{function}" if known else rf"\operatorname{{{function}}}"
+    shown = {"trace": "tr"}.get(function, function)
+    latex_name = rf"\{function}" if known else rf"\operatorname{{{shown}}}"
     return Written(
         text=f"{function}({', '.join(part.text for part in inner)})",
         latex=rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
-        mathml=f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
+        mathml=f"<mrow><mi>{shown}</mi>{operator('&#x2061;')}"
         f"<mrow>{''.join(fence('(', comma, ')'))}</mrow></mrow>",
-        typst=f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
+        typst=f"{function if known else 'op(' + chr(34) + shown + chr(34) + ')'}"
         f"({', '.join(part.typst for part in inner)})",
     )
 

@@ -134,9 +134,24 @@ class Prose(Markup):
     def of(cls, parts: Sequence[Part], plain: str, form: str) -> Prose:
         """Words, escaped, names of code, and formulas of `coadjoint.notation.prose`."""
         escape = _ESCAPES.get(form, _escape_html)
-        made = cls("".join(escape(p) if isinstance(p, str) else _set(p, form) for p in parts))
+        texts = [escape(p) if isinstance(p, str) else _set(p, form) for p in parts]
+        if form == "html":
+            texts = _keep_together(parts, texts)
+        made = cls("".join(texts))
         made.plain = plain
         return made
+
+
+def _keep_together(parts: Sequence[Part], texts: Sequence[str]) -> list[str]:
+    """Texts of a page in which no line begins with the comma or point behind a formula."""
+    kept = list(texts)
+    for n, part in enumerate(parts[1:], 1):
+        behind = re.match(r"[,.;:)]+", kept[n]) if isinstance(part, str) else None
+        if behind and isinstance(parts[n - 1], Formula):
+            lead, _, last = kept[n - 1].rpartition("<math>")
+            kept[n - 1] = f'{lead}<span class="kept"><math>{last}{behind[0]}</span>'
+            kept[n] = kept[n][behind.end() :]
+    return kept
 
 
 def _escape_html(text: str) -> str:
@@ -249,9 +264,9 @@ class _Setter:
         return self._made(_with_commas(parts), text)
 
     def reason(self, text: str) -> str:
-        """A sentence that may name methods."""
+        """A sentence that may name methods; its letters are those of no system."""
         parts = _METHOD.split(text)
-        read = [[Code(p)] if n % 2 else self._read(p) for n, p in enumerate(parts) if p]
+        read = [[Code(p)] if n % 2 else read_prose(p) for n, p in enumerate(parts) if p]
         return self._made([each for part in read for each in part], text)
 
     def _read(self, text: str) -> list[str | Formula]:

@@ -53,18 +53,32 @@ def _take_colours(place: io.BytesIO) -> bytes:
 
     small = io.BytesIO()
     with Image.open(place) as picture:
-        picture.convert("RGB").quantize(COLOURS).save(small, format="png", optimize=True)
+        whole, own = picture.convert("RGB"), _list_line_colours()
+        few = whole.quantize(COLOURS - len(own) // 3).getpalette() or []
+        palette = Image.new("P", (1, 1))
+        palette.putpalette([*few, *own])
+        # thin lines are too few dots for colours of their own, among those of a surface
+        shown = whole.quantize(palette=palette, dither=Image.Dither.NONE)
+        shown.save(small, format="png", optimize=True)
     return small.getvalue()
+
+
+def _list_line_colours() -> list[int]:
+    """The colours of lines: red, green and blue of one after the other."""
+    from matplotlib.colors import to_rgb
+
+    from coadjoint.solve.plot import COLOURS as LINES
+
+    return [round(255 * part) for colour in LINES for part in to_rgb(colour)]
 
 
 def describe(solution: Solution) -> str:
     """What the picture shows."""
     from coadjoint.solve.plot import find_scene
 
-    lead = (
-        f"A motion with the default parameters over {SPAN:g} {solution.unit('time')}, by the "
-        "generated code."
-    )
+    unit = solution.unit("time").removeprefix("1")  # of what has no dimension
+    span = f"{SPAN:g} {unit}".rstrip()
+    lead = f"A motion with the default parameters over {span}, by the generated code."
     return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
 
 

@@ -47,6 +47,8 @@ STYLES = ("solid", "dashed", "dotted", "dashdot")
 LEGEND_ROWS, LINES = 14, 28
 #: Where a legend stands: its left edge at the right end of the axes, in the middle of their height.
 AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+#: Largest change of what is drawn as constant, over its size.
+CONSTANT: Final = 1e-7
 #: Pictures of members, one above the other.
 STACKED = 3
 
@@ -352,8 +354,15 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
     panels = place.subgridspec(-(-len(parts) // columns), columns)
     for n, part in enumerate(parts):
         axes = figure.add_subplot(panels[n // columns, n % columns])
+        low, high = _choose_limits(part)
         colours = axes.pcolormesh(
-            solution.time, np.arange(rows), part, cmap="cividis", shading="nearest"
+            solution.time,
+            np.arange(rows),
+            part,
+            cmap="cividis",
+            shading="nearest",
+            vmin=low,
+            vmax=high,
         )
         colours.set_rasterized(True)
         lower = str(n + 1) * (len(parts) > 1)
@@ -367,6 +376,15 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
+
+
+def _choose_limits(part: Array) -> tuple[float, float]:
+    """The values of the first and the last colour: roundings of what is constant have none."""
+    low, high = float(np.nanmin(part)), float(np.nanmax(part))
+    size = max(abs(low), abs(high)) or 1.0
+    if high - low > CONSTANT * size:
+        return low, high
+    return (low + high - size) / 2, (low + high + size) / 2
 
 
 def _unit_of(unit: str, place: int, count: int) -> str:
