@@ -8,6 +8,7 @@ from xml.etree import ElementTree as ET
 import pytest
 import sympy
 
+from coadjoint.derive.lines import equal
 from coadjoint.notation.elements import write_sympy
 from coadjoint.notation.names import member, name, unit
 from coadjoint.notation.tex import is_formula, to_mathml
@@ -22,6 +23,7 @@ from coadjoint.notation.written import (
     power,
     stack_latex,
 )
+from coadjoint.render.document import split_sides
 from coadjoint.spec.core.expressions import read_expression
 
 
@@ -194,6 +196,19 @@ def test_a_name_of_several_words_is_not_cut():
 def test_numbers_of_a_product_are_one(text, latex):
     """No two numbers stand side by side."""
     assert add([write_tree(read_expression(text), {})]).latex == latex
+
+
+def test_a_long_left_side_stands_above_the_right_one():
+    """Both in one column, which is as wide as the wider of them; a short one stays beside it."""
+    products = [multiply([name(f"omega_{n}"), name("x")]) for n in range(1, 9)]
+    long, short = equal(add(products), name("y")), equal(name("x"), name("y"))
+    assert long.mathml.count("<mtr>") == 1 + len(add(products).groups) > 2
+    assert split_sides(long.mathml) == ("", long.mathml)
+    assert long.latex.count("\n&\\quad = y") == 1
+    assert long.text.endswith(" = y")
+    assert "<mtr>" not in short.mathml
+    assert split_sides(short.mathml)[0]
+    assert short.latex == "x &= y"
 
 
 def test_the_root_of_a_square_is_a_size():

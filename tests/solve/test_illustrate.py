@@ -48,7 +48,7 @@ def test_a_caption_tells_the_colours_of_its_picture(module, told, untold):
 
 
 def test_a_time_without_a_unit_is_a_number():
-    """ "over 20", and not "over 20 1"."""
+    """The unit 1 of what has no dimension does not stand behind it."""
     motion = knife_edge_cvt.simulate(
         find_start(knife_edge_cvt.system, ()), (0, 1), samples=20, progress=False
     )

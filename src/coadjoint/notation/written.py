@@ -168,14 +168,31 @@ def stack_latex(part: Written) -> str:
 
 def stack(part: Written) -> str:
     """The MathML of a right side, a long sum in rows below each other."""
+    return part.mathml if len(part.groups) < 2 else _table(_list_rows(part))
+
+
+def stack_sides(left: Written, right: Written) -> str:
+    """The MathML of an equation whose right side begins a row below the left one."""
+    first, *others = _list_rows(right)
+    equals = '<mspace width="1em"/><mo form="infix">=</mo>'  # which templates do not part
+    behind = (f'<mrow><mspace width="2em"/>{each}</mrow>' for each in others)
+    return _table([*_list_rows(left), f"<mrow>{equals}{first}</mrow>", *behind])
+
+
+def _list_rows(part: Written) -> list[str]:
+    """The rows of a sum, each but the first with its sign."""
     if len(part.groups) < 2:
-        return part.mathml
-    left = 'style="text-align: left; padding: 0.25em 0"'
-    lines = [
+        return [part.mathml]
+    return [
         row(*([operator("+")] if n and group[0].sign > 0 else []), add(group).mathml)
         for n, group in enumerate(part.groups)
     ]
-    cells = (f"<mtr><mtd {left}>{line}</mtd></mtr>" for line in lines)
+
+
+def _table(rows: Sequence[str]) -> str:
+    """Rows of MathML below each other, from the left."""
+    left = 'style="text-align: left; padding: 0.25em 0"'
+    cells = (f"<mtr><mtd {left}>{each}</mtd></mtr>" for each in rows)
     return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
 
 

@@ -28,6 +28,7 @@ from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.written import Written
 from coadjoint.render.strict import make_environment
+from coadjoint.render.widths import fit_paper
 
 FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -346,6 +347,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "columns": choose_columns,
         "abreast": count_abreast,
         "described": describe,
+        "fit": fit_paper,
         "listed": list_rows,
         "law": write_law,
         "sides": split_sides,
