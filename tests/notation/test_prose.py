@@ -138,6 +138,7 @@ def test_no_line_begins_with_the_comma_behind_a_formula():
             "L = rows(vector(x1, 2), vector(0, -x2))",
             r"L = \begin{pmatrix}x_1 & 2 \\ 0 & -x_2\end{pmatrix}",
         ),
+        ("{h, h_k} o dW_k", r"\{h, h_k\} \circ dW_k"),
         ("T_(m + n)", "{T}_{m + n}"),
         ("sin(2 pi*(m x n)/N)", r"\sin\left(\frac{2\,\pi\,m \times n}{N}\right)"),
         ("trace(M^2)", r"\operatorname{tr}\left({M}^{2}\right)"),

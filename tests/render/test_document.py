@@ -344,7 +344,7 @@ def test_rates_that_differ_from_the_lead_stay():
 CODE = re.compile(r"[_^*=\[\]{}+]|\w\(|[A-Za-z]\d|\b(?!a\b)(?<!')[A-Za-z]\b")
 #: What is set, in each format.
 SET = {
-    "html": re.compile(r"<(math|code)>.*?</\1>"),
+    "html": re.compile(r"<(math|code)>.*?</\1>|</?span[^>]*>"),
     "latex": re.compile(r"\$[^$]*\$|\\texttt\{(?:[^{}]|\{\})*\}"),
     "typst": re.compile(r'\$[^$]*\$|#raw\("[^"]*"\)'),
 }

@@ -105,7 +105,7 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         law = _say_where(vectors, missing, solved)
         lines += solved or []
         if equations.spec.noise:
-            law += "; o dW is in the sense of Stratonovich"
+            law += "; the noise is in the sense of Stratonovich"
     return Section(
         title="Equations of motion",
         law=law,

@@ -59,6 +59,7 @@ LONGEST: Final = 2000
 _BETWEEN: Final = {
     ".": DOT,
     "x": CROSS,
+    "o": ("o", r"\circ", "∘", "compose"),  # of Stratonovich's integral
     "<>": ("<>", r"\diamond", "⋄", "diamond"),
     "(s)": ("(s)", r"\ltimes", "⋉", "⋉"),
 }
@@ -290,7 +291,7 @@ class _Reader:
                 sign = " "
             else:
                 return made
-            if sign == "x" and (_is_word(self._peek()) or _is_word(self._peek(-2))):
+            if sign in ("x", "o") and (_is_word(self._peek()) or _is_word(self._peek(-2))):
                 self.at = start  # oscillators x and z
                 return made
             factor = self._try(self._power)
