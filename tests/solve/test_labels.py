@@ -36,6 +36,7 @@ def test_other_observables_are_called_by_their_names():
     assert label("x", "casimir2") == "$C_{2}$"
     assert label("x", "energy") == "energy"
     assert label("x", "total_momentum") == "total momentum"
+    assert label("x", "M_normal_force") == "M$_{normal force}$"
     assert label("x", "Gamma_norm") == "Γ$_{norm}$"
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import sympy
 
@@ -16,10 +15,14 @@ from coadjoint.derive.records import Left
 from coadjoint.exact import Element, Field
 from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import name
-from coadjoint.notation.written import Written, add, stack, stack_latex, stack_sides
-
-#: Characters of a left side beyond which the right one stands below it.
-LONG_LEFT: Final = 40
+from coadjoint.notation.written import (
+    LONG_LEFT,
+    Written,
+    add,
+    stack,
+    stack_latex,
+    stack_sides,
+)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from html import unescape
 from typing import Final
 
 from coadjoint.notation.written import (
@@ -110,12 +111,14 @@ def differential(of: Written) -> Written:
 def spell(text: str) -> tuple[str, str]:
     """The letter or word of a name, and what stands below it, as plain text.
 
+    >>> spell("normal_force")
+    ('normal force', '')
     >>> spell("Pi1"), spell("Pi_spatial"), spell("M_1_10"), spell("casimir1")
     (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('C', '1'))
     """
     symbol, below = _split_name(text.removeprefix("_"), bold=False)
-    plain = [re.sub("<[^>]+>", "", each.mathml) for each in (symbol, *below)]
-    return plain[0], ",".join(plain[1:])
+    plain = [unescape(re.sub("<[^>]+>", "", each.mathml)) for each in (symbol, *below)]
+    return plain[0].replace("\xa0", " "), ",".join(plain[1:]).replace("\xa0", " ")
 
 
 def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Written:

@@ -27,6 +27,8 @@ STILL, CLOSE = ' stretchy="false"', ' lspace="0.08em"'
 _TALL: Final = re.compile("<m(frac|table|under|munderover)")
 #: Characters of text that a line of a page may be long, about.
 WIDTH: Final = 80
+#: Characters of a left side beyond which the right one stands below it.
+LONG_LEFT: Final = 40
 
 
 @dataclass(frozen=True)

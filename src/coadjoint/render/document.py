@@ -26,7 +26,7 @@ from coadjoint.methods import MAPPED, NOISY, STRUCTURED
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
-from coadjoint.notation.written import Written
+from coadjoint.notation.written import LONG_LEFT, Written
 from coadjoint.render.strict import make_environment
 from coadjoint.render.widths import fit_paper
 
@@ -548,16 +548,25 @@ def describe(words: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _columns(sides: Sequence[Sequence[str]], joint: str) -> list[str]:
-    """Two columns, the second one wrapped."""
-    width = max((len(left) for left, _ in sides), default=0)
-    return [
-        piece
-        for left, right in sides
-        for piece in textwrap.wrap(
-            f"{left:<{width}}{joint}{right}",
-            WIDTH - INDENT,
-            subsequent_indent=" " * (width + len(joint)),
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-    ]
+    """Two columns, the second one wrapped; below a left side that is long the right one stands."""
+    short = [len(left) for left, _ in sides if len(left) <= LONG_LEFT]
+    width = max(short, default=0)
+    listed = list[str]()
+    for left, right in sides:
+        if len(left) > LONG_LEFT:
+            listed += _wrap_columns(left, 2)
+            listed += _wrap_columns(f"  {joint.strip()} {right}", 4)
+        else:
+            listed += _wrap_columns(f"{left:<{width}}{joint}{right}", width + len(joint))
+    return listed
+
+
+def _wrap_columns(text: str, indent: int) -> list[str]:
+    """A line of columns, its further lines behind some blanks."""
+    return textwrap.wrap(
+        text,
+        WIDTH - INDENT,
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
