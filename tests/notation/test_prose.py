@@ -216,3 +216,12 @@ def test_brackets_are_as_high_as_what_they_hold(text, stretches):
     law = to_mathml(rf"{left}(x{right})")
     assert ('stretchy="false"' not in law) == stretches
     assert 'form="prefix"' in law
+
+
+def test_formulas_of_sentences_ask_for_no_style():
+    """Pages of explorers have descriptions, and know their style by its hash: others are refused."""
+    shown = set_text(
+        "Xi turns by dXi/dt = Xi x Omega, with |Omega| >= 1 and L = rows(vector(1, 2))."
+    )
+    assert "<mover>" in shown
+    assert "style" not in shown
