@@ -219,7 +219,7 @@ def test_brackets_are_as_high_as_what_they_hold(text, stretches):
 
 
 def test_formulas_of_sentences_ask_for_no_style():
-    """Pages of explorers have descriptions, and know their style by its hash: others are refused."""
+    """Pages of explorers have descriptions, and refuse a style whose hash they do not know."""
     shown = set_text(
         "Xi turns by dXi/dt = Xi x Omega, with |Omega| >= 1 and L = rows(vector(1, 2))."
     )
