@@ -184,6 +184,7 @@ def test_a_name_of_several_words_is_not_cut():
     shown = re.sub("<[^>]*>", "", name("plane_reaction").mathml)
     assert " " not in shown
     assert "reaction" in shown
+    ET.fromstring(f"<math>{name('<p> & q').mathml}</math>")
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,8 @@ from functools import cache
 from html import unescape
 from typing import Final
 
+from markupsafe import escape
+
 from coadjoint.notation.written import (
     SUM,
     Written,
@@ -245,7 +247,7 @@ def _word(base: str, *, bold: bool) -> Written:
         base,
         rf"\{style}{{{latex}}}",
         # at a blank a line of a narrow column would end, and the rest of the word be lost
-        f'<mi mathvariant="{weight}">{spaced.replace(" ", "&#xA0;")}</mi>',
+        f'<mi mathvariant="{weight}">{str(escape(spaced)).replace(" ", "&#xA0;")}</mi>',
         f'bold("{spaced}")' if bold else f'"{spaced}"',
     )
 
