@@ -30,19 +30,44 @@ def test_claims_that_differ_by_the_route_are_one_sentence():
     claim = {"kind": "legendre", "verdict": "proved", "method": "normal form"}
     claims = [claim | {"statement": f"dh/dmu = xi on the route {r}"} for r in ("a", "b", "c")]
     claims.append(claim | {"statement": "q > 0", "verdict": "refuted"})
+    claims[-1]["method"] = "the value 7 at x = 1/3"
     shown = by_kind(complete(RECORD, {"claims": claims}, None))
     assert shown["proofs"]["words"] == [
         (
             "The Legendre transform",
-            "Proved: dh/dmu = xi on the routes a, b and c. Method: normal form.",
+            "Proved: dh/dmu = xi on the routes a, b and c.",
         ),
-        ("", "Refuted: q > 0. Method: normal form."),
+        ("", "Refuted: q > 0. Method: the value 7 at x = 1/3."),
     ]
     claims = [claim | {"verdict": "numerically supported", "statement": "q is kept"}]
     ((_, text),) = by_kind(complete(RECORD, {"claims": claims}, None))["proofs"]["words"]
     assert text == "Supported by numbers, and not proved: q is kept. Method: normal form."
-    assert shown["proofs"]["law"] == "4 claims: 3 proved, 1 refuted"
+    assert shown["proofs"]["law"] == (
+        "4 claims: 3 proved, 1 refuted. Method, unless a claim names its own: normal form"
+    )
     assert len(shown["verdicts"]["rows"]) == 5
+
+
+def test_numbers_of_methods_are_told_in_few_digits():
+    """In sentences, in the table and of findings; the certificate keeps all of them."""
+    own = {"method": "the value 0.0977644349517698 at x = -3.0000000001", "verdict": "refuted"}
+    claim = own | {"statement": "q = 0", "kind": "algebra"}
+    shown = by_kind(complete(RECORD, {"claims": [claim], "findings": [claim]}, None))
+    told = "a value of about 0.09776 at x ~= -3"
+    assert shown["proofs"]["words"] == [
+        ("The algebra", f"Refuted: q = 0. Method: {told}."),
+        ("Found", f"q = 0 ({told})"),
+    ]
+    assert shown["verdicts"]["rows"][1] == ("q = 0", "refuted", told)
+    assert "0.0977644349517698" in claim["method"]
+
+
+def test_what_stands_behind_a_route_is_no_name_of_it():
+    """The routes are listed, and what is said of both comes once."""
+    claim = {"kind": "legendre", "verdict": "proved", "method": "normal form"}
+    claims = [claim | {"statement": f"it solves on the route {r}: A x = b"} for r in "ab"]
+    ((_, text),) = by_kind(complete(RECORD, {"claims": claims}, None))["proofs"]["words"]
+    assert text == "Proved: it solves on the routes a and b: A x = b. Method: normal form."
 
 
 def test_references_are_sources_and_theorems():

@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.methods import list_fitting, list_kept, list_unfit
+from coadjoint.notation.numbers import shorten_numbers
 
 #: What the kinds of claims are about, as headings of sentences.
 _ABOUT: Final = {
@@ -44,6 +45,8 @@ _ABOUT: Final = {
     "integrals": "Further integrals",
 }
 _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "powers"}
+#: Claims from which on a method that they share is told once, and not with each.
+REPEATED: Final = 3
 _ON_ROUTE: Final = " on the route "
 
 
@@ -76,45 +79,71 @@ def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     claims = certificate["claims"]
     counts = Counter(claim["verdict"] for claim in claims)
     total = ", ".join(f"{number} {verdict}" for verdict, number in counts.items())
+    usual = _find_usual(claims)
+    if usual:
+        total += f". Method, unless a claim names its own: {usual}"
     words = [
         ("" if place else about, sentence)  # the first claim names the subject
-        for about, sentences in _sentences(claims)
+        for about, sentences in _sentences(claims, usual)
         for place, sentence in enumerate(sentences)
     ]
-    words += [
-        (
-            "Found",
-            f"{each['statement']} ({each['method']}; {each.get('scope', '')})".replace("; )", ")"),
-        )
-        for each in certificate.get("findings", ())
-    ]
+    for n, each in enumerate(certificate.get("findings", ())):
+        how = "; ".join(filter(None, [shorten_numbers(each["method"]), each.get("scope", "")]))
+        words.append(("" if n else "Found", f"{each['statement']} ({how})"))
     yield section("What was proved", "proofs", law=f"{len(claims)} claims: {total}", words=words)
     rows = [("claim", "verdict", "method")]
-    rows += [(each["statement"], each["verdict"], each["method"]) for each in claims]
+    rows += [(e["statement"], e["verdict"], shorten_numbers(e["method"])) for e in claims]
     yield section("Table of verdicts", "verdicts", rows=rows)
 
 
-def _sentences(claims: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, list[str]]]:
+def _find_usual(claims: Iterable[Mapping[str, Any]]) -> str:
+    """The method of most claims, which is told once; "" where there are few claims of each."""
+    methods = Counter(each["method"] for each in claims).most_common(1)
+    return methods[0][0] if methods and methods[0][1] >= REPEATED else ""
+
+
+def _sentences(claims: Iterable[Mapping[str, Any]], usual: str) -> Iterator[tuple[str, list[str]]]:
     """For each subject its sentences; claims that differ by the route alone are one sentence."""
-    subjects: dict[str, dict[tuple[str, str, str], list[str]]] = {}
+    subjects: dict[str, dict[tuple[str, str, str, str], list[str]]] = {}
     for claim in claims:
-        statement, _, route = claim["statement"].partition(_ON_ROUTE)
+        statement, route, behind = _split_route(claim["statement"])
         about = _ABOUT.get(claim.get("kind", ""), claim.get("kind", "claims").capitalize())
-        key = (statement, claim["verdict"], claim["method"])
+        key = (statement, behind, claim["verdict"], claim["method"])
         subjects.setdefault(about, {}).setdefault(key, []).extend([route] if route else [])
     for about, entries in subjects.items():
-        yield about, [_sentence(*key, routes) for key, routes in entries.items()]
+        sentences = [
+            _sentence(f"{statement}{_tell_routes(routes)}{behind}", verdict, method, usual)
+            for (statement, behind, verdict, method), routes in entries.items()
+        ]
+        yield about, sentences
 
 
-def _sentence(statement: str, verdict: str, method: str, routes: Sequence[str]) -> str:
-    """A claim with its verdict and its method."""
+def _split_route(statement: str) -> tuple[str, str, str]:
+    """What a statement says before it names a route, the route, and what it says behind it.
+
+    >>> _split_route("it solves on the route nonholonomic: A x = b")
+    ('it solves', 'nonholonomic', ': A x = b')
+    """
+    lead, _, rest = statement.partition(_ON_ROUTE)
+    route = re.match(r"[\w-]*", rest)
+    assert route is not None, "which may be empty"
+    return lead, route[0], rest[route.end() :]
+
+
+def _tell_routes(routes: Sequence[str]) -> str:
+    """On which routes a claim holds."""
+    if not routes:
+        return ""
+    listed = ", ".join(routes[:-1]) + " and " * (len(routes) > 1) + routes[-1]
+    return f" on the route{'s' * (len(routes) > 1)} {listed}"
+
+
+def _sentence(statement: str, verdict: str, method: str, usual: str) -> str:
+    """A claim with its verdict and its method, unless that is the usual one."""
     told = "supported by numbers, and not proved" if verdict == "numerically supported" else verdict
-    where = ""
-    if routes:
-        listed = ", ".join(routes[:-1]) + " and " * (len(routes) > 1) + routes[-1]
-        where = f" on the route{'s' * (len(routes) > 1)} {listed}"
     # statements are sentences, or what there is: "an invariant measure: dPi dGamma"
-    return f"{told.capitalize()}: {statement}{where}. Method: {method}."
+    how = "" if method == usual else f" Method: {shorten_numbers(method)}."
+    return f"{told.capitalize()}: {statement}.{how}"
 
 
 def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -12,6 +12,7 @@ from dataclasses import asdict
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from coadjoint.notation.numbers import shorten_numbers
 from coadjoint.notation.written import aligned
 
 if TYPE_CHECKING:
@@ -67,7 +68,10 @@ def write_equations(equations: Equations) -> str:
 
 def show_certificate(certificate: Certificate) -> str:
     """Claims with their verdicts."""
-    rows = [(each.statement, str(each.verdict), each.method) for each in certificate.claims]
+    rows = [
+        (each.statement, str(each.verdict), shorten_numbers(each.method))
+        for each in certificate.claims
+    ]
     state = "holds" if certificate.holds else "does not hold"
     lead = f"<p><b>{escape(certificate.system)}</b>: the certificate {state}.</p>"
     return lead + table(rows, ("claim", "verdict", "method"))

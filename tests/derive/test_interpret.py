@@ -1,5 +1,7 @@
 """Interpretation: trees become elements, vectors and matrices as a book would write them out."""
 
+from dataclasses import replace
+
 import pytest
 
 from coadjoint.derive.interpret import LONG_SUM, entries, interpret
@@ -24,6 +26,12 @@ def value(text, definitions=()):
     known = {d.name: d for d in definitions}
     tree = expand(read_expression(text, functions(known)), known)
     return interpret(tree, VALUES, FIELD)
+
+
+def define(name, arguments, text, shape):
+    """A definition that uses no other."""
+    tree = read_expression(text)
+    return Definition(name=name, arguments=arguments, text=text, typed=tree, tree=tree, shape=shape)
 
 
 @pytest.mark.parametrize(
@@ -58,8 +66,8 @@ def test_matrices_are_put_together_and_taken_apart(text, expected):
 
 def test_components_of_what_is_put_in_are_its_components():
     """u[2] of u = A a is the second component of the product; p[1] of an argument, of that."""
-    u = Definition("u", (), "", read_expression("A*a"), (2,))
-    first = Definition("f", ("p",), "", read_expression("p[1]*p[2]"), None)
+    u = define("u", (), "A*a", (2,))
+    first = define("f", ("p",), "p[1]*p[2]", None)
     lower = x["A21"] * x["a1"] + x["A22"] * x["a2"]
     upper = x["A11"] * x["a1"] + x["A12"] * x["a2"]
     assert value("u[2]", [u]) == lower
@@ -69,9 +77,9 @@ def test_components_of_what_is_put_in_are_its_components():
 
 def test_deep_trees_do_not_exhaust_the_stack():
     """1000 signs in a row, which definitions can pile up, have a value."""
-    tree = read_expression("a1")
+    tree, negative = read_expression("a1"), define("n", (), "a1", ())
     for _ in range(999):
-        tree = expand(read_expression("-n"), {"n": Definition("n", (), "", tree, ())})
+        tree = expand(read_expression("-n"), {"n": replace(negative, tree=tree)})
     assert interpret(tree, VALUES, FIELD) == -x["a1"]
 
 

@@ -11,7 +11,7 @@ from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import to_mathml
 from coadjoint.notation.written import literal
-from coadjoint.render.document import render_document
+from coadjoint.render.document import render_document, set_prose, set_text
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec
 
@@ -115,9 +115,51 @@ def test_proofs_and_costs_are_set(form, tmp_path):
     assert "1 *, 1 -, 1 /" in text
     assert text.count("-M*diag(m)^2") == 1
     assert not re.search(r"M\*|\d [*] *,|R\^2|R\\\^2|1 \*", page)
-    product = {"html": "<mo>×</mo>", "latex": r"$\times$", "typst": "$times$"}
+    product = {"html": ">×</mo>", "latex": r"$1\,{\times}$", "typst": "$1 space.thin times$"}
     assert page.count(product[form]) == 1
-    assert [each.pieces for each in read_counts("3 sqrt, 2 *")[1:]] == [("<mo>×</mo>",)]
+    assert [each.written.latex for each in read_counts("3 sqrt, 2 *")[1:]] == [r"2\,{\times}"]
+
+
+def test_no_line_begins_with_the_comma_behind_a_formula():
+    """On a page both are kept together; what follows them is not."""
+    page = set_text("real where |x| >= 1, and singular elsewhere (at x^2).")
+    assert re.findall(r'<span class="kept">.*?</math>([^<]*)</span>([^<]*)', page) == [
+        (",", " and singular elsewhere (at "),
+        (").", ""),
+    ]
+    assert page.count("<math>") == page.count("</math>") == 2
+    assert 'class="kept"' not in set_text("a motion of x^2 is seen")
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        (
+            "L = rows(vector(x1, 2), vector(0, -x2))",
+            r"L = \begin{pmatrix}x_1 & 2 \\ 0 & -x_2\end{pmatrix}",
+        ),
+        ("{h, h_k} o dW_k", r"\{h, h_k\} \circ dW_k"),
+        ("T_(m + n)", "{T}_{m + n}"),
+        ("sin(2 pi*(m x n)/N)", r"\sin\left(\frac{2\,\pi\,m \times n}{N}\right)"),
+        ("trace(M^2)", r"\operatorname{tr}\left({M}^{2}\right)"),
+    ],
+)  # fmt: skip
+def test_matrices_and_places_are_formulas(text, latex):
+    """As a book has them."""
+    (formula,) = read_prose(text)
+    assert formula.written.latex == latex
+
+
+def test_reasons_have_letters_of_their_own():
+    """A method that does not apply tells of so(p, q), whose p and q are no state."""
+    cells = {"latex": "P", "mathml": "<math><mi>P</mi></math>", "typst": "P"}
+    symbols = {"title": "Symbols", "kind": "symbols", "law": "", "law_latex": "", "words": []}
+    symbols["rows"] = [("symbol", "name", "meaning", "unit"), (cells, "p", "p", "1")]
+    unfit = {**symbols, "title": "Unfit", "kind": "unfit"}
+    unfit["rows"] = [("method", "reason"), ("kahan", "of so(p, q) alone")]
+    made = set_prose({"description": "", "sections": [symbols, unfit]}, "html")["sections"]
+    assert "<mi>P</mi>" in made[0]["rows"][1][2]
+    assert "<mi>P</mi>" not in made[1]["rows"][1][1]
 
 
 #: Signs of code that are left where a formula was not read as one.
@@ -174,3 +216,12 @@ def test_brackets_are_as_high_as_what_they_hold(text, stretches):
     law = to_mathml(rf"{left}(x{right})")
     assert ('stretchy="false"' not in law) == stretches
     assert 'form="prefix"' in law
+
+
+def test_formulas_of_sentences_ask_for_no_style():
+    """Pages of explorers have descriptions, and refuse a style whose hash they do not know."""
+    shown = set_text(
+        "Xi turns by dXi/dt = Xi x Omega, with |Omega| >= 1 and L = rows(vector(1, 2))."
+    )
+    assert "<mover>" in shown
+    assert "style" not in shown

@@ -194,8 +194,9 @@ def test_a_wrong_unit_of_noise_is_refused(unit):
 def test_the_derivation_shows_the_noise():
     """Both steps are in the document, with the fields and Ito's terms."""
     *_, fields, ito = derive(noisy()).steps
-    assert [left.text for left, _ in fields.lines][:3] == ["h_dW1", "h_dW2", "dW1_Pi1"]
-    assert [left.text for left, _ in ito.lines] == ["ito_Pi1", "ito_Pi2", "ito_Pi3"]
+    assert [left.text for left, _ in fields.lines][:3] == ["h_dW1", "h_dW2", "{Pi1, h_dW1}"]
+    added = [f"1/2 sum(k, {{{{Pi{n}, h_k}}, h_k}})" for n in (1, 2, 3)]
+    assert [left.text for left, _ in ito.lines] == added
 
 
 def test_a_kernel_has_the_noise():

@@ -21,7 +21,9 @@ from coadjoint.methods import list_fitting, list_kept, list_unfit
 from coadjoint.notation import written
 from coadjoint.render.document import (
     FORMATS,
+    INDENT,
     WIDTH,
+    align,
     escape_latex,
     escape_typst,
     leave_out_repeated,
@@ -344,7 +346,7 @@ def test_rates_that_differ_from_the_lead_stay():
 CODE = re.compile(r"[_^*=\[\]{}+]|\w\(|[A-Za-z]\d|\b(?!a\b)(?<!')[A-Za-z]\b")
 #: What is set, in each format.
 SET = {
-    "html": re.compile(r"<(math|code)>.*?</\1>"),
+    "html": re.compile(r"<(math|code)>.*?</\1>|</?span[^>]*>"),
     "latex": re.compile(r"\$[^$]*\$|\\texttt\{(?:[^{}]|\{\})*\}"),
     "typst": re.compile(r'\$[^$]*\$|#raw\("[^"]*"\)'),
 }
@@ -433,3 +435,16 @@ def test_kept_quantities_have_the_sign_of_the_chapter():
     assert made[0] == r"\texttt{gauss4}"
     assert made[2] == r"$C_1$, $a$, spin, $S_i \cdot S_i$, Poisson tensor"
     assert made[3] == "one map"
+
+
+def test_a_long_left_side_moves_no_other_line():
+    """What is equal to it stands below it; the signs of the other lines stay in their column."""
+    long = " + ".join(f"a{n}*b{n}" for n in range(30))
+    rows = align([{"text": "x = 1"}, {"text": f"{long} = {long}"}, {"text": "yy = 2"}])
+    assert rows[0] == "x  = 1"
+    assert rows[-1] == "yy = 2"
+    assert max(map(len, rows)) <= WIDTH - INDENT
+    assert len(rows) < 12
+    (below,) = (row for row in rows[1:-1] if "=" in row)
+    assert below.startswith("  = a0*b0")
+    assert " ".join(" ".join(rows[1:-1]).split()) == f"{long} = {long}"

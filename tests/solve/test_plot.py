@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.plot import plot
+from coadjoint.solve.plot import _choose_limits, plot
 from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import (
@@ -147,3 +147,13 @@ def test_without_matplotlib_the_pip_command_is_shown(body, monkeypatch, tmp_path
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     with pytest.raises(KernelArgumentError, match=r"coadjoint\[plot\]"):
         body.plot(tmp_path / "body.png")
+
+
+def test_what_is_constant_has_one_colour():
+    """Its roundings have none; what changes by more has all of them."""
+    constant = 2.5 + 1e-12 * np.random.default_rng(0).normal(size=(4, 5))
+    low, high = _choose_limits(constant)
+    assert low < 1.3
+    assert high > 3.7
+    assert _choose_limits(np.zeros((2, 2))) == (-0.5, 0.5)
+    assert _choose_limits(np.array([[1.0, 1.001]])) == (1.0, 1.001)

@@ -1,10 +1,12 @@
 """Bodies that roll: their surface by closed forms, their height over the plane, and the picture."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from coadjoint.solve.plot import draw
-from coadjoint.solve.rolling_bodies import find_rolling
+from coadjoint.solve.rolling_bodies import CAP, COLUMNS, ROWS, draw_rolling, find_rolling
 from coadjoint.systems import chaplygin_ball, euler_disk, rattleback, roller_racer
 
 CENTRE = np.array([0.1, 0.2, 0.3])
@@ -90,3 +92,35 @@ def test_a_picture_has_one_scale_and_its_body_moves(ball):
     axes.coadjoint_body(0)
     assert len(axes.collections) == count
     assert last not in axes.collections
+
+
+def draw_last(motion, spoil=lambda body: body):
+    """The surface of the body in a picture of a motion, which may be spoiled before."""
+    pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot(projection="3d")
+    draw_rolling(axes, spoil(find_rolling(motion)))
+    return axes.collections[-1]
+
+
+def count_orange(surface):
+    """Faces whose red is above their blue, whatever the light on them."""
+    colours = surface.get_facecolor()
+    assert len(colours) == (ROWS + 1) * COLUMNS
+    return int((colours[:, 0] > colours[:, 2]).sum())
+
+
+def test_the_cap_is_where_the_third_axis_leaves_the_body(ball):
+    """Its rings are those of a ball that are farthest along that axis; a disk has none."""
+    assert count_orange(draw_last(ball)) == CAP * COLUMNS
+    heights = find_rolling(ball).surface[2].mean(axis=1)
+    assert heights[-CAP - 1 :].min() > heights[: -CAP - 1].max()
+    assert count_orange(draw_last(roll(euler_disk))) == 0
+    flat = {"surface": find_rolling(ball).surface * np.array([1, 1, 1e-3])[:, None, None]}
+    assert count_orange(draw_last(ball, lambda body: replace(body, **flat))) == 0
+
+
+def test_no_body_is_cut_at_the_border_of_its_box(ball):
+    """Seen from near it stands out over the sides of the box, which would cut a part of it."""
+    assert not draw_last(ball).get_clip_on()

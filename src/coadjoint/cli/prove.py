@@ -13,6 +13,7 @@ import click
 
 from coadjoint.cli.arguments import seconds_option, size_option, spec_path, system_argument
 from coadjoint.cli.output import json_option, print_json, print_table, say
+from coadjoint.notation.numbers import shorten_numbers
 
 
 @click.command("prove")
@@ -41,13 +42,19 @@ def command(system: str, sizes: dict[str, int], seconds: int | None, as_json: bo
 def _print(record: Mapping[str, Any]) -> None:
     """The certificate as two tables: claims and findings."""
     claims = [
-        (_verdict(claim), claim["statement"], claim["method"], _time(claim))
+        (_verdict(claim), claim["statement"], shorten_numbers(claim["method"]), _time(claim))
         for claim in record["claims"]
     ]
     title = f"Certificate of {record['system']}"
     print_table(("verdict", "statement", "method", ">time"), claims, title=title)
     findings = [
-        (each["statement"], each["method"], each["scope"], each["error"] or "none", _time(each))
+        (
+            each["statement"],
+            shorten_numbers(each["method"]),
+            each["scope"],
+            each["error"] or "none",
+            _time(each),
+        )
         for each in record["findings"]
     ]
     if findings:

@@ -138,11 +138,7 @@ def _list_symbols(
     docs = {each.name: each.doc for each in spec.observables}
     for own in emitted:
         if own.name not in known:
-            doc = docs.get(own.name) or _EMITTED.get(
-                own.name.rstrip("0123456789"), "emitted with the motion"
-            )
-            if own.name.endswith("_reaction"):
-                doc = f"force of the constraint {own.name.removesuffix('_reaction')}"
+            doc = docs.get(own.name) or _tell_emitted(own.name, spec)
             shown = names.write(tree.Name(own.name))
             rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
     rows.append((whole_line(symbol("t")), "time", "time", unit_line(spec.units.time)))
@@ -154,7 +150,23 @@ def unit_line(text: str) -> Line | str:
     return whole_line(unit(text)) if text else "not told by the spec"
 
 
-_EMITTED = {"energy": "energy", "casimir": "Casimir, kept by every motion of the bracket"}
+_EMITTED = {
+    "energy": "energy",
+    "casimir": "Casimir, kept by every motion of the bracket",
+    "integral": "coefficient of a trace of a power of the Lax matrix",
+}
+
+
+def _tell_emitted(name: str, spec: Spec) -> str:
+    """What is emitted with the motion and has no words in the spec."""
+    lead, _, end = name.rpartition("_")
+    if end == "reaction":
+        return f"force of the constraint {lead}"
+    if end == "momentum" and lead:
+        return f"momentum of the velocity {lead}"
+    if any(each.name == name for each in spec.symmetries):
+        return "momentum map of the symmetry of this name"
+    return _EMITTED.get(name.rstrip("0123456789"), "emitted with the motion")
 
 
 def _role(quantity: object) -> str:
@@ -188,12 +200,11 @@ def _observables(equations: Equations, names: Names) -> Iterator[Section]:
     """Observables and Casimirs as they are declared, and the values of momentum maps."""
     spec, field = equations.spec, equations.setting.field
     lines = [
-        equal(symbol(f"casimir{n}"), names.write(each.sums or each.tree))
+        equal(symbol(f"casimir{n}"), names.write(each.typed))
         for n, each in enumerate(spec.casimirs, 1)
     ]
     lines += [
-        equal(symbol(each.name), names.write(each.formula.sums or each.formula.tree))
-        for each in spec.observables
+        equal(symbol(each.name), names.write(each.formula.typed)) for each in spec.observables
     ]
     named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
     lines += [
@@ -205,7 +216,9 @@ def _observables(equations: Equations, names: Names) -> Iterator[Section]:
     if lines:
         yield Section(
             title="Casimirs, observables and momentum maps",
-            law="emitted with the motion",
+            law="emitted with the motion"
+            if spec.space is None
+            else "densities, whose integrals along space are emitted with the motion",
             law_latex="",
             lines=tuple(lines),
             kind="observables",
@@ -233,7 +246,7 @@ def _chart(chart: Equations) -> Iterator[Section]:
 def _definitions(definitions: Sequence[Definition], names: Names) -> Section:
     """The short names of a spec; the steps below show what they stand for in its place."""
     lines = tuple(
-        equal(symbol(each.name), names.write(each.tree))
+        equal(names.write(tree.Name(each.name)), names.write(each.typed))
         for each in definitions
         if not each.arguments
     )

@@ -255,7 +255,7 @@ class Equations:
         return closed_forms(self.exact, named, self._write)
 
     def latex(self) -> str:
-        """The definitions and rates as a LaTeX ``aligned`` block."""
+        """The definitions and rates as a LaTeX ``aligned`` block; of noise, the drift."""
         field = self.setting.field
         lines = [(symbol(name), value) for name, value in self.exact.definitions]
         lines += zip(map(rate, self.variables), self.exact.rates, strict=True)

@@ -15,7 +15,14 @@ from coadjoint.derive.records import Left
 from coadjoint.exact import Element, Field
 from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import name
-from coadjoint.notation.written import Written, add, stack, stack_latex
+from coadjoint.notation.written import (
+    LONG_LEFT,
+    Written,
+    add,
+    stack,
+    stack_latex,
+    stack_sides,
+)
 
 
 @dataclass(frozen=True)
@@ -76,6 +83,13 @@ def formula_line(field: Field, left: Left, right: Element) -> Line:
 def equal(left: Left, right: Written) -> Line:
     """``left = right``."""
     right = add([right]) if right.sign < 0 else right
+    if len(left.text) > LONG_LEFT:
+        return Line(
+            f"{left.text} = {right.text}",
+            f"&{stack_latex(left)} \\\\\n&\\quad = {stack_latex(right)}",
+            f"<math>{stack_sides(left, right)}</math>",
+            f"{left.typst} &= {right.typst}",
+        )
     return Line(
         f"{left.text} = {right.text}",
         f"{left.latex} &= {stack_latex(right)}",

@@ -15,6 +15,7 @@ from typing import Any, Final
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.generic import show_members
 from coadjoint.derive.lines import Line, Section, equal, formula_line
+from coadjoint.derive.mechanics.noise import write_moves
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.records import is_of_kernel, rate, symbol
 from coadjoint.derive.vectors import VectorForm, vector_form
@@ -89,11 +90,13 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
     missing = tuple(dict.fromkeys(form.missing)) if form is not None and vectors else ()
     if equations.spec.family is not None:
         law, lines = _say_where(vectors, missing, None), list[Line]()
+        if equations.spec.noise:
+            law += "; what stands here is the drift, and the noise has a section of its own"
     else:
         field = equations.setting.field
         pairs = list(zip(equations.variables, equations.exact.rates, strict=True))
         rates = {n: value for n, value in pairs if not _is_solved(field, value)}
-        lines = [formula_line(field, rate(name), value) for name, value in rates.items()]
+        lines = [_write_motion(equations, name, value) for name, value in rates.items()]
         left = [value for n, value in pairs if n not in rates]
         if vectors:
             owners = {n: v.name for v in equations.spec.variables for n in v.components}
@@ -101,6 +104,8 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         solved = list(_write_solved(equations, left)) if left else None
         law = _say_where(vectors, missing, solved)
         lines += solved or []
+        if equations.spec.noise:
+            law += "; the noise is in the sense of Stratonovich"
     return Section(
         title="Equations of motion",
         law=law,
@@ -109,6 +114,13 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         vectors=vectors,
         kind="motion",
     )
+
+
+def _write_motion(equations: Equations, name: str, value: Element) -> Line:
+    """The equation of a component, with its noise where there is some."""
+    if equations.spec.noise and equations.chart is None:
+        return equal(*write_moves(equations.setting, name, value))
+    return formula_line(equations.setting.field, rate(name), value)
 
 
 def _write_vectors(form: VectorForm | None, names: Names) -> tuple[Line, ...]:

@@ -113,6 +113,8 @@ def write_sympy(value: sympy.Expr, symbols: Callable[[str], Written]) -> Written
         return _write_product(value, symbols)
     if value.is_Pow:
         base, exponent = value.as_base_exp()
+        if exponent == sympy.Rational(1, 2) and base.is_Pow and base.exp == 2:
+            return write_call("abs", [write_sympy(base.base, symbols)])  # all symbols are real
         if exponent == sympy.Rational(1, 2):
             return write_call("sqrt", [write_sympy(base, symbols)])
         if exponent.is_negative:

@@ -37,6 +37,7 @@ RELATIONS: Final[Mapping[str, tuple[str, str, str]]] = {
     "<": ("<", "&lt;", "<"),
     ">": (">", "&gt;", ">"),
     "<=": (r"\le", "≤", "<="),
+    "~=": (r"\approx", "≈", "approx"),
     ">=": (r"\ge", "≥", ">="),
 }
 #: Functions that have a sign, by name.
@@ -96,6 +97,17 @@ def write_rate(of: Written) -> Written:
         ),
         typst=f"frac(dif, dif t) {bracket(of, ATOM).typst}",
     )
+
+
+def write_noise(of: Written, process: Written) -> Written:
+    """What a process moves, times its increment in the sense of Stratonovich."""
+    increment = Written(
+        text=f"o {process.text}",
+        latex=rf"\circ {process.latex}",
+        mathml=row(operator("∘"), process.mathml),
+        typst=f"compose {process.typst}",
+    )
+    return multiply([of, increment])
 
 
 def write_sum(indices: tuple[str, ...], below: list[Written], sign: str) -> Written:

@@ -9,7 +9,10 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from html import unescape
 from typing import Final
+
+from markupsafe import escape
 
 from coadjoint.notation.written import (
     SUM,
@@ -66,7 +69,7 @@ GREEK: Final = {
         ]
     )
 }
-_SHORT: Final = {"eps": "epsilon", "lam": "lambda"}
+_SHORT: Final = {"eps": "epsilon", "lam": "lambda", "casimir": "C"}
 _RATE = re.compile(r"d(?P<of>.+)_dt")
 #: A name and the numbers of a member, a row or a component behind it.
 _PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
@@ -80,8 +83,8 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
 
     >>> name("Pi1", dot=True).latex, name("Gamma", bold=True).latex
     ('\\dot{\\Pi}_1', '\\boldsymbol{\\Gamma}')
-    >>> name("M_1_10").latex, name("rolling_reaction2").latex
-    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2')
+    >>> name("M_1_10").latex, name("rolling_reaction2").latex, name("M_vpsi").latex
+    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
     """
     shown = f"d{text}/dt" if dot else text
     plain = text.removeprefix("_")
@@ -92,19 +95,32 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     if along:
         of = name(along["of"], bold=bold)
         return replace(differentiate_along(of, len(along["s"])), text=shown)
+    if plain[:1] == "d" and _is_symbol(plain[1:]) and not _is_symbol(plain):
+        return replace(differential(name(plain[1:], bold=bold)), text=shown)
     symbol, below = _split_name(plain, bold=bold)
     return replace(attach(symbol, below=below, dot=dot), text=shown)
+
+
+def differential(of: Written) -> Written:
+    r"""The differential of a symbol.
+
+    >>> differential(name("W1")).latex == name("dW1").latex == "dW_1"
+    True
+    """
+    return literal(f"d{of.text}", f"d{of.latex}", row("<mi>d</mi>", of.mathml), f"d {of.typst}")
 
 
 def spell(text: str) -> tuple[str, str]:
     """The letter or word of a name, and what stands below it, as plain text.
 
+    >>> spell("normal_force")
+    ('normal force', '')
     >>> spell("Pi1"), spell("Pi_spatial"), spell("M_1_10"), spell("casimir1")
-    (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('casimir', '1'))
+    (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('C', '1'))
     """
     symbol, below = _split_name(text.removeprefix("_"), bold=False)
-    plain = [re.sub("<[^>]+>", "", each.mathml) for each in (symbol, *below)]
-    return plain[0], ",".join(plain[1:])
+    plain = [unescape(re.sub("<[^>]+>", "", each.mathml)) for each in (symbol, *below)]
+    return plain[0].replace("\xa0", " "), ",".join(plain[1:]).replace("\xa0", " ")
 
 
 def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Written:
@@ -136,19 +152,21 @@ def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:
     if symbol is None:
         return _word(parts["base"], bold=bold), below
     if words:
-        below = [_letter(words, bold=False) or _word(words, bold=False), *below]
+        below = [*map(_write_below, words), *below]
     return symbol, below
 
 
 def differentiate_along(of: Written, times: int = 1, by: str = "s") -> Written:
     """The derivative along space."""
     again = f"^{times}" if times > 1 else ""
-    raised = f"<msup>{operator('&#x2202;')}<mn>{times}</mn></msup>" if times > 1 else ""
-    sign = raised or operator("&#x2202;")
+    sign = operator("&#x2202;")
+    below = f"<msub>{sign}<mi>{by}</mi></msub>"
+    if times > 1:
+        below = f"<msubsup>{sign}<mi>{by}</mi><mn>{times}</mn></msubsup>"
     return Written(
         text=f"d{again}_{by} {of.text}" if not times > 1 else f"d_{by}^{times} {of.text}",
         latex=rf"\partial_{by}{again} {of.latex}",
-        mathml=row(f"<msub>{sign}<mi>{by}</mi></msub>", of.mathml),
+        mathml=row(below, of.mathml),
         typst=f"partial_{by}{again} {of.typst}",
         level=max(of.level - 1, SUM + 1),
     )
@@ -165,16 +183,27 @@ def _is_symbol(text: str) -> bool:
     return _letter(text.rstrip("0123456789_"), bold=False) is not None
 
 
-def _split_word(base: str) -> tuple[str, str]:
-    """A letter and the word below it: ``p_phi``, ``Omega_momentum``, ``I_s``.
+def _split_word(base: str) -> tuple[str, list[str]]:
+    """A letter and the words below it: ``p_phi``, ``Omega_momentum``, ``I_s``.
 
-    Rates and momenta of angles need no line between: ``vphi``, ``ptheta``.
+    Rates and momenta of angles, and what is along an axis, need no line between: ``vphi``,
+    ``ptheta``, ``kx``.
     """
-    if base[:1] in ("v", "p") and base[1:] in GREEK:
-        return base[0], base[1:]
     head, _, rest = base.partition("_")
+    below = [rest] if rest else []
+    if (head[:1] in ("v", "p") and head[1:] in GREEK) or re.fullmatch("[A-Za-z][xyz]", head):
+        return head[0], [head[1:], *below]
     plain = head.rstrip("0123456789")
-    return (head, rest) if rest and _letter(plain, bold=False) is not None else (base, "")
+    return (head, below) if rest and _letter(plain, bold=False) is not None else (base, [])
+
+
+def _write_below(words: str) -> Written:
+    """What a word below a letter is, which may be a velocity or momentum of an angle itself."""
+    base, own = _split_word(words)
+    symbol = _letter(base, bold=False)
+    if symbol is None:
+        return _word(words, bold=False)
+    return attach(symbol, below=list(map(_write_below, own)))
 
 
 def _letter(base: str, *, bold: bool) -> Written | None:
@@ -217,7 +246,8 @@ def _word(base: str, *, bold: bool) -> Written:
     return literal(
         base,
         rf"\{style}{{{latex}}}",
-        f'<mi mathvariant="{weight}">{spaced}</mi>',
+        # at a blank a line of a narrow column would end, and the rest of the word be lost
+        f'<mi mathvariant="{weight}">{str(escape(spaced)).replace(" ", "&#xA0;")}</mi>',
         f'bold("{spaced}")' if bold else f'"{spaced}"',
     )
 

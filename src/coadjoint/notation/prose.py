@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from coadjoint.notation.functions import CALLS, RELATIONS, write_rate, write_sum
-from coadjoint.notation.names import member, name, partial, spell
+from coadjoint.notation.names import differential, member, name, partial, spell
 from coadjoint.notation.written import (
     ATOM,
     CROSS,
@@ -30,6 +30,7 @@ from coadjoint.notation.written import (
     divide,
     enclose,
     literal,
+    matrix,
     multiply,
     negate,
     number,
@@ -45,7 +46,7 @@ _TOKEN: Final = re.compile(
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
-    r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
+    r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|~=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
     re.ASCII,
 )
 _RELATIONS: Final = {**RELATIONS, "->": (r"\to", "→", "->")}
@@ -58,6 +59,7 @@ LONGEST: Final = 2000
 _BETWEEN: Final = {
     ".": DOT,
     "x": CROSS,
+    "o": ("o", r"\circ", "∘", "compose"),  # of Stratonovich's integral
     "<>": ("<>", r"\diamond", "⋄", "diamond"),
     "(s)": ("(s)", r"\ltimes", "⋉", "⋉"),
 }
@@ -65,13 +67,13 @@ _CLOSING: Final = {"(": ")", "[": "]", "{": "}", "<": ">", "|": "|"}
 #: Words that act on the symbol behind them without brackets.
 _ACTING: Final = ("tr", "det", "div", "grad", "curl")
 #: Letters of the alphabet, or what looks like a symbol, that are words of a sentence.
-_WORDS: Final = ("a", "de", "do")
-_OPERATION: Final = re.compile(r"(?<=\d )([-*/+])(?=[,;]|$)")
+_WORDS: Final = ("a", "de", "do", "by", "By", "my", "My")
+_OPERATION: Final = re.compile(r"(\d+) ([-*/+])(?=[,;]|$)")
 _OPERATIONS: Final = {
-    "*": literal("*", r"\times", operator("×"), "times"),
-    "-": literal("-", "-", operator("−"), "-"),
-    "+": literal("+", "+", operator("+"), "+"),
-    "/": literal("/", "/", operator("/"), '"/"'),
+    "*": (r"\times", "×", "times"),
+    "-": ("-", "−", "-"),
+    "+": ("+", "+", "+"),
+    "/": ("/", "/", '"/"'),
 }
 
 
@@ -106,11 +108,22 @@ def read_counts(text: str) -> list[str | Formula]:
     r"""A list of operations such as ``2 *, 1 sqrt``, with the signs of a book.
 
     >>> [each if isinstance(each, str) else each.written.latex for each in read_counts("2 *, 1 +")]
-    ['2 ', '\\times', ', 1 ', '+']
+    ['2\\,{\\times}', ', ', '1\\,{+}']
     """
     found = _OPERATION.finditer(text)
     return _join(
-        text, ((*each.span(), _as_formula([("", _OPERATIONS[each[1]])])) for each in found)
+        text, ((*each.span(), _as_formula([("", _count(*each.groups()))])) for each in found)
+    )
+
+
+def _count(times: str, sign: str) -> Written:
+    """How often an operation is made; a line does not end between the number and the sign."""
+    latex, shown, typst = _OPERATIONS[sign]
+    return literal(
+        f"{times} {sign}",
+        rf"{times}\,{{{latex}}}",
+        row(f"<mn>{times}</mn>", '<mspace width="0.17em"/>', operator(shown, "0")),
+        f"{times} space.thin {typst}",
     )
 
 
@@ -278,7 +291,7 @@ class _Reader:
                 sign = " "
             else:
                 return made
-            if sign == "x" and (_is_word(self._peek()) or _is_word(self._peek(-2))):
+            if sign in ("x", "o") and (_is_word(self._peek()) or _is_word(self._peek(-2))):
                 self.at = start  # oscillators x and z
                 return made
             factor = self._try(self._power)
@@ -360,7 +373,12 @@ class _Reader:
         """A name, with its arguments, its places, or what it acts on."""
         if not self._is_spaced() and self._peek() == "(":
             self.at += 1
+            if text == "rows" and (made := self._try(self._matrix)) is not None:
+                return made
             inside = self._list(")")
+            if text.endswith("_"):  # T_(m+n)
+                own = self._symbol(text[:-1])
+                return attach(replace(own, latex=f"{{{own.latex}}}"), below=inside)
             if text == "d" and self._peek() == "/" and self._peek(1) == "dt":
                 self.at += 2
                 return write_rate(*inside)
@@ -374,6 +392,18 @@ class _Reader:
         if text.startswith("sum_") and self._is_spaced():
             return write_sum((text.removeprefix("sum_"),), [self._power()], "")
         return self._symbol(text)
+
+    def _matrix(self) -> Written:
+        """Vectors with commas between them, up to a bracket, as the rows of a matrix."""
+        rows = list[list[Written]]()
+        while True:
+            if (self._peek(), self._peek(1)) != ("vector", "("):
+                raise _NoFormulaError
+            self.at += 2
+            rows.append(self._list(")"))
+            self.at += 1
+            if self.tokens[self.at - 1][0] == ")":
+                return matrix(rows)
 
     def _place(self, text: str) -> Written:
         """A name with its places below, or with a commutator behind a line: ``J_[a, b]``."""
@@ -391,9 +421,10 @@ class _Reader:
         """A name by itself; ``dmu`` is a d and a symbol."""
         if text in self.names:
             return self.names[text]
+        if re.fullmatch(r"d\w+_dt", text):
+            return name(text)
         if text[0] == "d" and text[1:] and _is_symbol(text[1:]) and not _is_letter(text):
-            own = self._symbol(text[1:])
-            return literal(text, f"d{own.latex}", row("<mi>d</mi>", own.mathml), f"d {own.typst}")
+            return replace(differential(self._symbol(text[1:])), text=text)
         return name(text)
 
     def _differentiate(self, token: re.Match[str]) -> Written:
@@ -494,6 +525,8 @@ def _multiply(left: Written, sign: str, right: Written) -> Written:
     """Two factors with a sign between them, which may be a blank."""
     if sign in _BETWEEN:
         return between(left, _BETWEEN[sign], right)
+    if sign == "*" and right.text.startswith("10^") and left.mathml.startswith("<mn>"):
+        return between(left, CROSS, right)  # two numbers side by side would be one
     if sign != "/":
         return multiply([left, right])
     first, *others = left.factors or (left,)

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from coadjoint.notation.functions import CALLS, write_rate, write_sum
-from coadjoint.notation.names import differentiate_along, name, partial
+from coadjoint.notation.functions import CALLS, write_noise, write_rate, write_sum
+from coadjoint.notation.names import differential, differentiate_along, name, partial
 from coadjoint.notation.written import (
     ATOM,
     Written,
@@ -30,9 +30,13 @@ from coadjoint.notation.written import (
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 
-#: Functions that only printed lines have: the rate of a name, and a derivative along space.
+#: Functions that only printed lines have: the rate of a name, a derivative along space, and of
+#: noise the differential of a name, a rate times dt, and a vector times the increment of a process.
 RATE: Final = "rate_of"
 ALONG: Final = "along_space"
+DIFFERENTIAL: Final = "differential_of"
+IN_TIME: Final = "in_time"
+BY_PROCESS: Final = "by_process"
 
 
 def write_tree(
@@ -112,6 +116,12 @@ def write_tree(
                 return partial(*below)
             case tree.Call(function="along_space"):
                 return differentiate_along(below[0])
+            case tree.Call(function="differential_of"):
+                return differential(below[0])
+            case tree.Call(function="in_time"):
+                return multiply([below[0], name("dt")])
+            case tree.Call(function="by_process"):
+                return write_noise(*below)
             case tree.Call(function="rows", arguments=rows) if all(map(_is_vector, rows)):
                 own = [row.arguments for row in rows if isinstance(row, tree.Call)]
                 return matrix([[write_tree(one, shapes, names) for one in row] for row in own])
@@ -148,5 +158,9 @@ def _place(member: tree.Member) -> Written:
 def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:
     """A fraction; a plain number below stands before what it divides."""
     if isinstance(node.right, tree.Number) and not isinstance(node.left, tree.Number | tree.Name):
+        first, *others = top.factors or (top,)
+        if others and first.text.isdigit():  # 3 x/20, and not 1/20 3 x
+            whole = multiply([number(int(first.text) / node.right.value), *others])
+            return replace(whole, sign=whole.sign * top.sign)
         return multiply([number(1 / node.right.value), top])
     return divide(top, bottom)

@@ -14,8 +14,9 @@ from typing import Final
 
 from markupsafe import escape
 
-#: The dot of a rate; the accent of fonts is too small to be seen on a bold letter.
-DOT_ABOVE: Final = '<mo style="font-size: 1.3em">.</mo>'
+#: The dot of a rate; the accent of fonts is too small to be seen on a bold letter. Its size is an
+#: attribute of MathML: pages whose policy knows their style by its hash refuse a style here.
+DOT_ABOVE: Final = '<mo mathsize="1.3em">.</mo>'
 #: How tightly a piece binds: a sum, a product, a power, a single symbol.
 SUM: Final = 1
 PRODUCT: Final = 2
@@ -27,6 +28,8 @@ STILL, CLOSE = ' stretchy="false"', ' lspace="0.08em"'
 _TALL: Final = re.compile("<m(frac|table|under|munderover)")
 #: Characters of text that a line of a page may be long, about.
 WIDTH: Final = 80
+#: Characters of a left side beyond which the right one stands below it.
+LONG_LEFT: Final = 40
 
 
 @dataclass(frozen=True)
@@ -168,14 +171,31 @@ def stack_latex(part: Written) -> str:
 
 def stack(part: Written) -> str:
     """The MathML of a right side, a long sum in rows below each other."""
+    return part.mathml if len(part.groups) < 2 else _table(_list_rows(part))
+
+
+def stack_sides(left: Written, right: Written) -> str:
+    """The MathML of an equation whose right side begins a row below the left one."""
+    first, *others = _list_rows(right)
+    equals = '<mspace width="1em"/><mo form="infix">=</mo>'  # which templates do not part
+    behind = (f'<mrow><mspace width="2em"/>{each}</mrow>' for each in others)
+    return _table([*_list_rows(left), f"<mrow>{equals}{first}</mrow>", *behind])
+
+
+def _list_rows(part: Written) -> list[str]:
+    """The rows of a sum, each but the first with its sign."""
     if len(part.groups) < 2:
-        return part.mathml
-    left = 'style="text-align: left; padding: 0.25em 0"'
-    lines = [
+        return [part.mathml]
+    return [
         row(*([operator("+")] if n and group[0].sign > 0 else []), add(group).mathml)
         for n, group in enumerate(part.groups)
     ]
-    cells = (f"<mtr><mtd {left}>{line}</mtd></mtr>" for line in lines)
+
+
+def _table(rows: Sequence[str]) -> str:
+    """Rows of MathML below each other, from the left."""
+    left = 'style="text-align: left; padding: 0.25em 0"'
+    cells = (f"<mtr><mtd {left}>{each}</mtd></mtr>" for each in rows)
     return f'<mtable displaystyle="true">{"".join(cells)}</mtable>'
 
 
@@ -270,13 +290,14 @@ def call(function: str, arguments: Sequence[Written]) -> Written:
     comma = "".join(piece for part in inner for piece in (operator(","), part.mathml)).removeprefix(
         operator(",")
     )
-    latex_name = rf"\{function}" if known else rf"\operatorname{{{function}}}"
+    shown = {"trace": "tr"}.get(function, function)
+    latex_name = rf"\{function}" if known else rf"\operatorname{{{shown}}}"
     return Written(
         text=f"{function}({', '.join(part.text for part in inner)})",
         latex=rf"{latex_name}\left({', '.join(part.latex for part in inner)}\right)",
-        mathml=f"<mrow><mi>{function}</mi>{operator('&#x2061;')}"
+        mathml=f"<mrow><mi>{shown}</mi>{operator('&#x2061;')}"
         f"<mrow>{''.join(fence('(', comma, ')'))}</mrow></mrow>",
-        typst=f"{function if known else 'op(' + chr(34) + function + chr(34) + ')'}"
+        typst=f"{function if known else 'op(' + chr(34) + shown + chr(34) + ')'}"
         f"({', '.join(part.typst for part in inner)})",
     )
 

@@ -124,8 +124,8 @@ def _compare_waves(spec: Spec) -> Claim:
     pairs = zip(rates, waves, strict=True)
     decision = decide_zero([a - b for a, b in pairs], equations.setting.field)
     statement = (
-        "the rates are those by the sine bracket, dw_k/dt = 2 sum sin(2 pi m x n/N) w_m v_n over "
-        f"m + n = k, for {_list_few(spec, [window])}"
+        "the rates are those by the sine bracket, where dw_k/dt is the sum of "
+        f"2 sin(2 pi*(m x n)/N) w_m v_n over m + n = k, for {_list_few(spec, [window])}"
     )
     claim = make_entry(statement, "equivalence", decision, perf_counter() - start)
     assert isinstance(claim, Claim), claim

@@ -151,9 +151,9 @@ def claim_sine_bracket(scope: str, rows: str) -> Claim:
     """The commutator of waves."""
     start = perf_counter()
     field, defect = find_phases()
-    statement = f"[T_m, T_n] = -2 i sin(2 pi m x n/{rows}) T_(m+n), {scope}"
+    statement = f"[T_m, T_n] = -2 i sin(2 pi*(m x n)/{rows}) T_(m + n), {scope}"
     decision = decide_zero([defect], field)
-    how = "T_m T_n and T_n T_m are T_(m+n) but for phases of minus and plus m x n turns over "
+    how = "T_m T_n and T_n T_m are T_(m + n) but for phases of minus and plus m x n turns over "
     return _enter(statement, "bracket", _add(decision, f"{how}{rows}"), start)
 
 

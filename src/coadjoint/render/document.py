@@ -26,8 +26,9 @@ from coadjoint.methods import MAPPED, NOISY, STRUCTURED
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
-from coadjoint.notation.written import Written
+from coadjoint.notation.written import LONG_LEFT, Written
 from coadjoint.render.strict import make_environment
+from coadjoint.render.widths import fit_paper
 
 FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -134,9 +135,24 @@ class Prose(Markup):
     def of(cls, parts: Sequence[Part], plain: str, form: str) -> Prose:
         """Words, escaped, names of code, and formulas of `coadjoint.notation.prose`."""
         escape = _ESCAPES.get(form, _escape_html)
-        made = cls("".join(escape(p) if isinstance(p, str) else _set(p, form) for p in parts))
+        texts = [escape(p) if isinstance(p, str) else _set(p, form) for p in parts]
+        if form == "html":
+            texts = _keep_together(parts, texts)
+        made = cls("".join(texts))
         made.plain = plain
         return made
+
+
+def _keep_together(parts: Sequence[Part], texts: Sequence[str]) -> list[str]:
+    """Texts of a page in which no line begins with the comma or point behind a formula."""
+    kept = list(texts)
+    for n, part in enumerate(parts[1:], 1):
+        behind = re.match(r"[,.;:)]+", kept[n]) if isinstance(part, str) else None
+        if behind and isinstance(parts[n - 1], Formula):
+            lead, _, last = kept[n - 1].rpartition("<math>")
+            kept[n - 1] = f'{lead}<span class="kept"><math>{last}{behind[0]}</span>'
+            kept[n] = kept[n][behind.end() :]
+    return kept
 
 
 def _escape_html(text: str) -> str:
@@ -249,9 +265,9 @@ class _Setter:
         return self._made(_with_commas(parts), text)
 
     def reason(self, text: str) -> str:
-        """A sentence that may name methods."""
+        """A sentence that may name methods; its letters are those of no system."""
         parts = _METHOD.split(text)
-        read = [[Code(p)] if n % 2 else self._read(p) for n, p in enumerate(parts) if p]
+        read = [[Code(p)] if n % 2 else read_prose(p) for n, p in enumerate(parts) if p]
         return self._made([each for part in read for each in part], text)
 
     def _read(self, text: str) -> list[str | Formula]:
@@ -331,6 +347,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "columns": choose_columns,
         "abreast": count_abreast,
         "described": describe,
+        "fit": fit_paper,
         "listed": list_rows,
         "law": write_law,
         "sides": split_sides,
@@ -531,16 +548,25 @@ def describe(words: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _columns(sides: Sequence[Sequence[str]], joint: str) -> list[str]:
-    """Two columns, the second one wrapped."""
-    width = max((len(left) for left, _ in sides), default=0)
-    return [
-        piece
-        for left, right in sides
-        for piece in textwrap.wrap(
-            f"{left:<{width}}{joint}{right}",
-            WIDTH - INDENT,
-            subsequent_indent=" " * (width + len(joint)),
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-    ]
+    """Two columns, the second one wrapped; below a left side that is long the right one stands."""
+    short = [len(left) for left, _ in sides if len(left) <= LONG_LEFT]
+    width = max(short, default=0)
+    listed = list[str]()
+    for left, right in sides:
+        if len(left) > LONG_LEFT:
+            listed += _wrap_columns(left, 2)
+            listed += _wrap_columns(f"  {joint.strip()} {right}", 4)
+        else:
+            listed += _wrap_columns(f"{left:<{width}}{joint}{right}", width + len(joint))
+    return listed
+
+
+def _wrap_columns(text: str, indent: int) -> list[str]:
+    """A line of columns, its further lines behind some blanks."""
+    return textwrap.wrap(
+        text,
+        WIDTH - INDENT,
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

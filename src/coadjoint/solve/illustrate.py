@@ -12,8 +12,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from coadjoint.solve.rolling_bodies import RollingBody
+    from coadjoint.solve.scenes import Paths
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
+    from coadjoint.solve.vehicles import Vehicle
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
@@ -50,17 +53,57 @@ def _take_colours(place: io.BytesIO) -> bytes:
 
     small = io.BytesIO()
     with Image.open(place) as picture:
-        picture.convert("RGB").quantize(COLOURS).save(small, format="png", optimize=True)
+        whole, own = picture.convert("RGB"), _list_line_colours()
+        few = whole.quantize(COLOURS - len(own) // 3).getpalette() or []
+        palette = Image.new("P", (1, 1))
+        palette.putpalette([*few, *own])
+        # thin lines are too few dots for colours of their own, among those of a surface
+        shown = whole.quantize(palette=palette, dither=Image.Dither.NONE)
+        shown.save(small, format="png", optimize=True)
     return small.getvalue()
+
+
+def _list_line_colours() -> list[int]:
+    """The colours of lines: red, green and blue of one after the other."""
+    from matplotlib.colors import to_rgb
+
+    from coadjoint.solve.plot import COLOURS as LINES
+
+    return [round(255 * part) for colour in LINES for part in to_rgb(colour)]
 
 
 def describe(solution: Solution) -> str:
     """What the picture shows."""
-    from coadjoint.solve.scenes import find_paths, find_sphere
+    from coadjoint.solve.plot import find_scene
 
-    paths = find_paths(solution)
-    coloured = len(paths.members) == 1 if paths else bool(find_sphere(solution))
-    return (
-        f"A motion with the default parameters over {SPAN:g} {solution.unit('time')}, by the "
-        f"generated code.{' Colour is time, dark at the start.' * coloured}"
-    )
+    unit = solution.unit("time").removeprefix("1")  # of what has no dimension
+    span = f"{SPAN:g} {unit}".rstrip()
+    lead = f"A motion with the default parameters over {span}, by the generated code."
+    return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
+
+
+def _tell_colours(scene: Paths | RollingBody | Vehicle | str | None) -> str:
+    """What the colours of a picture are; those of components stand in its legend."""
+    from coadjoint.solve.rolling_bodies import RollingBody
+    from coadjoint.solve.scenes import Paths
+    from coadjoint.solve.vehicles import Vehicle
+
+    match scene:
+        case Paths(members=members) if len(members) > 1:
+            return "Each member has a colour of its own."
+        case Paths() | str():
+            return "Colour is time, dark at the start."
+        case RollingBody():
+            told = (
+                "The trace of the contact is coloured by time, dark at the start; the gray line is "
+                "the path of the centre of mass. Sectors of the body in two blues show how it "
+                "turns; the body is pale where it was before."
+            )
+            cap = " The orange cap is where the third axis of the body leaves it."
+            return told + cap * (not scene.is_flat)
+        case Vehicle():
+            return (
+                "The path is coloured by time, dark at the start. The vehicle is black at the end, "
+                "and gray where it was before."
+            )
+    return ""

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from coadjoint.notation.names import spell
+from coadjoint.notation.prose import Formula, read_prose
 
 if TYPE_CHECKING:
     from coadjoint.solve.solution import Solution
+    from coadjoint.solve.system import System
+
+#: Characters of the formula of a Casimir up to which a legend has room for it.
+SHORT: Final = 24
 
 
 def unit_label(unit: str) -> str:
@@ -23,6 +28,33 @@ def symbol_label(name: str) -> str:
     whole, bracket, member = name.partition("[")  # of a member: its number stands in brackets
     letter, below = spell(whole)
     return (f"{letter}$_{{{below}}}$" if below else letter) + bracket + member
+
+
+def observable_label(system: System, name: str) -> str:
+    """An observable in a legend: a Casimir by its formula where that is short, else by ``C_1``."""
+    number = name.removeprefix("casimir")
+    if number == name or not number.isdigit():
+        label = symbol_label(name)
+        return label if "$" in label else label.replace("_", " ")
+    texts = system.certificate.get("casimirs", [])
+    text = texts[int(number) - 1] if int(number) <= len(texts) else ""
+    return _write_formula(text) or f"$C_{{{number}}}$"
+
+
+def _write_formula(text: str) -> str:
+    """A short formula as matplotlib writes it; "" where it cannot, or there is no room."""
+    from matplotlib.mathtext import MathTextParser
+
+    text = re.sub(r"dot\((\w+), \1\)", r"norm(\1)^2", text)
+    parts = read_prose(text)
+    if len(text) > SHORT or len(parts) != 1 or not isinstance(parts[0], Formula):
+        return ""
+    shown = re.sub(r"\\[lr]vert ?", "|", f"${parts[0].written.latex}$")
+    try:
+        MathTextParser("path").parse(shown)
+    except ValueError:  # of LaTeX it knows a part
+        return ""
+    return shown
 
 
 def tell_time(solution: Solution, at: int) -> str:

@@ -17,7 +17,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
-from coadjoint.solve.labels import symbol_label, unit_label
+from coadjoint.solve.labels import observable_label, symbol_label, unit_label
 from coadjoint.solve.maps import draw_map, find_map, is_globe
 from coadjoint.solve.rolling_bodies import RollingBody, box_of, draw_rolling, find_rolling
 from coadjoint.solve.scenes import (
@@ -47,6 +47,8 @@ STYLES = ("solid", "dashed", "dotted", "dashdot")
 LEGEND_ROWS, LINES = 14, 28
 #: Where a legend stands: its left edge at the right end of the axes, in the middle of their height.
 AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+#: Largest change of what is drawn as constant, over its size.
+CONSTANT: Final = 1e-7
 #: Pictures of members, one above the other.
 STACKED = 3
 
@@ -79,29 +81,38 @@ def draw(solution: Solution) -> Any:
 
 def _draw_all(figure: Any, solution: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
-    paths = find_paths(solution) if len(solution) > 1 else None
-    rolling = None if paths else find_rolling(solution)
-    sphere = "" if paths or rolling else find_sphere(solution)
-    vehicle = None if paths or rolling or sphere else find_vehicle(solution)
-    strip = 0.14 if paths or rolling or sphere or vehicle else 0.2  # drift is no third of a picture
-    if sphere or rolling or (paths and paths.members.shape[1] == 3):
+    scene = find_scene(solution)
+    strip = 0.2 if scene is None else 0.14  # drift is no third of a picture
+    if isinstance(scene, str | RollingBody) or (
+        isinstance(scene, Paths) and scene.members.shape[1] == 3
+    ):
         figure.set_size_inches(7.2, 6.4)
     elif any(is_globe(solution, name) for name in solution.system.STATE):
         figure.set_size_inches(7.2, 5.6)  # maps of the sphere are half as high as they are wide
     conserved = bool(solution.conserved)
     grid = figure.add_gridspec(1 + conserved, 1, height_ratios=[1.0, strip][: 1 + conserved])
-    if paths:
-        _draw_paths(figure, grid[0], solution, paths)
-    elif sphere:
-        _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, sphere)
-    elif rolling:
-        _draw_rolling(figure, grid[0], solution, rolling)
-    elif vehicle:
-        _draw_vehicle(figure, grid[0], solution, vehicle)
-    else:
-        _draw_components(figure, grid[0], solution)
+    match scene:
+        case Paths():
+            _draw_paths(figure, grid[0], solution, scene)
+        case RollingBody():
+            _draw_rolling(figure, grid[0], solution, scene)
+        case str():
+            _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, scene)
+        case Vehicle():
+            _draw_vehicle(figure, grid[0], solution, scene)
+        case None:
+            _draw_components(figure, grid[0], solution)
     if conserved:
         _draw_drift(figure.add_subplot(grid[1]), solution)
+
+
+def find_scene(solution: Solution) -> Paths | RollingBody | Vehicle | str | None:
+    """What a motion is drawn as: orbits, a body, the name of a vector on its sphere, a vehicle.
+
+    None of what is drawn in components.
+    """
+    paths = find_paths(solution) if len(solution) > 1 else None
+    return paths or find_rolling(solution) or find_sphere(solution) or find_vehicle(solution)
 
 
 def _shown_once(figure: Any) -> Any:
@@ -218,8 +229,9 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
     axes.set_box_aspect(high - low, zoom=1.15)
     axes.zaxis.get_major_locator().set_params(nbins=2)
     axes.set_title(
-        "colour: trace of the contact, gray: path of the centre of mass"
-        + ("" if body.is_flat else "\norange cap: where the third axis of the body leaves it"),
+        "trace: the contact, coloured by time; gray line: the centre of mass\n"
+        "blue sectors: the body, pale before its end"
+        + ("" if body.is_flat else "; orange cap: where its third axis leaves it"),
         fontsize=9,
         color="#5b6570",
     )
@@ -342,8 +354,15 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
     panels = place.subgridspec(-(-len(parts) // columns), columns)
     for n, part in enumerate(parts):
         axes = figure.add_subplot(panels[n // columns, n % columns])
+        low, high = _choose_limits(part)
         colours = axes.pcolormesh(
-            solution.time, np.arange(rows), part, cmap="cividis", shading="nearest"
+            solution.time,
+            np.arange(rows),
+            part,
+            cmap="cividis",
+            shading="nearest",
+            vmin=low,
+            vmax=high,
         )
         colours.set_rasterized(True)
         lower = str(n + 1) * (len(parts) > 1)
@@ -357,6 +376,15 @@ def _draw_rows(figure: Any, place: Any, solution: Solution, name: str, *, ends: 
         if columns == 1:
             axes.set_ylabel(_tell_rows(solution), fontsize=9)
         axes.tick_params(labelsize=8, labelbottom=ends and n + columns >= len(parts))
+
+
+def _choose_limits(part: Array) -> tuple[float, float]:
+    """The values of the first and the last colour: roundings of what is constant have none."""
+    low, high = float(np.nanmin(part)), float(np.nanmax(part))
+    size = max(abs(low), abs(high)) or 1.0
+    if high - low > CONSTANT * size:
+        return low, high
+    return (low + high - size) / 2, (low + high + size) / 2
 
 
 def _unit_of(unit: str, place: int, count: int) -> str:
@@ -391,7 +419,7 @@ def _draw_drift(axes: Any, solution: Solution) -> None:
         change[change == 0] = np.nan  # no place on a logarithmic axis
         largest = tell_drift(solution, name) if solution.drift[name] else "none"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
-        label = f"{name} ({largest})"
+        label = f"{observable_label(solution.system, name)} ({largest})"
         axes.plot(solution.time, change, linewidth=width, label=label, **stroke)
     axes.set_yscale("log")
     _limit_time(axes, solution)

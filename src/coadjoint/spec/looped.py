@@ -314,18 +314,26 @@ def _read_definitions(file: Any) -> dict[str, Definition]:
     known: dict[str, Definition] = {}
     for key, text in file.definitions.items():
         name, arguments = signature(key)
-        for tree in _read_all([text], known):
+        for typed, tree in _read_both([text], known):
             known[name] = Definition(
-                name=name, arguments=arguments, text=text, tree=tree, shape=None
+                name=name, arguments=arguments, text=text, typed=typed, tree=tree, shape=None
             )
     return known
 
 
 def _read_all(texts: Iterable[str], definitions: Mapping[str, Definition]) -> Iterator[Node]:
     """The trees of those texts that can be read, with definitions expanded."""
+    return (tree for _, tree in _read_both(texts, definitions))
+
+
+def _read_both(
+    texts: Iterable[str], definitions: Mapping[str, Definition]
+) -> Iterator[tuple[Node, Node]]:
+    """The trees of those texts that can be read, as typed and with definitions expanded."""
     for text in texts:
         try:
-            yield expand(read_expression(text, functions(definitions), indexed=True), definitions)
+            typed = read_expression(text, functions(definitions), indexed=True)
+            yield typed, expand(typed, definitions)
         except ExpressionError:
             continue
 

@@ -8,6 +8,7 @@ import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.vectors import vector_form
 from coadjoint.derive.vectors.balance import (
     balance_lines,
@@ -40,6 +41,10 @@ BOOKS = {
         "d(diag(I) Omega)/dt = lambda x s + (diag(I) Omega) x Omega + m g Gamma x chi",
         "d(m Y)/dt = lambda + m Y x Omega",
         "Y = Omega x (r Gamma + chi)",
+    ],
+    "stochastic_rigid_body": [
+        "dPi = (Pi x Omega) dt + (Pi x (sigma1, 0, 0)) o dW1"
+        " + (Pi x (0, sigma2, 0)) o dW2 + (Pi x (0, 0, sigma3)) o dW3"
     ],
     "veselova": ["d(diag(I) Omega)/dt = twistless_reaction Gamma + (diag(I) Omega) x Omega"],
 }
@@ -91,6 +96,45 @@ def test_no_line_is_printed_for_a_spoiled_component(system, place):
     assert not any(line.left == name for line in spoiled.lines) or place == -1
     whole = {line.left for line in vector_form(equations).lines}
     assert len([line for line in spoiled.lines if line.left in whole]) < len(whole)
+
+
+@pytest.mark.parametrize("process", [0, 1, 2])
+def test_no_line_is_printed_for_spoiled_noise(process, monkeypatch):
+    """One wrong sign in what a process does, and the equation is not there."""
+    equations = derive(shipped("stochastic_rigid_body"))
+    assert not vector_form(equations).missing
+    fields = list(noise_fields(equations.setting))
+    own = fields[process]
+    place = next(n for n, value in enumerate(own.field) if value)
+    moved = tuple(-v if n == place else v for n, v in enumerate(own.field))
+    fields[process] = replace(own, field=moved)
+    monkeypatch.setattr("coadjoint.derive.vectors.form.noise_fields", lambda _: tuple(fields))
+    spoiled = vector_form(equations)
+    assert spoiled.missing == ("Pi",)
+
+
+def test_components_of_a_motion_with_noise_have_it():
+    """As Pi x sigma_k e_k gives by hand."""
+    motion = document(derive(shipped("stochastic_rigid_body"))).sections[0]
+    assert "Stratonovich" in motion.law
+    assert [line.text for line in motion.lines] == [
+        "dPi1 = (Pi2*Omega3 - Pi3*Omega2) dt - sigma2 Pi3 o dW2 + sigma3 Pi2 o dW3",
+        "dPi2 = (-Pi1*Omega3 + Pi3*Omega1) dt + sigma1 Pi3 o dW1 - sigma3 Pi1 o dW3",
+        "dPi3 = (Pi1*Omega2 - Pi2*Omega1) dt - sigma1 Pi2 o dW1 + sigma2 Pi1 o dW2",
+    ]
+
+
+def test_short_names_are_shown_by_short_names():
+    """Definitions of the tippe top name one another, as in the spec, and so does what is seen."""
+    sections = {each.title: each for each in document(derive(shipped("tippe_top"))).sections}
+    found = [line.text for line in sections["Definitions"].lines]
+    assert found[2:] == [
+        "drag = viscous + coulomb/sqrt(v . v + slow^2)",
+        "N = plane_reaction + m g",
+        "F = -N drag v",
+    ]
+    seen = [line.text for line in sections["Casimirs, observables and momentum maps"].lines]
+    assert "friction = F" in seen
 
 
 def test_what_is_printed_is_evaluated_once_more():

@@ -16,16 +16,28 @@ Equations that show them. Read next: `coadjoint.prove.noise`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.records import write_step
+from coadjoint.derive.records import Left, symbol, write_step
 from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.derive.structure import has_structure, poisson_structure
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply, dot
+from coadjoint.notation.elements import write_element
+from coadjoint.notation.functions import write_noise, write_sum
+from coadjoint.notation.names import differential
+from coadjoint.notation.written import (
+    Written,
+    add,
+    attach,
+    enclose,
+    multiply,
+    negate,
+    number,
+)
 
 
 @dataclass(frozen=True)
@@ -88,7 +100,7 @@ def show_noise(drift: Equations) -> Equations:
         "dx = {x, h} dt + sum_k {x, h_k} o dW_k",
         r"dx = \{x, h\}\,dt + \sum_k \{x, h_k\} \circ dW_k",
         (
-            *((f"h_{each.name}", each.hamiltonian) for each in fields),
+            *((_hamiltonian_of(each), each.hamiltonian) for each in fields),
             *(line for each in fields for line in _show_field(setting, each)),
         ),
         by="noise",
@@ -98,13 +110,39 @@ def show_noise(drift: Equations) -> Equations:
         "What the drift has in the sense of Ito in addition",
         "1/2 sum_k (dg_k/dx) g_k with g_k = {x, h_k}",
         r"\frac{1}{2} \sum_k \frac{\partial g_k}{\partial x} g_k, \quad g_k = \{x, h_k\}",
-        ((f"ito_{name}", value) for name, value in added),
+        ((_ito_of(name), value) for name, value in added),
         by="ito",
     )
     return replace(drift, steps=(*drift.steps, hamiltonians, ito))
 
 
-def _show_field(setting: Setting, each: NoiseField) -> Sequence[tuple[str, Element]]:
-    """Lines for the components of a field."""
-    pairs = zip(setting.state, each.field, strict=True)
-    return [(f"{each.name}_{name}", value) for name, value in pairs]
+def _show_field(setting: Setting, each: NoiseField) -> Iterator[tuple[Left, Element]]:
+    """Lines for the components of a field: ``{Pi1, h_dW1}``."""
+    for name, value in zip(setting.state, each.field, strict=True):
+        yield enclose([symbol(name), _hamiltonian_of(each)], "{}"), value
+
+
+def _hamiltonian_of(each: NoiseField) -> Left:
+    """The Hamiltonian of a process: ``h_dW1``."""
+    return replace(attach(symbol("h"), below=[symbol(each.name)]), text=f"h_{each.name}")
+
+
+def _ito_of(name: str) -> Left:
+    """What the drift of a component has in addition: ``1/2 sum(k, {{Pi1, h_k}, h_k})``."""
+    h = replace(attach(symbol("h"), below=[symbol("k")]), text="h_k")
+    twice = enclose([enclose([symbol(name), h], "{}"), h], "{}")
+    return multiply([number(Fraction(1, 2)), write_sum(("k",), [twice], "")])
+
+
+def write_moves(setting: Setting, name: str, rate: Element) -> tuple[Left, Written]:
+    """The equation of a component with its noise: ``dPi1 = rate dt + field o dW1``."""
+    ring, place = setting.field, setting.state.index(name)
+    parts = [multiply([write_element(ring, rate), symbol("dt")])] if rate else []
+    for each in noise_fields(setting):
+        process, moved = symbol(each.name), each.field[place]
+        plain, turned = write_element(ring, moved), write_element(ring, -moved)
+        if len(turned.text) < len(plain.text):  # one minus before it, and no brackets
+            parts.append(negate(write_noise(turned, process)))
+        elif moved:
+            parts.append(write_noise(plain, process))
+    return differential(symbol(name)), add(parts)

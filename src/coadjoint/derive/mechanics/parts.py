@@ -98,10 +98,7 @@ def _tree(spec: Spec, text: str) -> Node:
         if each.arguments:
             inner[name] = each
         else:
-            tree = expand(read_expression(each.text, functions(known)), inner)
-            inner[name] = Definition(
-                name=name, arguments=(), text=each.text, tree=tree, shape=each.shape
-            )
+            inner[name] = replace(each, tree=expand(each.typed, inner))
     return expand(read_expression(text, functions(known)), inner)
 
 

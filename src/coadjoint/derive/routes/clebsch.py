@@ -32,10 +32,11 @@ from coadjoint.algebra.representation import adjoint
 from coadjoint.derive.charts import in_chart
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
+from coadjoint.derive.records import Step, rate, symbol, write_rates, write_slopes, write_step
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element
+from coadjoint.notation.written import add, enclose, negate
 from coadjoint.spec import Spec
 from coadjoint.spec.model import component_names
 
@@ -155,7 +156,7 @@ def _steps(motion: Equations, action: Element, image: Mapping[str, Element]) -> 
             "Clebsch action",
             f"L = <p, dq/dt> + l(xi, q) {sign} <p, rho(xi) q>",
             rf"L = \langle p, \dot q \rangle + l(\xi, q) {sign} \langle p, \rho(\xi) q \rangle",
-            {"L - <p, dq/dt>": action},
+            [(add([symbol("L"), negate(enclose([symbol("p"), rate("q")], "<>"))]), action)],
             by="clebsch",
         ),
         write_step(

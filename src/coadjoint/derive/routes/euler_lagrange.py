@@ -33,6 +33,7 @@ from coadjoint.derive.mechanics.legendre import LegendreTransform, legendre
 from coadjoint.derive.records import (
     Exact,
     Step,
+    component,
     write_entries,
     write_rates,
     write_slopes,
@@ -86,7 +87,8 @@ def _solve_in_kernel(known: Mechanics, forces: Sequence[Element]) -> Equations:
             "M dv/dt = dl/dq - d2l/dvdq v + f",
             r"M \dot v = \partial l / \partial q - (\partial^2 l / \partial v\,\partial q) v + f",
         )
-        lines = ((f"(M dv/dt)_{n}", value) for n, value in enumerate(right, 1))
+        left = ("M dv/dt", r"M \dot v", "M dot(v)")
+        lines = ((component(*left, n), value) for n, value in enumerate(right, 1))
         solved = write_step(*law, lines, by="legendre")
         *before, last = _steps(known, exact.rates, show_geometry=False)
         return (*before, solved, last)

@@ -6,8 +6,11 @@ Comes in: Equations. Goes out: a `VectorForm`. Read next: `coadjoint.derive.vect
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.mechanics.noise import noise_fields
+from coadjoint.derive.setting import assemble
 from coadjoint.derive.vectors.balance import balance_lines, momentum_of
 from coadjoint.derive.vectors.gradients import total_of
 from coadjoint.derive.vectors.members import member_form
@@ -19,7 +22,8 @@ from coadjoint.derive.vectors.recognise import (
     recognise,
     tree_name,
 )
-from coadjoint.derive.vectors.vocabulary import Vocabulary, make_vocabulary
+from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary, make_vocabulary
+from coadjoint.notation.trees import BY_PROCESS, DIFFERENTIAL, IN_TIME
 from coadjoint.notation.written import Written
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
@@ -32,11 +36,11 @@ def vector_form(equations: Equations) -> VectorForm:
     vocabulary = make_vocabulary(equations)
     lines, missing = list[VectorLine](), list[str]()
     for target in vocabulary.targets:
-        found = recognise(vocabulary, target.value)
-        if found is None or not is_short(total_of(found)):
+        line = _find_line(equations, vocabulary, target)
+        if line is None:
             missing.append(tree_name(target.node))
         else:
-            lines.append(VectorLine(rate_of(target.node), total_of(found)))
+            lines.append(line)
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and equations.spec.constraints:
@@ -48,6 +52,35 @@ def vector_form(equations: Equations) -> VectorForm:
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
     return VectorForm(tuple(lines), tuple(missing), shapes, written)
+
+
+def _find_line(
+    equations: Equations, vocabulary: Vocabulary, target: Candidate
+) -> VectorLine | None:
+    """The equation of a whole quantity, with what each Wiener process does to it; None if unfound.
+
+    The drift and the field of each process are found equal to their components one by one.
+    """
+    found = recognise(vocabulary, target.value)
+    if found is None or not is_short(total_of(found)):
+        return None
+    fields = noise_fields(equations.setting)
+    if not fields:
+        return VectorLine(rate_of(target.node), total_of(found))
+    (variable,) = (v for v in equations.spec.state if v.name == tree_name(target.node))
+    parts = [tree.Call(function=IN_TIME, arguments=(total_of(found),))] * bool(found)
+    for each in fields:
+        moved = dict(zip(equations.setting.state, each.field, strict=True))
+        found = recognise(vocabulary, assemble(variable, moved))
+        if found is None or not is_short(total_of(found)):
+            return None
+        if found:
+            process = tree.Name(each.name)
+            parts.append(tree.Call(function=BY_PROCESS, arguments=(total_of(found), process)))
+    whole: tree.Node = tree.Number(Fraction(0))
+    for n, part in enumerate(parts):
+        whole = tree.Binary(operator="+", left=whole, right=part) if n else part
+    return VectorLine(tree.Call(function=DIFFERENTIAL, arguments=(target.node,)), whole)
 
 
 def _named(vocabulary: Vocabulary, lines: Sequence[VectorLine]) -> Iterator[VectorLine]:
@@ -74,8 +107,11 @@ def _momentum_lines(equations: Equations, vocabulary: Vocabulary) -> Iterator[Ve
 def _short_names(
     spec: Spec, vocabulary: Vocabulary, lines: Sequence[VectorLine]
 ) -> Iterator[VectorLine]:
-    """What short names of the spec stand for that lines use."""
-    used = {n.name for line in lines for n in tree.walk(line.right) if isinstance(n, tree.Name)}
-    for each in spec.definitions:
-        if each.name in used and not each.arguments:
-            yield VectorLine(tree.Name(each.name), each.tree)
+    """What short names of the spec stand for that lines use, or that these use themselves."""
+    shown = list[VectorLine]()
+    for each in reversed(spec.definitions):
+        if not each.arguments and any(
+            tree.Name(each.name) in tree.walk(line.right) for line in (*lines, *shown)
+        ):
+            shown.append(VectorLine(tree.Name(each.name), each.typed))
+    return reversed(shown)

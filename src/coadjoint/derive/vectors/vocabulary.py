@@ -381,8 +381,9 @@ class _Maker:
                     yield Candidate(tree.Name(name), self.setting.elements(parts))
 
     def _gradients(self) -> Iterator[tree.Node]:
-        """Gradients of the declared energies by whole vectors."""
-        for formula in (self.spec.hamiltonian, self.spec.lagrangian):
+        """Gradients of the declared energies by whole vectors, and of Hamiltonians of noise."""
+        noise = [each.formula for each in self.spec.noise]
+        for formula in (self.spec.hamiltonian, self.spec.lagrangian, *noise):
             if formula is None:
                 continue
             for variable in self.spec.variables:

@@ -48,13 +48,15 @@ class Definition:
         name: As declared, ``V`` of ``V(s, d)``.
         arguments: Names of its arguments; empty if it takes none.
         text: The expression as typed.
-        tree: The parsed expression, with earlier definitions expanded.
+        typed: The parsed expression, in which earlier definitions are names: documents show it.
+        tree: The same with earlier definitions expanded.
         shape: Shape of its value; None with arguments, whose shapes only a call has.
     """
 
     name: str
     arguments: tuple[str, ...]
     text: str
+    typed: Node
     tree: Node
     shape: Shape | None
 
@@ -89,7 +91,10 @@ def expand(
             limits, which is seen before it does: 20 definitions that double make a million parts.
 
     >>> from coadjoint.spec.core.expressions import read_expression
-    >>> double = Definition("f", ("x",), "x + x", read_expression("x + x"), None)
+    >>> twice = read_expression("x + x")
+    >>> double = Definition(
+    ...     name="f", arguments=("x",), text="x + x", typed=twice, tree=twice, shape=None
+    ... )
     >>> expand(read_expression("f(2*y)", ["f"]), {"f": double}) == read_expression("2*y + 2*y")
     True
     """
@@ -235,7 +240,7 @@ def define(
         except ExpressionError as error:
             raise source.expression_fault(key, error) from None
         known[name] = Definition(
-            name=name, arguments=arguments, text=expression, tree=tree, shape=shape
+            name=name, arguments=arguments, text=expression, typed=typed, tree=tree, shape=shape
         )
     return tuple(known.values())
 

@@ -41,7 +41,8 @@ class Formula:
 
     Attributes:
         text: As typed, ASCII; used in messages, JSON and documents only.
-        tree: The parsed, shape-checked tree.
+        typed: The parsed tree, in which definitions are names: documents show it.
+        tree: The shape-checked tree, with definitions expanded.
         shape: Shape of its value.
         path: Its key in the spec, e.g. ``("lagrangian", "l")``.
         line: Line of the text in the file, counted from 1.
@@ -49,6 +50,7 @@ class Formula:
     """
 
     text: str
+    typed: Node
     tree: Node
     shape: Shape
     path: KeyPath
@@ -184,7 +186,7 @@ def read_formula(
         raise source.expression_fault(key, error) from None
     line = source.line(source.positions.value(key))
     sums = None if members is None else whole
-    return Formula(text=text, tree=tree, shape=shape, path=key, line=line, sums=sums)
+    return Formula(text=text, typed=typed, tree=tree, shape=shape, path=key, line=line, sums=sums)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

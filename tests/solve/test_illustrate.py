@@ -1,0 +1,73 @@
+"""Captions of pictures say what each colour is."""
+
+import io
+
+import numpy as np
+import pytest
+
+from coadjoint.cli.simulate import find_start
+from coadjoint.solve.illustrate import _take_colours, describe
+from coadjoint.solve.plot import COLOURS
+from coadjoint.systems import (
+    chaplygin_ball,
+    euler_disk,
+    kepler,
+    knife_edge_cvt,
+    n_body,
+    rigid_body,
+    roller_racer,
+    so8_body,
+)
+
+pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+
+STARTS = {rigid_body: [1, 0.3, -0.8], kepler: [1, 0, 0, 0, 1.1, 0], so8_body: [0.1] * 28}
+TIME = "Colour is time, dark at the start."
+
+
+@pytest.mark.parametrize(
+    ("module", "told", "untold"),
+    [
+        (rigid_body, (TIME,), ("cap", "member")),
+        (kepler, (TIME,), ("cap", "member")),
+        (n_body, ("Each member has a colour of its own.",), ("time,",)),
+        (chaplygin_ball, ("coloured by time", "gray line", "two blues", "orange cap"), ("member",)),
+        (euler_disk, ("coloured by time", "gray line", "two blues"), ("cap",)),
+        (roller_racer, ("coloured by time", "vehicle is black"), ("cap", "blue")),
+        (so8_body, ("by the generated code.",), ("olour", "cap")),
+    ],
+)
+def test_a_caption_tells_the_colours_of_its_picture(module, told, untold):
+    """Of spheres, orbits, members, bodies that roll and vehicles; components have a legend."""
+    options = {"reconstruct": True} if module.system.RECONSTRUCTED else {}
+    motion = module.simulate(STARTS.get(module), (0, 4), samples=1001, progress=False, **options)
+    caption = describe(motion)
+    assert [each for each in told if each not in caption] == []
+    assert [each for each in untold if each in caption] == []
+    assert np.isfinite(motion.state).all()
+
+
+def test_a_time_without_a_unit_is_a_number():
+    """The unit 1 of what has no dimension does not stand behind it."""
+    motion = knife_edge_cvt.simulate(
+        find_start(knife_edge_cvt.system, ()), (0, 1), samples=20, progress=False
+    )
+    assert "over 20, by" in describe(motion)
+
+
+def test_lines_keep_their_colours_among_those_of_a_surface():
+    """A thin line has too few dots for a colour of its own, among all those of a surface."""
+    from matplotlib.colors import to_rgb
+    from PIL import Image
+
+    orange = tuple(round(255 * part) for part in to_rgb(COLOURS[1]))
+    picture = Image.effect_noise((300, 300), 200).convert("RGB")
+    picture.paste(orange, (10, 150, 290, 151))
+    place = io.BytesIO()
+    picture.save(place, format="png")
+    with Image.open(io.BytesIO(_take_colours(place))) as small:
+        colours = small.convert("RGB").getcolors()
+        assert (280, orange) in colours
+        assert 20 < len(colours) <= 64
+    plain = {colour for _, colour in picture.quantize(64).convert("RGB").getcolors()}
+    assert orange not in plain
