@@ -124,12 +124,14 @@ def test_nothing_is_wider_than_a_phone(page, pages, name):
 SPOT = """(p => { const s = explorer.view.drawing.project(p),
   b = document.getElementById('scene').getBoundingClientRect(); return [s.x + b.x, s.y + b.y] })"""
 
+ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
+
 
 @pytest.mark.parametrize(
     ("name", "point", "value"),
     [
-        ("roller_racer", "explorer.view.knobs[0].at", "explorer.model.read(scene.turns[0].angle)[0]"),
-        ("snakeboard", "explorer.view.knobs[0].at", "explorer.model.read(scene.angles[0])[0]"),
+        ("roller_racer", "explorer.view.knobs[0].at", ANGLE),
+        ("snakeboard", "explorer.view.knobs[0].at", ANGLE),
         ("peakons", "explorer.view.handles()[1]", "explorer.model.x[1]"),
         ("heisenberg_lattice", "explorer.view.handles()[3]", "explorer.model.x[48]"),
         ("spin_chain", "explorer.view.tips[20]", "explorer.model.x[20]"),

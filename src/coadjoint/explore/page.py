@@ -102,7 +102,7 @@ def _style_nothing(text: str) -> str:
     >>> _style_nothing('<mo style="font-size: 1.3em">.</mo>')
     '<mo mathsize="1.3em">.</mo>'
     """
-    return re.sub(r' style="font-size: ([0-9.]+em)"', r' mathsize="\1"', text)
+    return re.sub(r' style="font-size: ([0-9.]+em)"', r' mathsize="\1"', str(text))
 
 
 def _escape_json(value: Any) -> str:
