@@ -307,7 +307,7 @@ function findRaise() {
   return clamp((stage.bottom - id("hint").getBoundingClientRect().top - above) / stage.height, 0, 0.3);
 }
 function advance(seconds) {
-  const until = performance.now() + 11;
+  const until = performance.now() + 8;
   debt = Math.min(debt + seconds * 10 ** Number(id("speed").value), 0.5);
   if (scene.stick) steer();
   while (debt >= model.h) {

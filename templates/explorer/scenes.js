@@ -87,7 +87,7 @@ class BodyScene extends Scene {
       this.sizes = scaled(0.94 / out, this.sizes); // corners within the ellipsoid
     }
     this.below = this.weighs ? -Math.max(1.5, norm(this.arm) + 1.05 * Math.hypot(...this.sizes)) : -1.5;
-    this.camera.distance = this.weighs ? 7.6 : scene.moving ? 7.5 : 5;
+    this.camera.distance = this.weighs ? 7.6 : scene.moving ? (scene.pushing && !this.model.u.length ? 8.8 : 7.5) : 5;
     this.camera.target = [0, 0, this.weighs ? -0.1 : 0]; // tips of arrows stand above what weighs
   }
   moving() { if (this.model.u.length) return; this.shape(); }
@@ -306,7 +306,7 @@ class ParticleScene extends Scene {
   draw(theme) {
     const { drawing, extent } = this, points = this.positions();
     const far = Math.max(...points.map(norm)) + 0.4 * extent; // an arrow's length
-    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 4 ? 1 : 0);
+    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 3.6 ? 1 : 0);
     drawing.floor(0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
     drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
     if (this.directions) drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [1, 1, 1], [...(theme.dark ? theme.steel : theme.body), 0.4], { glass: 1 });
