@@ -7,7 +7,7 @@ class CarriageScene extends PlanarScene {
     this.links = this.findLinks();
     this.size = 0.8 * Math.max(0.1, ...this.wheels().map((w) => Math.abs(w.at)), ...this.links.map((each) => Math.max(Math.abs(each.joint), each.length)));
     this.camera.distance = 8 * this.size;
-    this.hint = "Drag to look around; wheels and joints stand where the constraints put them";
+    this.hint = this.links.length ? "Drag the golden carriage to turn it, the floor to look around" : "Drag to look around; wheels stand where the constraints put them";
   }
   /* What a variable of the state or of the observables is, for each free velocity of one. */
   slopes(variable, change = () => {}) {
@@ -57,10 +57,13 @@ class CarriageScene extends PlanarScene {
     const ends = [0, ...this.wheels().map((w) => w.at), ...this.links.map((each) => each.joint)];
     this.beam(q, at, Math.min(...ends), Math.max(...ends), theme.body);
     for (const wheel of this.wheels()) this.axle(multiply(q, turnBy([0, 0, wheel.angle])), plus(at, rotate(q, [wheel.at, 0, 0])), theme);
+    this.knobs = [];
     for (const { angle, length, joint } of this.links) {
       const own = multiply(q, turnBy([0, 0, model.read(angle)[0]])), hinge = plus(at, rotate(q, [joint, 0, 0]));
       this.beam(own, hinge, -length, 0, GOLD);
-      this.axle(own, plus(hinge, rotate(own, [-length, 0, 0])), theme);
+      const end = plus(hinge, rotate(own, [-length, 0, 0]));
+      this.axle(own, end, theme);
+      this.knob(angle, hinge, plus(end, [0, 0, 0.06 * size]));
       drawing.draw("tube", q, minus(hinge, [0, 0, 0.05 * size]), [0.05 * size, 0.05 * size, 0.2 * size], theme.steel);
       this.label(angle.name, plus(hinge, [0, 0, 0.25 * size]), "orange");
     }

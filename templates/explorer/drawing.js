@@ -140,7 +140,8 @@ class Drawing {
     return { array, count: triangles.length };
   }
 
-  begin(camera, ambient) {
+  /* A camera's picture, raised by a part of half the height where more is covered below than above. */
+  begin(camera, ambient, raised = 0) {
     const gl = this.gl, box = this.canvas.getBoundingClientRect(), ratio = Math.min(devicePixelRatio || 1, 2);
     const wide = Math.max(1, Math.round(box.width * ratio)), high = Math.max(1, Math.round(box.height * ratio));
     if (this.canvas.width !== wide || this.canvas.height !== high) Object.assign(this.canvas, { width: wide, height: high });
@@ -149,7 +150,9 @@ class Drawing {
     const c = Math.cos(camera.pitch), reach = camera.distance * Math.max(1, 1.02 * high / wide);
     this.eye = plus(camera.target, scaled(reach, [c * Math.cos(camera.yaw), c * Math.sin(camera.yaw), Math.sin(camera.pitch)]));
     this.look = lookAt(this.eye, camera.target);
-    this.view = product(perspective(0.6, wide / high, reach / 50, reach * 30), this.look);
+    const lens = perspective(0.6, wide / high, reach / 50, reach * 30);
+    lens[9] = -(this.raised = raised);
+    this.view = product(lens, this.look);
     gl.viewport(0, 0, wide, high);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -248,7 +251,7 @@ class Drawing {
   /* The direction from the eye through a point of the canvas. */
   ray(x, y) {
     const wide = this.canvas.clientWidth, high = this.canvas.clientHeight, f = Math.tan(0.3), m = this.look;
-    const a = (2 * x / wide - 1) * f * wide / high, b = (1 - 2 * y / high) * f;
+    const a = (2 * x / wide - 1) * f * wide / high, b = (1 - 2 * y / high - this.raised) * f;
     return unit(E.map((_, k) => a * m[4 * k] + b * m[4 * k + 1] - m[4 * k + 2]));
   }
 

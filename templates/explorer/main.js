@@ -6,7 +6,7 @@ const THEMES = {
   light: { dark: 0, floor: [0.93, 0.915, 0.88], line: [0.66, 0.64, 0.60], steel: [0.45, 0.48, 0.52], body: [0.24, 0.50, 0.78], body2: [0.88, 0.90, 0.92], ball: [0.90, 0.92, 0.94], ambient: 0.5, pen: "#222", inks: ["#1a5a9e", "#9a4b00", "#0b6650", "#9c2f26", "#6a3d9a"] },
   dark: { dark: 1, floor: [0.13, 0.15, 0.18], line: [0.42, 0.47, 0.53], steel: [0.60, 0.64, 0.69], body: [0.27, 0.53, 0.82], body2: [0.80, 0.83, 0.87], ball: [0.20, 0.24, 0.29], ambient: 0.38, pen: "#ddd", inks: ["#8cc2f5", "#f0b070", "#6fd3b4", "#f0988e", "#c4a6f0"] },
 };
-let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0, kept = [];
+let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0, kept = [], raised = 0;
 
 const drawing = new Drawing(id("scene")), view = new SCENES[scene.kind](model, drawing), panel = new SpherePanel(model, id("sphere"));
 const strip = new DriftStrip(model, id("drift"));
@@ -99,10 +99,11 @@ for (const [table, box, array] of [["inputs", "drive", model.u], ["parameters", 
 
 // -- the address ----------------------------------------------------------------------------------
 
+const MOST_SHARED = 400; // numbers of a state in an address
 function save() {
   const numbers = (array) => [...array].map((v) => Number(v.toPrecision(9))).join(",");
   const parts = [`p=${numbers(model.p)}`];
-  if (!scene.members) parts.push(`x=${numbers(running ? start.x : model.x)}`);
+  if (model.n <= MOST_SHARED) parts.push(`x=${numbers(running ? start.x : model.x)}`);
   if (model.u.length) parts.push(`u=${numbers(model.u)}`);
   try { history.replaceState(null, "", `#${parts.join("&")}`); } catch { location.hash = parts.join("&"); }
 }
@@ -160,8 +161,12 @@ drag(id("scene"), (x, y) => {
     end: () => finish(was),
   };
 });
-const HINT = !scene.functions.includes("energy") || model.u.length ? "Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
-function finish(was) { start.x.set(model.x); model.measure(); model.find(); refresh(); running = was; save(); }
+const HINT = !scene.functions.includes("energy") || model.u.length ? "Drag the point." : panel.vector?.partner.length
+  ? "Curves: levels of the least energy there; orange bounds where this motion can go. Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
+function finish(was) {
+  model.settleOn();
+  start.x.set(model.x); model.measure(); model.find(); refresh(); running = was; save();
+}
 if (panel.shown) {
   id("sphere-box").hidden = false;
   id("sphere-title").textContent = panel.strand ? `${plainName(panel.name)} at every point` : panel.vector.round ? `${plainName(panel.name)} on its sphere` : `${plainName(panel.name)}, the curve of the velocity`;
@@ -194,6 +199,18 @@ id("cut").addEventListener("click", () => {
   }
   cutting = !cutting;
   press();
+});
+/* What a hand can take looks so. */
+const over = (canvas, found) => id(canvas).addEventListener("pointermove", (event) => {
+  if (event.buttons) return;
+  const box = id(canvas).getBoundingClientRect();
+  id(canvas).classList.toggle("held", Boolean(found(event.clientX - box.left, event.clientY - box.top)));
+});
+over("scene", (x, y) => view.grab?.(x, y) || (view.turnable() && drawing.hit(x, y, view.centre, view.radius).inside));
+if (panel.shown) over("sphere", (x, y) => {
+  if (!panel.vector?.round) return false;
+  const at = panel.drawing.project(scaled(panel.scale, panel.value()));
+  return cutting || Math.hypot(at.x - x, at.y - y) <= 30;
 });
 for (const [canvas, own] of [["scene", view], ["sphere", panel]]) id(canvas).addEventListener("wheel", (event) => {
   event.preventDefault();
@@ -284,8 +301,13 @@ function keepFree() {
   const stage = id("scene").getBoundingClientRect();
   return [...document.querySelectorAll("h1, #about, #hint, #controls > *, #pad")].filter((each) => !each.hidden).map((each) => { const b = each.getBoundingClientRect(); return [b.left - stage.left, b.top - stage.top, b.right - stage.left, b.bottom - stage.top]; });
 }
+/* How far the picture is raised, so that it stands midway between the title and the hint. */
+function findRaise() {
+  const stage = id("scene").getBoundingClientRect(), above = id("about").querySelector("summary").getBoundingClientRect().bottom - stage.top;
+  return clamp((stage.bottom - id("hint").getBoundingClientRect().top - above) / stage.height, 0, 0.3);
+}
 function advance(seconds) {
-  const until = performance.now() + 11;
+  const until = performance.now() + 8;
   debt = Math.min(debt + seconds * 10 ** Number(id("speed").value), 0.5);
   if (scene.stick) steer();
   while (debt >= model.h) {
@@ -300,9 +322,9 @@ function advance(seconds) {
 function paint() {
   theme = THEMES[dark.matches ? "dark" : "light"];
   view.labels = [];
-  drawing.begin(view.camera, theme.ambient);
+  if (frames % 30 === 0) { kept = keepFree(); raised = findRaise(); }
+  drawing.begin(view.camera, theme.ambient, raised);
   view.draw(theme);
-  if (frames % 30 === 0) kept = keepFree();
   showLabels(id("scene-labels"), view.labels, drawing, kept);
   if (panel.shown) {
     const labels = [];

@@ -8,9 +8,10 @@ class MembersScene extends Scene {
     this.colours = Array.from({ length: many }, (_, i) => hue(i / many));
     this.every = Math.max(1, Math.ceil(many / 64)); // of very many, some are drawn
     this.shown = Array.from({ length: Math.ceil(many / this.every) }, (_, k) => k * this.every);
-    this.movable = ["space", "plane", "globe"].includes(scene.shape);
+    this.movable = scene.shape !== "frames";
+    this.traced = ["space", "plane", "globe"].includes(scene.shape);
     const kinds = { space: "a place in space", plane: "a place in the plane", globe: "a place on the sphere", arrows: "a vector", frames: "a body", stems: "a number along the line" };
-    this.hint = `${many} members, each with ${kinds[scene.shape]}${this.every > 1 ? `; one of ${this.every} is drawn` : ""}. Drag ${this.movable ? "one to move it, the space around them" : ""} to look`.replace("  ", " ");
+    this.hint = `${many} members, each with ${kinds[scene.shape]}${this.every > 1 ? `; one of ${this.every} is drawn` : ""}. Drag ${this.movable ? `one to ${scene.shape === "arrows" ? "turn" : "move"} it, the space around them to look` : "to look around"}`;
     const at = this.places();
     this.middle = scaled(1 / at.length, at.reduce(plus));
     if (scene.shape === "globe" || scene.shape === "arrows") this.middle = [0, 0, 0];
@@ -52,13 +53,13 @@ class MembersScene extends Scene {
       const cell = 10 ** Math.round(Math.log10(extent)) / 2, low = scene.shape === "plane" ? -0.06 * extent : Math.min(...at.map((p) => p[2])) - 0.9 * extent;
       drawing.floor((this.low ??= low), 7 * extent, cell, theme.floor, theme.line, [0, 0, 1e-6], this.middle);
     }
-    if (trailed && this.movable) this.sample();
+    if (trailed && this.traced) this.sample();
     const joined = scene.shape === "frames" || (scene.shape === "stems" && !this.ordered);
     if (joined || scene.shape === "arrows") drawing.line(scene.ring || scene.shape === "arrows" ? [...at, at[0]] : at, () => [...theme.steel, 0.8], 2.5);
     const thick = Math.min(0.075, (scene.shape === "stems" ? 0.9 : 2) / this.shown.length) * extent;
     at.forEach((p, k) => {
       const i = this.shown[k], tint = this.colours[i];
-      if (trailed && this.movable) drawing.line(this.trail(i).points, fade(tint), 2.5);
+      if (trailed && this.traced) drawing.line(this.trail(i).points, fade(tint), 2.5);
       if (scene.shape === "arrows") drawing.arrow(p, plus(p, scaled(this.long, this.vector(i))), tint, 0.016);
       else if (scene.shape === "frames") drawing.draw("box", this.turnOf(i), p, this.sides(at), tint, { second: theme.body2, paint: 1 });
       else drawing.draw("sphere", [1, 0, 0, 0], p, Array(3).fill(thick), tint);
@@ -77,19 +78,36 @@ class MembersScene extends Scene {
     }
     return [0, 1, 2].map((k) => (k === this.along ? 0.44 : k === (this.along + 1) % 3 ? 0.18 : 0.12) * step);
   }
+  /* The components of a member that a hand has brought to a point of the canvas. */
+  valueAt(k, x, y) {
+    const { drawing } = this, at = this.places(), own = at[k], held = this.vector(this.shown[k]);
+    if (scene.shape === "globe") return scaled(norm(own), drawing.hit(x, y, [0, 0, 0], norm(own)).direction);
+    if (scene.shape === "arrows") return scaled(norm(held), drawing.hit(x, y, own, this.long * norm(held)).direction);
+    const to = this.meet(own, x, y, { plane: E[2], stems: E[1] }[scene.shape]);
+    if (scene.shape !== "stems") return to.slice(0, held.length);
+    if (!this.ordered) return [to[2] * this.high / 0.4];
+    const room = 0.02 * this.wide, of = (j) => this.vector(this.shown[j])[0]; // an order in which they stay
+    const low = k > 0 ? of(k - 1) + room : -Infinity, high = k + 1 < at.length ? of(k + 1) - room : Infinity;
+    return [clamp(to[0] * this.wide / 2, low, high), ...(held.length > 1 ? [2 * to[2] * this.high] : [])];
+  }
   sample() {
-    if (!this.movable || this.shown.length > 24) return;
+    if (!this.traced || this.shown.length > 24) return;
     this.places().forEach((p, k) => this.trail(this.shown[k]).add(p, 0.015 * this.extent));
   }
   grab(x, y) {
     if (!this.movable) return null;
-    const found = this.places().findIndex((p) => { const s = this.drawing.project(p); return s.front && Math.hypot(s.x - x, s.y - y) < 24; });
-    return found < 0 ? null : { move: (a, b) => this.carry(this.shown[found], this.places()[found], a, b) };
+    const away = this.handles().map((p) => { const s = this.drawing.project(p); return s.front ? Math.hypot(s.x - x, s.y - y) : Infinity; });
+    const found = away.indexOf(Math.min(...away));
+    return away[found] < 24 ? { move: (a, b) => this.carry(found, a, b) } : null;
   }
-  carry(i, at, x, y) {
-    const { drawing, model } = this;
-    const to = scene.shape === "globe" ? scaled(norm(at), drawing.hit(x, y, [0, 0, 0], norm(at)).direction) : this.meet(at, x, y, scene.shape === "plane");
-    scene.place.forEach((component, k) => { model.x[this.row(component, i)] = to[k]; });
+  /* Where a hand takes each: at its place, or at the tip of its vector. */
+  handles() {
+    const at = this.places();
+    return scene.shape === "arrows" ? at.map((p, k) => plus(p, scaled(this.long, this.vector(this.shown[k])))) : at;
+  }
+  carry(k, x, y) {
+    const { model } = this, i = this.shown[k];
+    this.valueAt(k, x, y).forEach((v, c) => { model.x[this.row(scene.place[c], i)] = v; });
     model.ended = "";
     this.clear();
     model.measure();

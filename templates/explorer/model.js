@@ -182,11 +182,14 @@ class Model {
     return scaled(sign, [-second[2], first[2], second[0]]);
   }
 
+  /* Put a state that a hand has moved back on its constraints. */
+  settleOn() { if (this.has("projection")) this.call("projection", this.x.slice(), this.x); }
+
   /* What goes with a state: the attitude, step, and integrals that its drift is measured from. */
   settle() {
     this.clock[0] = 0;
     this.ended = "";
-    if (this.has("projection")) this.call("projection", this.x.slice(), this.x);
+    this.settleOn();
     let row = 0;
     for (const each of scene.tables.reconstructed) {
       const up = each.upright && scene.vertical ? this.read(scene.vertical) : null;
@@ -206,7 +209,7 @@ class Model {
     this.integrals = [];
     for (const each of scene.tables.observables) {
       const rows = each.components.map(() => row++);
-      if (each.conserved) this.integrals.push({ name: each.name, unit: each.units[0], rows, first: rows.map((r) => this.y[r]) });
+      if (each.conserved) this.integrals.push({ name: each.name, doc: each.doc, unit: each.units[0], rows, first: rows.map((r) => this.y[r]) });
     }
   }
 
@@ -235,7 +238,7 @@ class Model {
   step(h) {
     this.old.set(this.x);
     this.stepper.step(this.x, h);
-    if (this.has("projection")) this.call("projection", this.x.slice(), this.x);
+    this.settleOn();
     if (!this.x.every(Number.isFinite)) return this.end("rates without value");
     if (scene.domain.length) {
       const rows = this.call("domain", this.x, this.bounds ||= new Float64Array(scene.domain.length));

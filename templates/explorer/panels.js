@@ -12,7 +12,7 @@ function chooseVector() {
   }
   if (scene.spinning && scene.spinning.table === "state") return { rows: scene.spinning.rows, partner: [], tied: false, name: scene.spinning.name, round: true };
   const speed = scene.kind === "particles" && scene.speeds[0];
-  if (speed && speed.rows.length === 3 && scene.places.length === 1) return { rows: speed.rows, partner: [], tied: false, name: speed.name, round: false };
+  if (speed && speed.rows.length === 3 && scene.places.length === 1) return { ...speed, partner: [], tied: false, round: false };
   return null;
 }
 
@@ -40,7 +40,7 @@ class SpherePanel {
     this.camera.yaw = Math.hypot(a, b) > 0.1 ? Math.atan2(b, a) - 0.45 : -0.9;
   }
   get shown() { return Boolean(this.drawing); }
-  value(x = this.model.x) { return this.vector.rows.map((row) => x[row]); }
+  value() { return this.model.read({ table: "state", ...this.vector }); }
 
   /* The least energy at a direction, over momenta with the product that the motion keeps. */
   potential(direction, length, kept) {
@@ -130,9 +130,10 @@ class SpherePanel {
       drawing.line(ring, () => [...GREEN, 1], 3);
     }
     drawing.draw("sphere", [1, 0, 0, 0], at, [0.062, 0.062, 0.062], this.tint);
+    if (this.vector.round) drawing.draw("sphere", [1, 0, 0, 0], at, [0.12, 0.12, 0.12], this.tint, { glass: 1 }); // a hand may take it
     labels.unshift({ text: this.name, at, kind: this.tint === RED ? "red" : this.tint === GREEN ? "green" : "blue", behind: this.hides(at) });
   }
-  names() { return this.vector ? scene.tables.state.flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components; }
+  names() { return this.vector ? scene.tables[this.vector.table || "state"].flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components; }
   /* The least time so far in which the vector goes as far as its length. */
   pace() {
     const w = this.value(), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
@@ -264,6 +265,7 @@ class DriftStrip {
       row.className = "drift";
       nameOn(name, each.name);
       if (each.rows.length > 1) { name.prepend("|"); name.append("|"); }
+      row.title = each.doc;
       name.classList.add("name");
       value.className = error.className = "value";
       canvas.setAttribute("aria-hidden", "true");
@@ -280,8 +282,8 @@ class DriftStrip {
       if (row.past.length > 240) row.past.shift();
       if (!telling) return;
       const values = each.rows.map((r) => this.model.y[r]);
-      const now = values.length === 1 ? values[0] : Math.hypot(...values);
-      row.value.textContent = `${shorten(now)}${unitText(each.unit)}`;
+      const now = values.length === 1 ? values[0] : Math.hypot(...values), zero = Math.max(...each.first.map(Math.abs), Math.abs(now)) < 1e-12; // of sums that cancel
+      row.value.textContent = `${shorten(zero ? 0 : now)}${unitText(each.unit)}`;
       row.error.textContent = tellDrift(drift);
       const [pen, wide, high] = fitCanvas(row.canvas);
       pen.strokeStyle = theme.inks[k % theme.inks.length];
@@ -292,8 +294,10 @@ class DriftStrip {
     });
   }
 }
-const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2) : Number(v.toPrecision(4)).toString()).replaceAll("-", "\u2212");
-const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${d.toExponential(0).replace("-", "\u2212")}`);
+const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? tellPower(v, 2) : Number(v.toPrecision(4)).toString()).replaceAll("-", "\u2212");
+/* A number by its power of ten, as books write it. */
+const tellPower = (v, digits) => { const [own, power] = v.toExponential(digits).split("e"); return `${own}\u00d710${[...power.replace("+", "")].map((c) => HIGH[c]).join("")}`; };
+const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${tellPower(d, 0)}`);
 const HIGH = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
 const LOW = ["\u2080", "\u2081", "\u2082", "\u2083", "\u2084", "\u2085", "\u2086", "\u2087", "\u2088", "\u2089"];
 const raise = (text) => text.replace(/\^(-?\d+)/g, (_, digits) => [...digits].map((c) => HIGH[c]).join(""));

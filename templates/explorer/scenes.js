@@ -24,9 +24,11 @@ class Scene {
   clear() { this.trails = {}; }
   follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
   label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
-  /* Where a ray meets the plane through a point that faces the eye; of particles in a plane, that plane. */
-  meet(at, x, y, flat) {
-    const { drawing } = this, facing = flat ? E[2] : unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
+  /* The name of an arrow, past its tip. */
+  nameArrow(text, from, tip, kind) { this.label(text, plus(tip, scaled(0.06, minus(tip, from))), kind); }
+  /* Where a ray meets the plane through a point with a normal; by default that plane faces the eye. */
+  meet(at, x, y, normal) {
+    const { drawing } = this, facing = normal || unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
     return plus(drawing.eye, scaled(dot(minus(at, drawing.eye), facing) / dot(d, facing), d));
   }
   turnable() { return false; }
@@ -85,7 +87,7 @@ class BodyScene extends Scene {
       this.sizes = scaled(0.94 / out, this.sizes); // corners within the ellipsoid
     }
     this.below = this.weighs ? -Math.max(1.5, norm(this.arm) + 1.05 * Math.hypot(...this.sizes)) : -1.5;
-    this.camera.distance = this.weighs ? 7.6 : scene.moving ? 7.5 : 5;
+    this.camera.distance = this.weighs ? 7.6 : scene.moving ? (scene.pushing && !this.model.u.length ? 8.8 : 7.5) : 5;
     this.camera.target = [0, 0, this.weighs ? -0.1 : 0]; // tips of arrows stand above what weighs
   }
   moving() { if (this.model.u.length) return; this.shape(); }
@@ -167,28 +169,28 @@ class BodyScene extends Scene {
     if (size > 1e-9) {
       const tip = plus(at, rotate(q, scaled(far / size, w)));
       drawing.arrow(at, tip, GREEN, 0.022);
-      this.label(scene.turning.name, tip, "green");
+      this.nameArrow(scene.turning.name, at, tip, "green");
     }
     if (scene.vertical && !model.u.length) { // the point on the sphere is this direction, seen from the body
       const along = rotate(q, unit(model.read(scene.vertical))), tip = plus(at, scaled(far, along));
       drawing.arrow(at, tip, BLUE, 0.014);
-      this.label(scene.vertical.name, tip, "blue");
+      this.nameArrow(scene.vertical.name, at, tip, "blue");
     }
     const momentum = scene.spinning && scene.spinning.table === "state" ? model.read(scene.spinning) : [0, 0, 0];
     if (norm(momentum) > 1e-9) {
       const m = unit(momentum), long = this.rolls ? dot(m, this.contact()) : 1.15 * far, tip = plus(at, rotate(q, scaled(long, m)));
       drawing.arrow(at, tip, RED, 0.022);
-      this.label(scene.spinning.name, tip, "red");
+      this.nameArrow(scene.spinning.name, at, tip, "red");
     }
     if (scene.moving && !model.u.length && norm(model.read(scene.moving)) > 1e-9) {
       const tip = plus(at, rotate(q, scaled(1.5, unit(model.read(scene.moving)))));
       drawing.arrow(at, tip, VIOLET, 0.022);
-      this.label(scene.moving.name, tip, "violet");
+      this.nameArrow(scene.moving.name, at, tip, "violet");
     }
     if (scene.pushing && scene.pushing.table === "state" && !scene.vertical && !model.u.length && norm(model.read(scene.pushing)) > 1e-9) {
       const tip = plus(at, rotate(q, scaled(1.7, unit(model.read(scene.pushing)))));
       drawing.arrow(at, tip, BLUE, 0.022);
-      this.label(scene.pushing.name, tip, "blue");
+      this.nameArrow(scene.pushing.name, at, tip, "blue");
     }
   }
   turnable() { return true; }
@@ -248,14 +250,14 @@ class RollingScene extends Scene {
     if (scene.vertical) {
       const tip = plus(at, [0, 0, 1.35 * size]);
       drawing.arrow(at, tip, BLUE, 0.012 * size);
-      this.label(scene.vertical.name, tip, "blue");
+      this.nameArrow(scene.vertical.name, at, tip, "blue");
     }
     const w = model.read(scene.turning);
     if (norm(w) > 1e-9) {
       const along = rotate(q, scaled(1.5 * size / norm(w), w)), under = at[2] + along[2] < 0; // else it would end below the floor
       const from = under ? minus(at, scaled(0.85, along)) : at, tip = under ? minus(at, scaled(0.25, along)) : plus(at, along);
       drawing.arrow(from, tip, GREEN, 0.018 * size);
-      this.label(scene.turning.name, under ? from : tip, "green");
+      this.nameArrow(scene.turning.name, under ? tip : from, under ? from : tip, "green");
     }
   }
   /* The trace of the contact, at every step. */
@@ -284,6 +286,9 @@ class ParticleScene extends Scene {
     this.hint = "Drag a particle or the tip of its velocity, the space around them to look";
     this.camera.pitch = 0.5;
     this.extent = Math.max(...this.positions().map(norm), 0.5);
+    const known = new Map(scene.tables.state.map((each) => [each.name, each])); // lengths one without a unit are directions
+    this.directions = scene.places.every((each, k) => known.get(each.name)?.units[0] === "1" && Math.abs(norm(this.positions()[k]) - 1) < 1e-9);
+    if (this.directions) this.hint = "Directions are points of a sphere: drag one or the tip of its rate, the space around them to look";
     this.camera.distance = 6.5 * this.extent;
     this.central = this.isCentral();
   }
@@ -300,11 +305,13 @@ class ParticleScene extends Scene {
   positions() { return scene.places.map((each) => { const r = this.model.read(each); return r.length === 2 ? [...r, 0] : r; }); }
   draw(theme) {
     const { drawing, extent } = this, points = this.positions();
-    const far = Math.max(...points.map(norm));
-    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 4 ? 1 : 0);
+    const far = Math.max(...points.map(norm)) + 0.4 * extent; // an arrow's length
+    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 3.6 ? 1 : 0);
     drawing.floor(0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
     drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
+    if (this.directions) drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [1, 1, 1], [...(theme.dark ? theme.steel : theme.body), 0.4], { glass: 1 });
     points.forEach((at, k) => {
+      if (this.directions) drawing.draw("tube", turnOnto(E[2], at), [0, 0, 0], [0.015, 0.015, norm(at)], theme.steel);
       const tint = [BLUE, RED, GREEN][k % 3], trail = this.trail(k);
       trail.add(at, 0.01 * extent);
       drawing.line(trail.points, fade(tint), 2.5);
@@ -315,7 +322,7 @@ class ParticleScene extends Scene {
       if (speed) {
         const v = this.model.read(speed), tip = plus(at, scaled(0.5 * extent / (this.fast ||= norm([...v, 0])), v.length === 2 ? [...v, 0] : v));
         drawing.arrow(at, tip, GREEN, 0.014 * extent);
-        this.label(speed.name, tip, "green");
+        this.nameArrow(speed.name, at, tip, "green");
       }
     });
   }
@@ -331,11 +338,14 @@ class ParticleScene extends Scene {
     const found = this.positions().findIndex((p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 26; });
     return found < 0 ? null : { move: (a, b) => this.carry(found, a, b) };
   }
+  /* Of particles in a plane, its normal. */
+  flatOf(k) { return scene.places[k].rows.length === 2 ? E[2] : null; }
   carry(k, x, y) {
-    this.put(scene.places[k], this.meet(this.positions()[k], x, y, scene.places[k].rows.length === 2));
+    if (this.directions) this.put(scene.places[k], this.drawing.hit(x, y, [0, 0, 0], 1).direction);
+    else this.put(scene.places[k], this.meet(this.positions()[k], x, y, this.flatOf(k)));
   }
   aim(k, x, y) {
-    const from = this.positions()[k], to = this.meet(this.tip(k), x, y, scene.places[k].rows.length === 2);
+    const from = this.positions()[k], to = this.meet(this.tip(k), x, y, this.flatOf(k));
     this.put(scene.speeds[k], scaled(this.fast / (0.5 * this.extent), minus(to, from)));
   }
   put(variable, value) {
@@ -353,7 +363,7 @@ class PlanarScene extends Scene {
     this.camera.pitch = 0.75;
     if (scene.kind !== "planar") return;
     const wheels = this.wheels();
-    this.hint = wheels.length ? "Drag to look around; wheels stand where the constraints put them" : "Drag to look around";
+    this.hint = `Drag ${scene.angles.map((each) => (this.steers(each) ? "the wheels to steer" : "the golden bar to turn it")).concat("the floor to look around").join(", ")}`;
     this.size = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.1) * 1.25;
     this.camera.distance = 9 * this.size;
   }
@@ -403,6 +413,7 @@ class PlanarScene extends Scene {
     trail.add([at[0], at[1], 0.01 * size], 0.01 * size);
     drawing.line(trail.points, fade(ORANGE), 3);
     const long = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.5 * size);
+    this.knobs = [];
     drawing.draw("box", q, at, [long, 0.11 * size, 0.025 * size], theme.body);
     for (const wheel of wheels) {
       const turn = multiply(q, turnBy([0, 0, wheel.angle])), middle = plus(at, rotate(q, [wheel.at, 0, 0.06 * size]));
@@ -416,11 +427,37 @@ class PlanarScene extends Scene {
       const own = multiply(q, turnBy([0, 0, model.read(each)[0]])), high = plus(at, [0, 0, (0.2 + 0.1 * k) * size]);
       drawing.draw("tube", q, at, [0.04 * size, 0.04 * size, (0.2 + 0.1 * k) * size], theme.steel);
       drawing.draw("box", own, high, [0.55 * size, 0.06 * size, 0.04 * size], GOLD);
-      this.label(each.name, plus(high, rotate(own, [0.55 * size, 0, 0])), "orange");
+      const end = plus(high, rotate(own, [0.55 * size, 0, 0]));
+      this.label(each.name, end, "orange");
+      this.knob(each, high, end);
     });
     scene.angles.filter((each) => this.steers(each)).forEach((each) => {
-      if (wheels[0]) this.label(each.name, plus(at, rotate(q, [wheels[0].at, 0, 0.16 * size])));
+      if (!wheels[0]) return;
+      const middle = plus(at, rotate(q, [wheels[0].at, 0, 0.08 * size]));
+      this.label(each.name, plus(middle, [0, 0, 0.08 * size]));
+      this.knobs.push({ angle: each, at: middle });
     });
+  }
+  /* A knob at the end of something that turns with an angle about a pivot. */
+  knob(angle, pivot, end) {
+    this.knobs.push({ angle, pivot, at: end, frame: Math.atan2(end[1] - pivot[1], end[0] - pivot[0]) - this.model.read(angle)[0] });
+    this.drawing.draw("sphere", [1, 0, 0, 0], end, Array(3).fill(0.08 * this.size), ORANGE);
+  }
+  grab(x, y) {
+    const near = ({ at }) => { const s = this.drawing.project(at); return s.front && Math.hypot(s.x - x, s.y - y) < 26; };
+    const held = this.knobs?.find(near);
+    if (!held) return null;
+    const { angle, pivot, at, frame } = held;
+    let before = this.model.read(angle)[0], last = x;
+    return { move: (a, b) => {
+      if (pivot) { // the turn nearest to the one before
+        const to = minus(this.meet(at, a, b, E[2]), pivot), wanted = Math.atan2(to[1], to[0]) - frame;
+        before += Math.atan2(Math.sin(wanted - before), Math.cos(wanted - before));
+      } else { before += 0.012 * (a - last); last = a; }
+      this.model.write(angle, [before]);
+      this.model.ended = "";
+      this.model.measure();
+    } };
   }
   /* Whether the wheels turn with an angle. */
   steers(angle) {
@@ -438,11 +475,32 @@ class PlanarScene extends Scene {
 class FieldScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag to look around; the coloured curve is the field";
+    this.hint = "Drag the coloured curve, which is the field, to pull it; the space around it to look";
     this.camera.pitch = 0.5;
     this.camera.distance = 8.2;
     const values = this.curve();
-    this.scale = 1 / Math.max(...values.map((v) => Math.hypot(...v)), 1e-9);
+    const lengths = values.map((v) => Math.hypot(...v)), most = Math.max(...lengths, 1e-9);
+    this.scale = 1 / most;
+    this.length = values[0].length === 3 && Math.min(...lengths) > (1 - 1e-9) * most ? most : 0; // as of spins
+  }
+  grab(x, y) {
+    const away = (this.tips || []).map((p) => { const s = this.drawing.project(p); return s.front ? Math.hypot(s.x - x, s.y - y) : Infinity; });
+    const i = away.indexOf(Math.min(...away));
+    if (!(away[i] < 18)) return null;
+    let at = this.tips[i];
+    return { move: (a, b) => { const to = this.meet(at, a, b); this.pull(i, scaled(1 / (0.9 * this.scale), minus(to, at))); at = to; } };
+  }
+  /* Add a smooth bump about a point; vectors of one length keep it. */
+  pull(i, by) {
+    const { model } = this, size = scene.members, wide = size / 16;
+    this.curve().forEach((v, j) => {
+      const far = Math.min(Math.abs(i - j), size - Math.abs(i - j)) / wide, part = Math.exp(-far * far);
+      let now = v.length === 3 ? plus(v, scaled(part, by)) : [v[0] + part * by[2]];
+      if (this.length) now = scaled(this.length, unit(now));
+      scene.curve.forEach((block, k) => { model.x[block * size + j] = now[k]; });
+    });
+    model.ended = "";
+    model.measure();
   }
   curve() {
     const size = scene.members;
@@ -456,6 +514,7 @@ class FieldScene extends Scene {
       const along = v.length === 3 ? v : [0, 0, v[0]];
       tips.push(plus(base, scaled(0.9 * this.scale, along)));
     });
+    this.tips = tips;
     drawing.floor(-1.3, 6, 0.5, theme.floor, theme.line, [0, 0, 1.6], [0, 0]);
     drawing.line([...ring, ring[0]], () => [...theme.steel, 1], 4);
     const every = Math.max(1, Math.floor(count / 64));

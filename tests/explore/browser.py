@@ -109,9 +109,9 @@ class Page:
         """The picture of the window, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
 
-    def mouse(self, kind, x, y):
+    def mouse(self, kind, x, y, pressed=True):
         """One event of the mouse: ``mousePressed``, ``mouseMoved`` or ``mouseReleased``."""
-        button = {"button": "left", "buttons": 1, "clickCount": 1}
+        button = {"button": "left", "buttons": 1, "clickCount": 1} if pressed else {}
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
 
     def drag(self, start, end):

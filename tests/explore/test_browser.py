@@ -120,6 +120,63 @@ def test_nothing_is_wider_than_a_phone(page, pages, name):
     ) == "play"  # fmt: skip
 
 
+#: The scene's position of a point in space, in pixels of the window.
+SPOT = """(p => { const s = explorer.view.drawing.project(p),
+  b = document.getElementById('scene').getBoundingClientRect(); return [s.x + b.x, s.y + b.y] })"""
+
+ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
+
+
+@pytest.mark.parametrize(
+    ("name", "point", "value"),
+    [
+        ("roller_racer", "explorer.view.knobs[0].at", ANGLE),
+        ("snakeboard", "explorer.view.knobs[0].at", ANGLE),
+        ("peakons", "explorer.view.handles()[1]", "explorer.model.x[1]"),
+        ("heisenberg_lattice", "explorer.view.handles()[3]", "explorer.model.x[48]"),
+        ("spin_chain", "explorer.view.tips[20]", "explorer.model.x[20]"),
+        ("camassa_holm", "explorer.view.tips[40]", "explorer.model.x[40]"),
+    ],
+)  # fmt: skip
+def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
+    """A hand on an angle, a member, a spin or the curve of a field moves state and start."""
+    show(page, pages(name), calm=True)
+    at, before = page.run(f"{SPOT}({point})"), page.run(value)
+    page.mouse("mouseMoved", *at, pressed=False)
+    assert page.run("document.getElementById('scene').classList.contains('held')")
+    page.drag(at, [at[0] + 30, at[1] - 45])
+    after = page.run(value)
+    assert abs(after - before) > 1e-2
+    assert page.run("explorer.model.x.every(Number.isFinite)")
+    page.run("explorer.reset()")
+    assert page.run(value) == pytest.approx(after, abs=1e-9)
+    assert page.problems == []
+
+
+def test_a_raised_picture_is_met_where_it_is_drawn(page, pages):
+    """On a phone a ray through the place of a point on the canvas goes through that point."""
+    show(page, pages("kepler"), width=390, height=844, calm=True)
+    page.wait("explorer.view.drawing.raised > 0.02")
+    away = page.run("""(() => {
+      const { view } = explorer, pen = view.drawing, at = [0.3, -0.2, 0.4], s = pen.project(at);
+      const d = pen.ray(s.x, s.y);
+      return norm(cross(d, unit(minus(at, pen.eye))));
+    })()""")
+    assert away < 1e-9
+
+
+@pytest.mark.parametrize("name", ["relativistic_particle", "ball_in_sphere", "kepler"])
+def test_the_curve_of_a_velocity_is_that_of_the_velocity(page, pages, name):
+    """Whether a velocity is of the state or follows from it, its curve has its rows and names."""
+    show(page, pages(name), calm=True)
+    shown, wanted = page.run("[explorer.panel.value(), explorer.model.read(scene.speeds[0])]")
+    assert shown == wanted
+    assert page.run("explorer.panel.names()") == page.run(
+        "Object.values(scene.tables).flat().find(each => each.name === scene.speeds[0].name)"
+        ".components"
+    )
+
+
 def test_a_top_that_slides_is_a_ball_whose_contact_slips(page, pages):
     """The surface of the tippe top is the sphere of radius r about a point e from its centre."""
     show(page, pages("tippe_top"), calm=True)

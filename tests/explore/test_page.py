@@ -72,6 +72,16 @@ def test_a_page_runs_its_own_script_and_nothing_else(top):
     assert not re.search(r"<[^>]*\s(?:style|on\w+)=", page.split("<script>")[0])
 
 
+def test_no_formula_brings_a_style_that_the_policy_refuses(top):
+    """The larger dot of a rate, as this description has it, is an attribute of MathML."""
+    _, scene = top
+    strand = read_spec(derivations_folder() / "spin_chain.toml")
+    told = {**scene, "description": " ".join(strand.description.split())}
+    shown = assemble(told, "").split("<script>")[0]
+    assert 'mathsize="1.3em"' in shown
+    assert " style=" not in shown
+
+
 def test_a_page_asks_for_nothing(top):
     """Nothing in it loads a file, and no address of the network stands in it."""
     page, _ = top
