@@ -316,7 +316,7 @@ v = "f"
 def test_an_input_without_a_value_is_asked_for(run, folder):
     """In words of the command line, and what they say works."""
     (folder / "pushed.toml").write_text(PUSHED)
-    short = ("simulate", "pushed.toml", "--samples", "2", "--time", "0.1")
+    short = ("simulate", "pushed.toml", "--samples", "2", "--method", "scipy:RK45")
     refused = run(*short)
     assert refused.exit_code == 2
     assert "no default for the input f; expected a value. Write --input f=0," in refused.stderr

@@ -104,7 +104,8 @@ def test_a_spoiled_function_is_caught():
     [
         ("heavy_top", {"midpoint", "gauss", "coadjoint_mean", "spherical_midpoint", *GRADIENTS}),
         ("so5_body", {*ON_ORBITS, "isospectral_midpoint"}),
-        ("se2_pendulum", ON_ORBITS),
+        ("se2_pendulum", {*ON_ORBITS, "isospectral_midpoint"}),
+        ("heisenberg", ON_ORBITS),
         ("heavy_top_damped", {"midpoint", "gauss", *GRADIENTS}),
         ("euler_disk", {"midpoint", "gauss", *GRADIENTS}),
         ("suslov", {"midpoint", "gauss"}),

@@ -38,7 +38,7 @@ MATRIX = {
         "bloch_iserles_3",
         "isospectral_midpoint4",
         ("coadjoint_mean", "midpoint", "discrete_gradient"),
-        {"splitting": "whose bracket is not 0"},
+        {"splitting": "no single rational frequency"},
     ),
     "body in a quadratic potential": (
         "quadratic_potential_so4",

@@ -26,7 +26,7 @@ CHANGES = [
     (('[algebra]\nname = "so(3)"', ""), "the file", "algebra", 'name = "so(3)"'),
     # wrong types and values
     (('"Free rigid body"', "7"), "title", 7, "text in quotes"),
-    (("[claims]", "[constraints]\nc = 1\n[claims]"), "constraints.c", 1, "quotes or true or false"),
+    (("[claims]", "[constraints]\nc = 1\n[claims]"), "constraints.c", 1, "expected text in quotes"),
     (('"Free rigid body"', '"a\\u0007b"'), "title", "a\x07b", "printable"),
     (("positive = true", "positive = 1"), "parameters.I.positive", 1, "true or false"),
     (("shape = [3]", "shape = 3"), "parameters.I.shape", 3, "a list"),

@@ -23,6 +23,7 @@ from coadjoint.spec.core.faults import did_you_mean, find_near, list_names
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.positions import KeyPath, Span
 from coadjoint.spec.core.source import Source, join_faults, show_value
+from coadjoint.spec.kinds import VARIATIONAL
 from coadjoint.spec.schema import Head, SpecFile
 
 #: Faults that one message shows at the most; each takes three rows of a screen.
@@ -149,8 +150,10 @@ def _fault(
         return source.at_key(present, problem, str(path[-1]), expected, hint)
     if kind == "extra_forbidden":
         return _unknown_key(source, path)
-    expected, given = _describe_expected(detail), detail["input"]
-    expected = " or ".join(dict.fromkeys((expected, *map(_describe_expected, others))))
+    given, kinds = detail["input"], [_describe_expected(each) for each in (detail, *others)]
+    if present[:-1] == ("constraints",):  # one key there is no equation
+        kinds = [_KINDS["bool_type" if present[-1] == VARIATIONAL else "string_type"]]
+    expected = " or ".join(dict.fromkeys(kinds))
     literal = kind == "literal_error" and isinstance(given, str)
     limit = next(iter(_LIMIT.findall(expected)), "")
     return source.fault(
@@ -168,7 +171,7 @@ def _fault(
 
 def _advise(path: KeyPath, given: Any) -> str:
     """What to write in the place of a list of texts in a table of named ones."""
-    if path[:1] != ("constraints",) or not isinstance(given, list):
+    if path[:-1] != ("constraints",) or not isinstance(given, list):
         return ""
     return f"Write each equation under a name of its own, as {path[-1]}1 and {path[-1]}2."
 
