@@ -114,9 +114,25 @@ def derive_on(algebra):
     """A motion on the dual of an algebra, or a shipped one."""
     if algebra in SHIPPED:
         return emitted(algebra)
+    if algebra == ANTISYMMETRIC:
+        return derive(spec(algebra), "lie-poisson")
     return derive(spec(MOTION.replace("so(4)", algebra)), "lie-poisson")
 
 
+#: A body with an antisymmetric matrix that turns with it.
+ANTISYMMETRIC = """
+title = "A body with a matrix"
+routes = ["lie-poisson"]
+[algebra.matrices]
+E12 = [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]
+E13 = [[0, 0, 1], [0, 0, 0], [-1, 0, 0]]
+E23 = [[0, 0, 0], [0, 0, 1], [0, -1, 0]]
+[variables]
+M = { role = "momentum", form = "antisymmetric" }
+S = { role = "advected", representation = "adjoint", form = "antisymmetric" }
+[hamiltonian]
+h = "trace(transpose(M)*M)/4 + S12"
+"""
 #: Systems with the parameters that brackets have.
 SHIPPED = {
     "bloch_iserles_2": {"N12": 1.5},
@@ -216,7 +232,7 @@ def test_a_step_is_a_poisson_map_by_cayleys_transform(algebra):
     assert (defect > 1e-5) == (algebra in ("su(3)", "harmonics(3)", "sl(3,R)"))
 
 
-@pytest.mark.parametrize("system", ["se(3)", "se(2)", "g(3)", *SHIPPED])
+@pytest.mark.parametrize("system", ["se(3)", "se(2)", "g(3)", ANTISYMMETRIC, *SHIPPED])
 def test_a_step_is_a_poisson_map_where_traces_are_degenerate(system):
     """Or where elements are no matrices under the commutator; without the product it is none."""
     own = Step(system)

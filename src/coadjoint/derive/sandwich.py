@@ -112,17 +112,18 @@ def _list_matrices(equations: Equations) -> Sequence[SparseMatrix]:
     algebra, setting = equations.spec.algebra, equations.setting
     assert algebra is not None, equations.route
     own = algebra.elements if algebra.middle else algebra.matrices or find_planes(algebra)
-    advected = equations.spec.having_role("advected")
-    components = [name for each in advected for name in each.components]
-    if not components or not own:
-        return own if setting.momenta == setting.state else ()
-    rows, (form,) = size(own), {each.form for each in advected} if len(advected) == 1 else {""}
-    if setting.state != (*setting.momenta, *components) or advected[0].matrix_size != rows:
+    if setting.momenta == setting.state:
+        return own
+    advected, rows = equations.spec.having_role("advected"), size(own)
+    if len(advected) != 1 or advected[0].matrix_size != rows:
         return ()
-    half = Fraction(1, 2)
+    (S,), half = advected, Fraction(1, 2)
+    if setting.state != (*setting.momenta, *S.components):
+        return ()
+    other = half if S.form == "symmetric" else -half
     parts = [
-        {(i, i): 1} if i == j else {(i, j): half, (j, i): half if form == "symmetric" else -half}
-        for i, j in kept_places(rows, form)
+        {(i, i): 1} if i == j else {(i, j): half, (j, i): other}
+        for i, j in kept_places(rows, S.form)
     ]
     turns = [{**each, **shift(each, rows, rows)} for each in own]
     return [*turns, *(shift(each, 0, rows) for each in parts)]

@@ -10,7 +10,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import re
 from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final
@@ -70,7 +69,7 @@ def assemble(scene: Mapping[str, Any], kernel: str) -> str:
     style = (folder / "page.css").read_text(encoding="utf-8")
     return _environment().get_template("explorer/page.html.j2").render(
         scene=scene,
-        about=Markup(_style_nothing(set_text(scene["description"]))),  # noqa: S704 (ours, of a description that it escapes)
+        about=set_text(scene["description"]),
         script=Markup(script),  # noqa: S704 (our files, and a kernel that `refuse_unsafe` passed)
         style=Markup(style),  # noqa: S704 (our file)
         data=Markup(_escape_json(scene)),  # noqa: S704 (escaped for a script element)
@@ -94,15 +93,6 @@ def _hash(text: str) -> str:
 def _close_nothing(script: str) -> str:
     """A script in which nothing ends its element, or opens a comment of HTML."""
     return script.replace("</", "<\\/").replace("<!--", "<\\!--")
-
-
-def _style_nothing(text: str) -> str:
-    """Formulas without styles of their own, which the policy refuses: sizes as MathML has them.
-
-    >>> _style_nothing('<mo style="font-size: 1.3em">.</mo>')
-    '<mo mathsize="1.3em">.</mo>'
-    """
-    return re.sub(r' style="font-size: ([0-9.]+em)"', r' mathsize="\1"', str(text))
 
 
 def _escape_json(value: Any) -> str:
