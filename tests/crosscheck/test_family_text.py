@@ -44,8 +44,10 @@ SPOILED = [
     ("vortices", "solver.py", "for _m in range(1, _k)", "for _m in range(0, _k)"),
     ("vortices", "solver.c", "        return;", ""),
     ("vortices", "kernel.c", "_block->x[_l] = _at_x[", "_block->x[_l] = _at_y["),
-    ("vortices", "kernel.c", "= _block->x[_l + _s];", "= _block->x[_l];"),
-    ("vortices", "kernel.c", "= _block->x[_l + _s];", "= _block->y[_l + _s];"),
+    ("vortices", "kernel.c", "= _block->x[_s];", "= _block->x[_l];"),
+    ("vortices", "kernel.c", "= _block->x[_s];", "= _block->y[_s];"),
+    ("vortices", "kernel.c", "_term0[_l] = _out0[_l];", "_term0[_l] = _out1[_l];"),
+    ("vortices", "kernel.c", "_out0[_l] = _term0[_l];", "_out0[_l] = _term1[_l];"),
     ("vortices", "kernel.c", "double x_j = _at_x_j[_l];", "double x_j = _one_x_j;"),
     ("vortices", "kernel.c", "_parts[0][_s][_l] += _value0", "_parts[0][_s][_l] += _value1"),
     ("vortices", "kernel.c", "_term0[_l] += _value2", "_term0[_l] += _value0"),
@@ -103,10 +105,11 @@ def test_a_text_beyond_the_parts_is_that_of_the_template(rendered):
 WRONG_LOOPS = [
     ("kernel.py", "np.delete(i, one)", "np.roll(i, one)[1:]", 4),
     ("kernel.py", "i[:whole] % LANES != place", "i[:whole] % LANES > place", 4),
-    ("kernel.py", "np.roll(np.add.accumulate(lanes, axis=0)[-1], s,", "np.roll(lanes[-1], s,", 4),
+    ("kernel.py", "in np.add.accumulate(lanes, axis=0)[-1]:", "in lanes[-1]:", 4),
+    ("kernel.py", "in np.add.accumulate(lanes, axis=0)[-1]:", "in lanes.sum(axis=1):", 5),
     ("kernel.py", "row[last:whole] += other", "row[last:whole] -= other", 4),
     ("kernel.py", "in range(whole, size):", "in range(whole, min(size, FEWEST)):", 4),
-    ("kernel_python.py", "place = (j + s) % LANES", "place = (j - s) % LANES", 5),
+    ("kernel_python.py", "_add(parts, j % LANES,", "_add(parts, (j + s) % LANES,", 5),
     ("kernel_python.py", "if size < FEWEST", "if size < LANES", 5),
 ]
 
@@ -154,9 +157,9 @@ def test_the_ladder_sees_wrong_series(rendered, name, old, new):
 #: Loops of C: how a line of them is spoiled.
 WRONG_C = [
     ("_j = _run.i + LANES; _j < _whole", "_j = _run.i + 2 * LANES; _j < _whole"),
-    ("LANES - _s + _l]", "_s + _l]"),
-    ("_last + (_i + LANES - _s) % LANES", "_last + (_i + _s) % LANES"),
-    ("_j - _j % LANES + (_i + _j) % LANES", "_j"),
+    ("_sums[_k][_s] += _parts[_k][_s][_l]", "_sums[_k][_s] += _parts[_k][_s][LANES - 1 - _l]"),
+    ("_run, _last + _l, _whole", "_run, _last + LANES - 1 - _l, _whole"),
+    ("_other.i = 0; _other.i < _first", "_other.i = 1; _other.i < _first"),
 ]
 
 

@@ -437,3 +437,16 @@ def test_members_that_are_written_out_are_derived_for_the_size_that_is_chosen(tm
     assert outcome.exit_code == 0, outcome.output
     assert "for N = 4" in " ".join(outcome.output.split())
     assert CliRunner().invoke(main, [*given[:3], "i=x"]).exit_code == 2
+
+
+def test_fresh_kernels_are_compared_for_few_members():
+    """Of many pairs NumPy would take minutes; and few have blocks, whose faults are seen."""
+    texts = dict(pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts)
+    with load_texts(texts) as system:
+        assert [system.resize({"i": n}).probed.size for n in (9, 51, 100_000)] == [9, 51, 51]
+    right, wrong = "_j = _run.i + LANES; _j < _whole", "_j = _run.i + 2 * LANES; _j < _whole"
+    assert right in texts["kernel.c"]
+    texts["kernel.c"] = texts["kernel.c"].replace(right, wrong)
+    refused = pytest.raises(CrossCheckError, match="a wrong kernel was compiled")
+    with load_texts(texts) as system, refused:
+        system.resize({"i": 100_000}).find_kernel("c")

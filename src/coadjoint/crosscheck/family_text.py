@@ -43,7 +43,9 @@ _C_STRIDES = {
 _C_FIXED = {"_run.time + _run.n * _run.timed": "time", "_run.sizes": "sizes"}
 
 #: Lines of a tile that add terms to sums, and say where sums are.
-_C_ADDS = re.compile(r"_parts|_term\d+\[_l\] \+=|double \*const _term\d+ =")
+_C_ADDS = re.compile(
+    r"_parts|_term\d+\[_l\] (\+=|= _out)|_out\d+\[_l\] = _term|double \*const _out\d+ = .* \+ _j"
+)
 
 
 @dataclass
@@ -145,6 +147,8 @@ def _check_pairs(loops: Loops, text: str) -> int:
     part, count, name = loops.partners, loops.pair_sums, f"{loops.name}_partners"
     assert part is not None, loops.name
     pair, tile = _read_c(text, name, loops.name), _Text()
+    for own in ("take", "tile"):
+        _read_c_body(text, f"{loops.name}_{own}", tile, loops.name)
     chosen = [f"(_turned ? _value{count + k} : _value{k})" for k in range(count)]
     wanted = [
         f"_term{k}[_l] = _left_out ? _term{k}[_l] : _term{k}[_l] + {value}"
@@ -152,11 +156,11 @@ def _check_pairs(loops: Loops, text: str) -> int:
     ]
     if pair.adds != wanted:
         raise failure(f"kernel.c: {name} adds up {pair.adds}; expected {wanted}", loops.name)
-    for own in ("take", "tile"):
-        _read_c_body(text, f"{loops.name}_{own}", tile, loops.name)
-    wanted = [f"double *const _term{k} = _run.out + {k} * _run.size + _j" for k in range(count)]
+    wanted = [f"double *const _out{k} = _run.out + {k} * _run.size + _j" for k in range(count)]
+    wanted += [f"_term{k}[_l] = _out{k}[_l]" for k in range(count)]
     for k in range(count):
         wanted += [f"_parts[{k}][_s][_l] += _value{k}", f"_term{k}[_l] += _value{count + k}"]
+    wanted += [f"_out{k}[_l] = _term{k}[_l]" for k in range(count)]
     if tile.adds != wanted:
         raise failure(f"kernel.c: {name} of a tile add up {tile.adds}", loops.name)
     reads = {
@@ -255,10 +259,10 @@ def _read_c_body(text: str, part: str, read: _Text, name: str) -> None:
 
 
 def _read_c_lane(line: str, read: _Text, part: str, name: str) -> bool:
-    """A line of a tile that reads a name in its lanes, or keeps it twice in a row."""
-    kept = re.fullmatch(r"_block->(\w+)\[_l\] = _at_(\w+)\[_l % LANES\]", line)
+    """A line of a tile that reads a name in its lanes, or keeps it of a block."""
+    kept = re.fullmatch(r"_block->(\w+)\[_l\] = _at_(\w+)\[_l\]", line)
     found = re.fullmatch(
-        r"const double (\w+) = _(?:(block)->(\w+)\[_l \+ _s\]|(at)_(\w+)\[_l\]|(one)_(\w+))", line
+        r"const double (\w+) = _(?:(block)->(\w+)\[_s\]|(at)_(\w+)\[_l\]|(one)_(\w+))", line
     )
     if found:
         read.steps[found[1]] = found[2] or found[4] or found[6]

@@ -7,12 +7,11 @@ have one loop for any number of members.
 Sums have a stated order, the same in every target (docs/decisions/family-kernels.md). Blocks are
 `LANES` members, from 0 on; the rest are those behind the last whole block, and all if they are less
 than `FEWEST`. The sum over the partners of a member of a block goes through its own block in order;
-the blocks before it, in each of which the partner with the member's own place comes first, then
-those after it, round the block; the blocks behind it, in `LANES` sums, of which sum s has the
-partner s places before the member's own place, round the block, of each block, and which are added
-in order; the rest. The sum of a member of the rest goes through all partners from 0 on. A sum over
-members, or over pairs by their first member, has `LANES` parts: part l adds up the members l,
-l + LANES, l + 2 LANES and so on, and then the parts are added up in order. All begin with 0.0.
+the blocks before it in order; the blocks behind it, in `LANES` sums, of which sum l has the partner
+l of each block, and which are added in order; the rest. The sum of a member of the rest goes
+through all partners from 0 on. A sum over members, or over pairs by their first member, has `LANES`
+parts: part l adds up the members l, l + LANES, l + 2 LANES and so on, and then the parts are added
+up in order. All begin with 0.0.
 
 The terms of a pair are computed together: those of member i, then those of member j. Where both lie
 in whole blocks that differ, i is the one of the first of them. Else each member is member i once,

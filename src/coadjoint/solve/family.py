@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import count
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Self
 
@@ -40,6 +41,8 @@ ROW_BYTES: Final = 1000
 BY_WAVES: Final = ("rhs", "energy", "observables")
 #: The largest part of the memory of a machine that a System may take.
 SHARE: Final = 0.5
+#: Members with which fresh objects are compared: some blocks, and some behind the last.
+PROBED: Final = 51
 
 
 class FamilySystem(System):
@@ -203,6 +206,18 @@ class FamilySystem(System):
         from coadjoint.render.targets.modules import KernelModule
 
         return KernelModule(self, "solver.py")
+
+    @property
+    def probed(self) -> FamilySystem:
+        """Itself with few members, with which fresh objects are compared: texts know no number.
+
+        Pairs of thousands of members would take NumPy minutes.
+        """
+        sizes = (n for n in count(self.small) if self.index.allows(n))
+        few = next(n for n in sizes if self.index.count_members(n) >= PROBED)
+        if self.size <= self.index.count_members(few):
+            return self
+        return self.resize({self.index.name: few})
 
     def find_kernel(self, target: str) -> Kernel:
         """The kernel of a target itself.

@@ -150,6 +150,11 @@ class System(Functions):
 
     # -- functions --------------------------------------------------------------------------------
 
+    @property
+    def probed(self) -> System:
+        """What fresh objects are compared with: itself, but for loops over many members."""
+        return self
+
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
         match KERNEL_FUNCTIONS[function].below:

@@ -40,6 +40,11 @@ class Generated(Protocol):
         """Arrays that every function takes beyond these, by name."""
         ...
 
+    @property
+    def probed(self) -> Generated:
+        """What fresh objects are compared with; of few members where texts are those of any."""
+        ...
+
     def sizes(self, function: str) -> Mapping[str, int]:
         """How many rows each array has that a function takes."""
         ...

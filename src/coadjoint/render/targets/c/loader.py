@@ -32,7 +32,7 @@ FLAGS: Final = {"c": "exact", "c-fast": "fast"}
 CHUNK = 1 << 22
 #: Points at which a fresh library is compared with the NumPy kernel: once so few and odd that the
 #: last of them fill no vector register, once so many that results are aligned to such registers.
-PROBES = (17, 72)
+PROBES = (1, 17, 72)
 #: Largest relative difference of a fresh library where bits are not promised: fused operations and
 #: other libraries' functions differ by roundings, a wrong kernel by much more.
 ROUNDINGS = 1e-9
@@ -135,7 +135,7 @@ def _verify(
         CrossCheckError: They differ.
         OutputError: The NumPy kernel does not run.
     """
-    for function, call in _probes(system, functions):
+    for function, call in _probes(system.probed, functions):
         expected = reference().values(function, call)
         for piece in _calls(library, function, call):
             piece()
