@@ -350,7 +350,7 @@ _ENTRIES: Final = (
         file="average_gradient",
         order=2,
         needs=ACTION,
-        keeps=f"{_BALANCE}, of energies that are polynomials of degree 8 at the most",
+        keeps=f"{_BALANCE}, of energies that are polynomials of degree 10 at the most",
         theorem=f"{_TENSOR}, by the mean of the gradient along the step (E. Celledoni et al., "
         "Journal of Computational Physics 231 (2012) 6770)",
         expects=_TENSORS,

@@ -82,7 +82,7 @@ def test_facts_are_those_of_the_book(name, expected):
     [
         ("rigid_body", "spherical_midpoint"),
         ("heavy_top", "splitting4"),
-        ("galilei", "coadjoint_mean"),
+        ("galilei", "isospectral_midpoint4"),
         ("kepler", "splitting4"),
         ("c3_oscillators", "gauss4"),
         ("nambu_body", "midpoint"),
@@ -131,7 +131,7 @@ def test_what_discrete_gradients_keep():
     _, disk = judge_shipped("euler_disk")
     assert disk["discrete_gradient"].exactly == ("energy",)
     assert disk["average_gradient"].exactly == ()
-    assert "not seen to be a polynomial of degree 8" in disk["average_gradient"].decides
+    assert "not seen to be a polynomial of degree 10" in disk["average_gradient"].decides
     _, bodies = judge_shipped("complex_rigid_body")
     quadratic = {each.name for each in judge_shipped("complex_rigid_body")[0].integrals
                  if each.is_casimir and each.degree == 2}  # fmt: skip
@@ -240,10 +240,10 @@ RUNS = {
     "galilei": (galilei, np.linspace(0.2, 0.9, galilei.system.STATE.size), None),
     "suslov": (suslov, [0.429, -0.084, 0.0], None),
 }
-#: Steps of 0.1; an integral that is not kept is missed by more after so many.
+#: An integral that is not kept is missed by more after so many steps.
 STEPS, ROUNDING = 24, 1e-12
-#: Energies that the mean of a gradient misses by little: they are no polynomials.
-MISSED = {("kepler", "average_gradient"): 2e-12}
+#: Energies that the mean of a gradient misses by little, of longer steps: they are no polynomials.
+LONGER = {("kepler", "average_gradient"): 0.25}
 
 
 @pytest.mark.parametrize(
@@ -256,16 +256,17 @@ def test_what_is_kept_exactly_stays_on_runs(name):
     assert {each.name for each in methods} >= {"midpoint", "midpoint4", "gauss4"}
     compared = 0
     for method in methods:
-        span = (0, 0.125 * STEPS)
+        step = LONGER.get((name, method.name), 0.125)
+        span = (0, step * STEPS)
         run = system.simulate(
-            start, span, parameters, method=method.name, step=0.125, samples=41, target="numpy"
+            start, span, parameters, method=method.name, step=step, samples=41, target="numpy"
         )
         assert run.status == "OK", method.name
         assert {*method.exactly, *method.nearly} == {*run.drift}
         for integral in method.exactly:
             assert run.drift[integral] < ROUNDING, (method.name, integral)
         for integral in method.nearly if method.order == 2 else ():
-            least = MISSED.get((name, method.name), 1e-9)
+            least = 1e-9 if step == 0.125 else 2e-12
             assert run.drift[integral] > least, (method.name, integral)
         compared += len(run.drift)
     assert compared >= len(methods)

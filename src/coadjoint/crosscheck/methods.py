@@ -295,7 +295,7 @@ def _follow_gradients(
 def _find_factor(slope: Row, excess: Row, chord: Row, change: Any, number: Number) -> Any:
     """c, by which the chord is multiplied for what gradients along it miss of a change.
 
-    Gradients are means by Gauss's formula of four nodes (Abramowitz and Stegun, table 25.4).
+    Gradients are means by Gauss's formula of five nodes (Abramowitz and Stegun, table 25.4).
     """
     missing, square = change, number(Fraction(0))
     for a, b, step in zip(slope, excess, chord, strict=True):
@@ -317,10 +317,10 @@ def _has_settled(last: Row, following: Row) -> bool:
 SETTLED: Final = Decimal("1e-32")
 #: Terms of the series of a coadjoint action.
 MEAN_TERMS: Final = 30
-#: Gauss's formula with four nodes on (0, 1): nodes below 1/2, and their weights.
+#: Gauss's formula with five nodes on (0, 1): nodes below 1/2, and their weights.
 NODES: Final = (
-    (0.5 - 0.861136311594052575224 / 2, 0.347854845137453857373 / 2),
-    (0.5 - 0.339981043584856264803 / 2, 0.652145154862546142627 / 2),
+    (0.5 - 0.906179845938663992798 / 2, 0.236926885056189087514 / 2),
+    (0.5 - 0.538469310105683091036 / 2, 0.478628670499366468041 / 2),
 )
 
 

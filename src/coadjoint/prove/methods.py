@@ -37,8 +37,8 @@ from coadjoint.render.solvers import describe_structured, select_programs
 
 #: Evaluations of the rates that an implicit equation takes for each stage, about.
 SWEEPS: Final = "about a dozen sweeps"
-#: The degree up to which the mean of a gradient is exact: Gauss's formula has four nodes.
-MEAN_DEGREE: Final = 8
+#: The degree up to which the mean of a gradient is exact: Gauss's formula has five nodes.
+MEAN_DEGREE: Final = 10
 #: Why a motion whose rates have corners or jumps has none of them.
 KINKED: Final = "its rates have kinks, at which explicit methods end their steps"
 #: Why a metriplectic motion has no discrete gradient of the energy alone.

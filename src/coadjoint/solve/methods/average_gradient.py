@@ -6,9 +6,9 @@ antisymmetric, so ``H(y) - H(x) = h g.f(m)``; it need not fulfil Jacobi's identi
 are ``J(m) dH(m) + f(m)``, so that the step follows from them and from ``J(m) (g - dH(m))``. Without
 forces a function C of degree 2 at the most with ``J dC = 0`` changes by ``dC(m).(y - x) = 0``.
 R. I. McLachlan, G. R. W. Quispel and N. Robidoux, Philosophical Transactions A 357 (1999) 1021.
-Here g is the mean of the gradient along the chord, by Gauss's formula with four nodes: a discrete
-gradient of polynomials up to degree 8 (E. Celledoni et al., Journal of Computational Physics 231
-(2012) 6770).
+Here g is the mean of the gradient along the chord, by Gauss's formula with five nodes: a discrete
+gradient of polynomials up to degree 10 (E. Celledoni et al., Journal of Computational Physics 231
+(2012) 6770). The fifth node is the middle, whose gradient is there at any rate.
 Comes in: where members are. Goes out: the middle of a step by sweeps, and its chord.
 Read next: `coadjoint.solve.methods.discrete_gradient`, for any energy.
 """
@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from coadjoint.solve.methods.gauss import TABLEAUS
 from coadjoint.solve.methods.lie_poisson import Arc, Gradient, LiePoisson, Sweep
 
 if TYPE_CHECKING:
@@ -31,10 +30,12 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_OUTER, _INNER = TABLEAUS[8].nodes[:2]
-_WEIGHT: Final = TABLEAUS[8].lengths[0]
-#: Nodes between the ends and their weights, of those nearer to the start.
-NODES: Final = ((_OUTER, _WEIGHT), (_INNER, 0.5 - _WEIGHT))
+#: Nodes between the ends and their weights, of those nearer to the start: 1/2 - sqrt(5 +- 2
+#: sqrt(10/7))/6 and (322 -+ 13 sqrt(70))/1800. The middle has the rest.
+NODES: Final = (
+    (0.046910077030668004, 0.11846344252809454),
+    (0.23076534494715845, 0.23931433524968324),
+)
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> AverageGradient:
