@@ -52,6 +52,23 @@ def test_a_plane_keeps_energy_and_enstrophy_to_rounding():
     assert np.abs(run["C"] - run["C"][0]).max() > 1e-6
 
 
+@pytest.mark.parametrize("order", [2, 4, 6])
+def test_a_plane_has_gausses_methods(order):
+    """Errors fall by their order, and the energy and the enstrophy stay; a tenth of a turn."""
+    system = euler_2d.system.resize({"x": 8, "y": 8})
+    x, y = np.meshgrid(*[np.arange(8) * np.pi / 4] * 2, indexing="ij")
+    w = np.cos(x) + np.sin(y) + 0.5 * np.cos(x + y) + 0.3 * np.sin(2 * y)
+    name = {2: "midpoint"}.get(order, f"gauss{order}")
+    given = {"rtol": 1e-13, "atol": 1e-14, "method": "scipy:DOP853"}
+    known = system.simulate({"w": w}, (0, 2), samples=2, **given).state[:, -1]
+    errors = []
+    for step in (0.4, 0.2):
+        run = system.simulate({"w": w}, (0, 2), samples=2, method=name, step=step)
+        assert max(run.drift.values()) < 1e-14, run.drift
+        errors.append(np.abs(run.state[:, -1] - known).max())
+    assert abs(np.log2(errors[0] / errors[1]) - order) < 0.2, errors
+
+
 def test_errors_fall_with_the_square_of_the_step():
     """Against SciPy's method of order 8."""
     system, _ = chain()

@@ -259,16 +259,18 @@ def judge_family(
 
 
 def _judge_plane(judged: JudgedMethod, kept: Sequence[str]) -> JudgedMethod:
-    """The midpoint of a plane keeps what truncated series do, all of which is quadratic."""
-    if judged.name != "midpoint":
+    """Gauss's methods of a plane keep what truncated series do, all of which is quadratic."""
+    method = STRUCTURED.get(judged.name)
+    if method is None or (method.name != "midpoint" and method.file != "gauss"):
         return judged
+    searched = "one midpoint" if method.stages == 1 else f"{method.stages} stages"
     return JudgedMethod(
         name=judged.name,
-        order=judged.order,
+        order=method.order,
         exactly=tuple(kept),
         decides=f"{', '.join(kept)} are quadratic, and kept by truncated series",
-        cost=f"{SWEEPS} of one midpoint",
-        rank=1,
+        cost=f"{SWEEPS} of {searched}",
+        rank=int(method.stages == 1),
     )
 
 

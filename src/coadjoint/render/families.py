@@ -578,7 +578,8 @@ def _declare_driving(context: FamilyContext) -> dict[str, list[list[str]]]:
 def describe_steps(context: FamilyContext) -> dict[str, Any]:
     """What the solver in C reads of methods that keep structure."""
     every = {**STRUCTURED, **MAPPED}
-    own = [every[each.name] for each in context.methods]
+    led_by_python = context.torus is not None
+    own = [] if led_by_python else [every[each.name] for each in context.methods]
     implicit = [each for each in own if each.name in STRUCTURED]
     schedules = list_schedules(("flow1", "flow2"))
     flows = {"flow1": 0, "flow2": 1}
