@@ -8,7 +8,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import wave_gauss
 from coadjoint.solve.stiff_waves import StiffWaves
-from coadjoint.solve.wave_gauss import WaveGauss
+from coadjoint.solve.wave_gauss import Made, WaveGauss
 from coadjoint.systems import camassa_holm, euler_2d, kdv, spin_chain, spin_chain_chiral
 from tests.fields import cnoidal_wave, precessing_wave
 
@@ -78,6 +78,23 @@ def test_errors_fall_with_the_square_of_the_step():
         for h in (0.05, 0.025)
     ]
     assert abs(np.log2(errors[0] / errors[1]) - 2) < 0.05
+
+
+def test_runs_count_their_steps_and_sweeps():
+    """Of a linear rate by hand: sweeps of y' = -y/10 by steps of 1 gain a factor 1/20 each."""
+    made = Made()
+    solver = WaveGauss(lambda _, y: -0.1 * y, 0.0, np.ones(1), 3.0, step=1.0, made=made)
+    while solver.status == "running":
+        assert solver.step() is None
+    np.testing.assert_allclose(solver.y, (0.95 / 1.05) ** 3, rtol=1e-15)
+    least = int(np.ceil(np.log(2.0**-53) / np.log(1 / 20)))
+    assert made.steps == 3
+    assert 3 * least <= made.sweeps <= 3 * (least + 3)
+    system, _ = chain()
+    run = system.simulate(start(), (0, 0.2), step=0.02, **OPTIONS)
+    assert run.steps == 10
+    assert 30 <= run.sweeps <= 500
+    assert system.simulate(start(), (0, 0.2), **OPTIONS).sweeps is None
 
 
 def test_paths_between_steps_are_cubics():

@@ -6,6 +6,7 @@ which checks what was asked for, and `coadjoint.solve.generated`.
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
     from coadjoint.solve.system import System
+    from coadjoint.solve.wave_gauss import Made
 
     Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
@@ -271,7 +273,11 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
     options = {"jac": _make_slopes(system, packed, target, driving)} if with_slopes else {}
-    direct = _find_direction(system, packed) if name in _BY_WAVES else None
+    direct, made = None, None
+    if name in _BY_WAVES:
+        from coadjoint.solve.wave_gauss import Made  # by SciPy, which takes its time
+
+        direct, made = _find_direction(system, packed), Made()
 
     def begin(time: float, state: Array, end: float) -> OdeSolver:
         import scipy.integrate  # which takes longer than a run of a generated solver
@@ -281,7 +287,8 @@ def _simulate_alone(system: System, request: Request) -> Solution:
             from coadjoint.solve.wave_gauss import WaveGauss
 
             length, order = request.step or 0.0, _BY_WAVES[name]
-            return WaveGauss(rates, time, state, end, step=length, order=order, direct=direct)
+            own: dict[str, Any] = {"step": length, "order": order, "direct": direct, "made": made}
+            return WaveGauss(rates, time, state, end, **own)
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
@@ -293,7 +300,7 @@ def _simulate_alone(system: System, request: Request) -> Solution:
     ending = trail.finish()
     if ending is not None:
         run = _cut_at_event(*run[:2], ending)
-    return _make_solution(system, packed, driving, run, request, trail)
+    return _make_solution(system, packed, driving, run, request, trail, made)
 
 
 def _find_direction(
@@ -329,6 +336,7 @@ def _make_solution(
     run: _Run,
     request: Request,
     trail: Trail | None = None,
+    made: Made | None = None,
 ) -> Solution:
     """The Solution of a run, the state apart from what was reconstructed below it."""
     times, states, status, reason = run
@@ -349,6 +357,9 @@ def _make_solution(
     followed = states[n:] if len(states) > n else None
     inputs = driving.over(times).get("inputs")
     by_waves = request.method in _BY_WAVES
+    counts: dict[str, Any] = (
+        {} if made is None else {k: np.asarray(n, np.uint64) for k, n in asdict(made).items()}
+    )
     course = Course(
         method=request.method,
         order=_BY_WAVES.get(request.method),
@@ -358,6 +369,7 @@ def _make_solution(
         chosen=request.chosen,
         projection=describe_projection(system, request.method),
         start=start,
+        **counts,
     )
     return Solution(
         system,

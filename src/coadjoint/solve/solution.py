@@ -131,7 +131,7 @@ class Solution:
 
     @property
     def steps(self) -> Any:
-        """Steps that were taken, of a batch an array; None where SciPy took them."""
+        """Steps that were taken, of a batch an array; None by methods of SciPy."""
         return None if self.course.steps is None else self.course.steps[()]
 
     @property

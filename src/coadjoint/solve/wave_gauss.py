@@ -21,6 +21,7 @@ Source:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -53,6 +54,19 @@ LONGER: Final = 1e-6
 FAILED: Final = f"{NOT_SOLVED}: its sweeps come no closer. Shorten steps."
 
 
+@dataclass
+class Made:
+    """What a run is made of, through all its stretches.
+
+    Attributes:
+        steps: Steps that were taken.
+        sweeps: Sweeps by which their equations were solved, those of a failed step too.
+    """
+
+    steps: int = 0
+    sweeps: int = 0
+
+
 class WaveGauss(OdeSolver):
     """Steps of one length.
 
@@ -65,6 +79,7 @@ class WaveGauss(OdeSolver):
         order: 2, 4, 6 or 8: twice as many as there are stages.
         direct: Of a state and h A, what takes what misses the equation of the stages to their
             corrections; None for plain sweeps.
+        made: Where steps and sweeps are counted; None for nowhere.
         given: What else SciPy's loop gives, which steps of one length do not look at.
     """
 
@@ -78,11 +93,12 @@ class WaveGauss(OdeSolver):
         step: float,
         order: int = 2,
         direct: Direct | None = None,
+        made: Made | None = None,
         **given: Any,
     ) -> None:
         super().__init__(rates, start, state, end, vectorized=False)
         self._length, self._start, self._count = step, start, 0
-        self._direct = direct
+        self._direct, self._made = direct, made or Made()
         self._matrix, weights = list_weights(order)
         self._nodes = self._matrix.sum(axis=1)
         self._factors = np.linalg.solve(self._matrix.T, weights)
@@ -102,6 +118,7 @@ class WaveGauss(OdeSolver):
         new = old + whole
         self._left_out = whole - (new - old)
         self._before, self.t, self.y = (self.t, old), end, new
+        self._made.steps += 1
         return True, None
 
     def _find_stages(self, old: Array, h: float) -> Array | None:
@@ -110,6 +127,7 @@ class WaveGauss(OdeSolver):
         correct = None if self._direct is None else self._direct(old, scaled)
         stages, nearest, vain = np.zeros((len(scaled), old.size)), np.inf, 0
         for _ in range(SWEEPS):
+            self._made.sweeps += 1
             missing = self._miss(old, stages, scaled, h)
             change = missing if correct is None else correct(missing)
             moved, again = float(np.abs(change).max()), stages + change
