@@ -28,7 +28,7 @@ from typing import Final
 
 import sympy
 
-from coadjoint.families import Family, Sum, Symbol, Total, Tree
+from coadjoint.families import Action, Family, Sum, Symbol, Total, Tree
 from coadjoint.lower.family_kinks import HeldFamily, hold_family
 from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
@@ -255,6 +255,8 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.of_members("energy_gradient", slopes))
         functions.append(lowering.of_members("bracket_vector", product, blocks=2))
         functions.append(lowering.of_members("sandwich", product, blocks=2))
+    if family.action is not None and held is None:
+        functions += [lowering.gradient(family.action), lowering.bracket(family.action)]
     return {each.name: lowering.complete(each) for each in functions}
 
 
@@ -342,6 +344,12 @@ class _Lowering:
             replace(read, name=naming.find(f"h_{read.name}"), blocks=read.blocks + below)
             for read in self._moving
         ]
+        #: The names of the vector that a bracket is applied to.
+        self._given: dict[Symbol, str] = {}
+        if family.action is not None:
+            below_of = {read.name: own.name for read, own in zip(self._moving, self._vector, strict=True)}
+            of = family.action.vector.items()
+            self._given = {own: below_of[self._reads[symbol].name] for symbol, own in of}
         #: The name of the other member of a pair, of each name that one of them has.
         self._others = self._pair_names()
 
@@ -410,6 +418,31 @@ class _Lowering:
             blocks=blocks or len(self.family.states),
             shape=None,
             member=self._part(name, trees, {}),
+        )
+
+    def gradient(self, action: Action) -> Loops:
+        """The derivatives of the energy by the components of each member."""
+        name, sums = "energy_gradient", {x.symbol: f"{SUM}{n}" for n, x in enumerate(action.pair_sums)}
+        terms = [each.term for each in action.pair_sums]
+        return Loops(
+            name=name,
+            wraps=self.family.wraps,
+            blocks=len(self.family.states),
+            shape=None,
+            partners=self._part(name, terms, sums, of_pair=True) if terms else None,
+            member=self._part(name, action.gradient, sums),
+            ends=tuple((end, self._part(name, rows, sums)) for end, rows in action.ends.items()),
+        )
+
+    def bracket(self, action: Action) -> Loops:
+        """The tensor times a vector, which stands below the state."""
+        name = "bracket_vector"
+        return Loops(
+            name=name,
+            wraps=self.family.wraps,
+            blocks=2 * len(self.family.states),
+            shape=None,
+            member=self._part(name, action.bracket, {}),
         )
 
     def kinks(self, held: HeldFamily) -> Loops:
@@ -506,7 +539,8 @@ class _Lowering:
     ) -> Part:
         """Trees as a Program, in the form that they have."""
         graph = Graph()
-        names = {symbol: read.name for symbol, read in self._reads.items()} | dict(sums)
+        names = {symbol: read.name for symbol, read in self._reads.items()}
+        names |= {**self._given, **sums}
         others = self._others if of_pair else {}
         values = list(Inserting(graph, names, self._own, trees, others).nodes())
         if slopes is not None:
