@@ -20,8 +20,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isqrt
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
+#: Parts of a sum over members, and members that are computed together where there are sums.
+LANES: Final = 8
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
 Symbol = Any
 Tree = Any

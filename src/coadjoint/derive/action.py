@@ -150,7 +150,7 @@ class _Terms:
             if alone is None:
                 return None
             parts += [alone, *(x.symbol for r, x in self.pair_sums.items() if r == row)]
-            found.append(sympy.Add(*parts))
+            found.append(sympy.Add(*map(sympy.factor_terms, parts)))
         return tuple(found)
 
     def _find_alone(self, row: sympy.Symbol, end: int | None) -> sympy.Expr | None:

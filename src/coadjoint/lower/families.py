@@ -28,15 +28,13 @@ from typing import Final
 
 import sympy
 
-from coadjoint.families import Action, Family, Sum, Symbol, Total, Tree
+from coadjoint.families import LANES, Action, Family, Sum, Symbol, Total, Tree
 from coadjoint.lower.family_kinks import HeldFamily, hold_family
 from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
 
-#: Parts of a sum over members, and members that are computed together where there are sums.
-LANES: Final = 8
 #: The fewest members that are taken in blocks: for less there is nothing to gain.
 FEWEST: Final = 5 * LANES
 #: What the names of sums begin with; their number follows.

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.families import (
+    LANES,
     Connection,
     Index,
     PrincipalSymbol,
@@ -25,7 +26,7 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.bands import find_bands
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
-from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
+from coadjoint.lower.families import FEWEST, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.methods import BY_ENERGY, MAPPED, STRUCTURED, JudgedMethod

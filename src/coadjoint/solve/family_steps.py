@@ -186,6 +186,7 @@ class FamilyTwin(StepwiseStepper):
             functions |= {"spheres": spheres, "bracket": self._bracket, "sandwich": self._sandwich}
             functions["gradient"] = partial(self._evaluate, ("energy_gradient",))
             functions["energy"] = partial(self._evaluate, ("energy",))
+            functions["members"] = family.size
             if choice.newton and family.series.has("BANDS"):
                 reach, wraps = family.series.value("BANDS")
                 functions["bands"] = Bands(family.size, reach, bool(wraps))

@@ -11,11 +11,13 @@ Read next: `coadjoint.solve.methods.average_gradient`, which says what steps kee
 
 from __future__ import annotations
 
+from math import sqrt
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from coadjoint.families import LANES
 from coadjoint.solve.methods.average_gradient import NODES, AverageGradient
 from coadjoint.solve.methods.lie_poisson import Arc, Gradient, Sweep
 
@@ -32,7 +34,9 @@ ROUNDINGS: Final = 2.0**-50
 #: that it is known by then, and its roundings would go on to move the step.
 NEAR: Final = 2.0**-40
 #: These numbers, as templates read them.
-GRADIENTS: Final = MappingProxyType({"NODES": NODES, "ROUNDINGS": ROUNDINGS, "NEAR": NEAR})
+GRADIENTS: Final = MappingProxyType(
+    {"NODES": NODES, "ROUNDINGS": ROUNDINGS, "NEAR": NEAR, "PARTS": LANES}
+)
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> DiscreteGradient:
@@ -44,7 +48,19 @@ def make(functions: Mapping[str, Any], size: float, order: int) -> DiscreteGradi
         bracket=functions["bracket"],
         size=size,
         order=order,
+        roundings=find_roundings(functions.get("members", 1)),
     )
+
+
+def find_roundings(members: int) -> float:
+    """`ROUNDINGS` of a sum over equal members, which kernels add up in so many parts as `LANES`.
+
+    They grow as a walk with steps to both sides.
+
+    >>> find_roundings(8) == ROUNDINGS, find_roundings(72) == 3 * ROUNDINGS
+    (True, True)
+    """
+    return ROUNDINGS * sqrt(max(1.0, members / LANES))
 
 
 class Corrected:
@@ -74,12 +90,13 @@ class DiscreteGradient(AverageGradient):
 
     Args:
         energy: The energy, ``(1, N)`` or ``(N,)``.
+        roundings: The part of its values that is no more than their roundings.
         given: As of `AverageGradient`.
     """
 
-    def __init__(self, *, energy: Gradient, **given: Any) -> None:
+    def __init__(self, *, energy: Gradient, roundings: float = ROUNDINGS, **given: Any) -> None:
         super().__init__(**given)
-        self.energy = energy
+        self.energy, self.roundings = energy, roundings
 
     def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`."""
@@ -98,19 +115,22 @@ class DiscreteGradient(AverageGradient):
             np.add.accumulate(rows)[-1] for rows in ((slope + excess) * chord, chord * chord)
         )
         missing = (last - first) - along
-        factor = find_factor(missing, np.abs(first) + np.abs(last), square)
+        factor = find_factor(missing, np.abs(first) + np.abs(last), square, self.roundings)
         kept.approach(middle)
         kept.factor = np.where(kept.done, kept.factor, factor)
         return self.move(arc, middle, excess + kept.factor * chord)
 
 
-def find_factor(missing: Array, size: Array, square: Array) -> Array:
+def find_factor(
+    missing: Array, size: Array, square: Array, roundings: float = ROUNDINGS
+) -> Array:
     """By what the chord is multiplied for what gradients along it miss; 0 for roundings.
 
     Args:
         missing: What they miss.
         size: Of the values whose difference it is part of.
         square: Of the chord.
+        roundings: The part of them that is no more than their roundings.
     """
-    is_seen = np.abs(missing) > ROUNDINGS * size
+    is_seen = np.abs(missing) > roundings * size
     return np.where(is_seen, missing / np.where(is_seen, square, 1.0), 0.0)
