@@ -306,16 +306,18 @@ class Action:
     Attributes:
         gradient: Derivatives of the energy by the components of member i, in symbols of the family
             and those of ``pair_sums``.
-        ends: Of an open chain, the same of members at the ends, by their numbers.
+        gradient_ends: Of an open chain, the same of members at the ends, by their numbers.
         pair_sums: Sums over the partners j of member i, which the gradient names.
         bracket: The tensor times a vector, for each component of member i.
+        bracket_ends: Where it is another one at the ends, that of members there, likewise.
         vector: Symbols of the vector, by those of the state of member i and of its neighbours.
     """
 
     gradient: tuple[Tree, ...]
-    ends: Mapping[int, tuple[Tree, ...]]
+    gradient_ends: Mapping[int, tuple[Tree, ...]]
     pair_sums: tuple[Sum, ...]
     bracket: tuple[Tree, ...]
+    bracket_ends: Mapping[int, tuple[Tree, ...]]
     vector: Mapping[Symbol, Symbol]
 
 

@@ -1,4 +1,4 @@
-r"""The bracket and the gradient of the energy of a generic member, which discrete gradients ask for.
+r"""The bracket and the gradient of the energy of a generic member, for discrete gradients.
 
 The energy is a sum of terms of members next to each other, and of pairs. Member i stands in the
 terms of members i - r, so that its derivative is
@@ -19,22 +19,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from types import MappingProxyType
 
 import sympy
 
 from coadjoint.families import Action, Family, Sum, Total
 
-Places = Mapping[sympy.Symbol, tuple[sympy.Symbol, int]]
 #: The tensor times a vector, whose components are given by those of member i and the neighbour.
 Bracket = Callable[[Callable[[str, int], sympy.Symbol]], Sequence[sympy.Expr]]
 
 
-def add_action(family: Family, bracket: Bracket) -> Family:
+def add_action(
+    family: Family, bracket: Bracket, ends: Mapping[int, Bracket] = MappingProxyType({})
+) -> Family:
     """A family with the bracket and the gradient of its energy, if this is not quadratic.
 
     Args:
         family: Without.
         bracket: The tensor times a vector.
+        ends: That of members at the ends of an open chain, where it is another one.
     """
     energies = [each for each in family.totals if each.name == "energy"]
     if not energies or family.noise or family.solved or family.matrices is not None:
@@ -50,12 +53,13 @@ def add_action(family: Family, bracket: Bracket) -> Family:
 
     action = Action(
         gradient=terms.gradient,
-        ends=terms.ends,
+        gradient_ends=terms.ends,
         pair_sums=tuple(terms.pair_sums.values()),
         bracket=tuple(bracket(find)),
+        bracket_ends={end: tuple(own(find)) for end, own in ends.items()},
         vector=vector,
     )
-    rows = (*action.gradient, *(x for own in action.ends.values() for x in own))
+    rows = (*action.gradient, *(x for own in action.gradient_ends.values() for x in own))
     named = {s for tree in rows for s in tree.free_symbols} | vector.keys()
     new = {place: s for place, s in terms.neighbours.items() if s in named}
     return replace(family, action=action, neighbours={**family.neighbours, **new})

@@ -345,7 +345,9 @@ class _Lowering:
         #: The names of the vector that a bracket is applied to.
         self._given: dict[Symbol, str] = {}
         if family.action is not None:
-            below_of = {read.name: own.name for read, own in zip(self._moving, self._vector, strict=True)}
+            below_of = {
+                read.name: own.name for read, own in zip(self._moving, self._vector, strict=True)
+            }
             of = family.action.vector.items()
             self._given = {own: below_of[self._reads[symbol].name] for symbol, own in of}
         #: The name of the other member of a pair, of each name that one of them has.
@@ -420,7 +422,8 @@ class _Lowering:
 
     def gradient(self, action: Action) -> Loops:
         """The derivatives of the energy by the components of each member."""
-        name, sums = "energy_gradient", {x.symbol: f"{SUM}{n}" for n, x in enumerate(action.pair_sums)}
+        name = "energy_gradient"
+        sums = {each.symbol: f"{SUM}{n}" for n, each in enumerate(action.pair_sums)}
         terms = [each.term for each in action.pair_sums]
         return Loops(
             name=name,
@@ -429,7 +432,7 @@ class _Lowering:
             shape=None,
             partners=self._part(name, terms, sums, of_pair=True) if terms else None,
             member=self._part(name, action.gradient, sums),
-            ends=tuple((end, self._part(name, rows, sums)) for end, rows in action.ends.items()),
+            ends=self._parts(name, action.gradient_ends, sums),
         )
 
     def bracket(self, action: Action) -> Loops:
@@ -441,6 +444,7 @@ class _Lowering:
             blocks=2 * len(self.family.states),
             shape=None,
             member=self._part(name, action.bracket, {}),
+            ends=self._parts(name, action.bracket_ends, {}),
         )
 
     def kinks(self, held: HeldFamily) -> Loops:
@@ -457,21 +461,20 @@ class _Lowering:
             shape=None,
             partners=self._part("kinks", terms, sums, of_pair=True) if terms else None,
             member=self._part("kinks", held.kinks, sums),
-            ends=tuple((end, self._part("kinks", rows, sums)) for end, rows in held.ends.items()),
+            ends=self._parts("kinks", held.ends, sums),
         )
 
     def noise(self) -> Loops:
         """What increments of Wiener processes do to each member; they stand below the state."""
         family = self.family
         assert all(symbol not in family.partners for symbol in family.indexed_noise), "no pairs"
-        ends = family.noise_ends.items()
         return Loops(
             name="noise_vector",
             wraps=family.wraps,
             blocks=len(family.states) + len(family.indexed_noise),
             shape=None,
             member=self._part("noise_vector", family.noise, {}),
-            ends=tuple((end, self._part("noise_vector", trees, {})) for end, trees in ends),
+            ends=self._parts("noise_vector", family.noise_ends, {}),
             rows=len(family.shared_noise),
         )
 
@@ -498,6 +501,12 @@ class _Lowering:
         )
 
     # -- parts --------------------------------------------------------------------------
+
+    def _parts(
+        self, name: str, ends: Mapping[int, Sequence[Tree]], sums: Mapping[Symbol, str]
+    ) -> tuple[tuple[int, Part], ...]:
+        """Those of members at the ends."""
+        return tuple((end, self._part(name, trees, sums)) for end, trees in ends.items())
 
     def _part(
         self,

@@ -351,17 +351,17 @@ def _list_action(
 ) -> Iterator[tuple[Part, Sequence[Tree], Sequence[Symbol]]]:
     """The same of the bracket, or of the gradient of the energy."""
     assert loops.member is not None, loops.name
-    if loops.name == "bracket_vector":
-        assert not loops.ends, loops.name
-        yield loops.member, action.bracket, ()
-        return
-    sums = [each.symbol for each in action.pair_sums]
-    assert (loops.partners is not None) == bool(sums), loops.name
+    is_bracket = loops.name == "bracket_vector"
+    whole = action.bracket if is_bracket else action.gradient
+    ends = action.bracket_ends if is_bracket else action.gradient_ends
+    pairs = () if is_bracket else action.pair_sums
+    sums = [each.symbol for each in pairs]
+    assert (loops.partners is not None) == bool(pairs), loops.name
     if loops.partners is not None:
-        yield loops.partners, symbols.of_both([each.term for each in action.pair_sums]), ()
-    yield loops.member, action.gradient, sums
-    yield from ((part, action.ends[member], sums) for member, part in loops.ends)
-    assert len(loops.ends) == len(action.ends), loops.name
+        yield loops.partners, symbols.of_both([each.term for each in pairs]), ()
+    yield loops.member, whole, sums
+    yield from ((part, ends[member], sums) for member, part in loops.ends)
+    assert len(loops.ends) == len(ends), loops.name
 
 
 def _check_part(

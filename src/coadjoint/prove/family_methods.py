@@ -55,9 +55,8 @@ _SPLIT: Final = (
 )
 _QUADRATIC: Final = (
     "its energy is quadratic, so that the gradient at the middle of a step is a discrete gradient, "
-    "and the step is that of the midpoint, which keeps the energy"
+    "and the step is that of the midpoint"
 )
-_WEIGHTS: Final = "weights of points near ends are no part of its loops over the bracket"
 _BLOCKS: Final = (
     "it expects an energy that is a sum over members and pairs, and a bracket in closed form of "
     "the components of each member"
@@ -178,8 +177,7 @@ class FamilyFacts(Facts):
             return ""
         if self.family.matrices is not None or self.energy_degree is not None:
             return _QUADRATIC
-        has_weights = self.spec.family is None and bool(self.family.ends)
-        return _WEIGHTS if has_weights else _BLOCKS
+        return _BLOCKS
 
     # -- integrals ------------------------------------------------------------------------
 

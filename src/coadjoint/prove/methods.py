@@ -379,9 +379,7 @@ def _keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool
 # -- the order of preference ----------------------------------------------------------------------
 
 
-def _rank(
-    preferred: Sequence[str], judged: Mapping[str, JudgedMethod]
-) -> tuple[JudgedMethod, ...]:
+def _rank(preferred: Sequence[str], judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
     """The methods with their ranks: those that apply and keep something, as they are preferred."""
     wanted = [judged[name] for name in preferred if name in judged]
     fit = [each.name for each in wanted if each.applies and (each.exactly or each.is_poisson)]

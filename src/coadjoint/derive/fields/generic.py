@@ -17,7 +17,7 @@ from typing import Any
 
 import sympy
 
-from coadjoint.derive.action import add_action
+from coadjoint.derive.action import Bracket, add_action
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES, EndCalculus, find_weight
@@ -396,17 +396,33 @@ class GenericPoint:
             count=(count,),
             solved=write_solved(self.setting, self.order, inverse),
         )
-        return family if self.space.has_ends else add_action(family, self._multiply)
+        return add_action(family, self._multiply(None), self._multiply_ends())
 
-    def _multiply(self, find: Callable[[str, int], sympy.Symbol]) -> list[sympy.Expr]:
-        """The bracket of the points times a vector, whose components are given by their names."""
-        calculus, place = self._place_in_trees(None)
+    def _multiply_ends(self) -> dict[int, Bracket]:
+        """The bracket at points that read one with a weight; empty on a circle."""
+        some = len(self.numbers) // 2
+        reach = some and some + width_of(1, self.order)
+        return {n: self._multiply(n) for n in (*range(reach), *range(-reach, 0))}
 
-        def look_up(name: str) -> Lattice:
-            return lambda i: find(name, i)
+    def _multiply(self, number: int | None) -> Bracket:
+        """The bracket of a point times a vector: on one over the weights and the spacing."""
 
-        rows = calculus.compose(self._place_operator(place), list(map(look_up, self.setting.state)))
-        return [calculus.inverse * f(0) for f in rows]
+        def apply(find: Callable[[str, int], sympy.Symbol]) -> list[sympy.Expr]:
+            calculus, place = self._place_in_trees(number if number in self.numbers else None)
+
+            def look_up(name: str) -> Lattice:
+                return lambda i: find(name, i) / rational(self._find_weight(number, i))
+
+            vector = list(map(look_up, self.setting.state))
+            rows = calculus.compose(self._place_operator(place), vector)
+            return [calculus.inverse * f(0) for f in rows]
+
+        return apply
+
+    def _find_weight(self, number: int | None, i: int) -> Fraction:
+        """The weight of a point so many points after one near an end."""
+        at = None if number is None else number + i
+        return find_weight(self.order, at if at in self.numbers else None)
 
     @property
     def least(self) -> int:

@@ -121,9 +121,7 @@ class DiscreteGradient(AverageGradient):
         return self.move(arc, middle, excess + kept.factor * chord)
 
 
-def find_factor(
-    missing: Array, size: Array, square: Array, roundings: float = ROUNDINGS
-) -> Array:
+def find_factor(missing: Array, size: Array, square: Array, roundings: float = ROUNDINGS) -> Array:
     """By what the chord is multiplied for what gradients along it miss; 0 for roundings.
 
     Args:
