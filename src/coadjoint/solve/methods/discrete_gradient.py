@@ -48,19 +48,8 @@ def make(functions: Mapping[str, Any], size: float, order: int) -> DiscreteGradi
         bracket=functions["bracket"],
         size=size,
         order=order,
-        roundings=find_roundings(functions.get("members", 1)),
+        members=functions.get("members", 1),
     )
-
-
-def find_roundings(members: int) -> float:
-    """`ROUNDINGS` of a sum over equal members, which kernels add up in so many parts as `LANES`.
-
-    They grow as a walk with steps to both sides.
-
-    >>> find_roundings(8) == ROUNDINGS, find_roundings(72) == 3 * ROUNDINGS
-    (True, True)
-    """
-    return ROUNDINGS * sqrt(max(1.0, members / LANES))
 
 
 class Corrected:
@@ -90,13 +79,14 @@ class DiscreteGradient(AverageGradient):
 
     Args:
         energy: The energy, ``(1, N)`` or ``(N,)``.
-        roundings: The part of its values that is no more than their roundings.
+        members: Of how many equal members it is a sum. Kernels add them up in `LANES` parts, whose
+            roundings grow as a walk with steps to both sides.
         given: As of `AverageGradient`.
     """
 
-    def __init__(self, *, energy: Gradient, roundings: float = ROUNDINGS, **given: Any) -> None:
+    def __init__(self, *, energy: Gradient, members: int = 1, **given: Any) -> None:
         super().__init__(**given)
-        self.energy, self.roundings = energy, roundings
+        self.energy, self.growth = energy, sqrt(max(1.0, members / LANES))
 
     def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`."""
@@ -115,20 +105,20 @@ class DiscreteGradient(AverageGradient):
             np.add.accumulate(rows)[-1] for rows in ((slope + excess) * chord, chord * chord)
         )
         missing = (last - first) - along
-        factor = find_factor(missing, np.abs(first) + np.abs(last), square, self.roundings)
+        size = self.growth * (np.abs(first) + np.abs(last))
+        factor = find_factor(missing, size, square)
         kept.approach(middle)
         kept.factor = np.where(kept.done, kept.factor, factor)
         return self.move(arc, middle, excess + kept.factor * chord)
 
 
-def find_factor(missing: Array, size: Array, square: Array, roundings: float = ROUNDINGS) -> Array:
+def find_factor(missing: Array, size: Array, square: Array) -> Array:
     """By what the chord is multiplied for what gradients along it miss; 0 for roundings.
 
     Args:
         missing: What they miss.
         size: Of the values whose difference it is part of.
         square: Of the chord.
-        roundings: The part of them that is no more than their roundings.
     """
-    is_seen = np.abs(missing) > roundings * size
+    is_seen = np.abs(missing) > ROUNDINGS * size
     return np.where(is_seen, missing / np.where(is_seen, square, 1.0), 0.0)
