@@ -43,7 +43,9 @@ def add_action(
     if not energies or family.noise or family.solved or family.matrices is not None:
         return family
     terms = _Terms(family, energies[0])
-    if not terms.covers or terms.gradient is None or terms.ends is None or terms.is_quadratic:
+    if any(tree.has(sympy.Abs, sympy.sign) for tree in terms.trees):
+        return family  # steps end at kinks, and those of discrete gradients do not
+    if not terms.covers or terms.is_quadratic:
         return family
     known, vector = {s.name: s for s in family.states}, dict[sympy.Symbol, sympy.Symbol]()
 
@@ -81,6 +83,11 @@ class _Terms:
         self.neighbours = dict(family.neighbours)
         self._places = {s: place for place, s in family.neighbours.items()}
         self._places |= {s: (s, 0) for s in family.own}
+
+    @property
+    def trees(self) -> tuple[sympy.Expr, ...]:
+        """Terms, and what stands outside of sums."""
+        return (self.energy.formula, *(each.term for each in self.energy.sums))
 
     def find(self, component: sympy.Symbol, shift: int) -> sympy.Symbol:
         """The symbol of a component of a neighbour."""
@@ -124,14 +131,17 @@ class _Terms:
 
     @property
     def covers(self) -> bool:
-        """Whether all members that lack a term are among those at the ends."""
-        return all(
-            self._has_term(own, shift, end) or end in self.family.ends
+        """Whether all members that lack a term, or stand alone, are among those at the ends."""
+        lacking = {
+            end
             for own in self.energy.sums
             for symbol in own.term.free_symbols & self._places.keys()
-            for _, shift in [self._places[symbol]]
             for end in range(-self.family.small - 1, self.family.small + 1)
-        )
+            if not self._has_term(own, self._places[symbol][1], end)
+        }
+        named = self.energy.formula.free_symbols
+        alone = {end for (_, end), symbol in self.family.singles.items() if symbol in named}
+        return lacking | alone <= self.family.ends.keys()
 
     @cached_property
     def pair_sums(self) -> dict[sympy.Symbol, Sum]:
@@ -145,49 +155,39 @@ class _Terms:
                 found[row] = Sum(symbol=symbol, term=term, over="partners")
         return found
 
-    def _differentiate(self, end: int | None) -> tuple[sympy.Expr, ...] | None:
-        """The derivatives by the components of a member; None if one names the other end."""
+    def _differentiate(self, end: int | None) -> tuple[sympy.Expr, ...]:
+        """The derivatives by the components of a member."""
         found = list[sympy.Expr]()
         for row in self.family.states:
-            parts = [*self._list_members(row, end)]
-            alone = self._find_alone(row, end)
-            if alone is None:
-                return None
-            parts += [alone, *(x.symbol for r, x in self.pair_sums.items() if r == row)]
+            parts = [*self._list_members(row, end), *self._list_alone(row, end)]
+            parts += [each.symbol for own, each in self.pair_sums.items() if own == row]
             found.append(sympy.Add(*map(sympy.factor_terms, parts)))
         return tuple(found)
 
-    def _find_alone(self, row: sympy.Symbol, end: int | None) -> sympy.Expr | None:
-        """What the energy has of a member at an end alone, outside of its sums."""
-        if end is None or (row, end) not in self.family.singles:
-            return sympy.Integer(0)
-        slope = sympy.diff(self.energy.formula, self.family.singles[row, end])
+    def _list_alone(self, row: sympy.Symbol, end: int | None) -> Iterable[sympy.Expr]:
+        """What the energy has of a member at an end alone, outside of its sums.
+
+        A member at the other end is the one before the first, or after the last.
+        """
         places = {s: place for place, s in self.family.singles.items()}
-        new = dict[sympy.Symbol, sympy.Symbol]()
-        for symbol in slope.free_symbols & places.keys():
-            component, number = places[symbol]
-            if (number < 0) != (end < 0):
-                return None
-            new[symbol] = self.find(component, number - end)
-        return slope.xreplace(new)
+        if end is not None and (row, end) in self.family.singles:
+            slope = sympy.diff(self.energy.formula, self.family.singles[row, end])
+            named = ((s, places[s]) for s in slope.free_symbols if s in places)
+            yield slope.xreplace({s: self.find(c, number - end) for s, (c, number) in named})
 
     @cached_property
-    def gradient(self) -> tuple[sympy.Expr, ...] | None:
+    def gradient(self) -> tuple[sympy.Expr, ...]:
         """Of a member that has all its neighbours."""
         return self._differentiate(None)
 
     @cached_property
-    def ends(self) -> dict[int, tuple[sympy.Expr, ...]] | None:
+    def ends(self) -> dict[int, tuple[sympy.Expr, ...]]:
         """Of those at the ends."""
-        found = {end: self._differentiate(end) for end in self.family.ends}
-        known = {end: own for end, own in found.items() if own is not None}
-        return known if len(known) == len(found) else None
+        return {end: self._differentiate(end) for end in self.family.ends}
 
     @property
     def is_quadratic(self) -> bool:
         """Whether all derivatives are seen to be of degree 1 at the most in the state."""
-        assert self.gradient is not None, "asked before"
-        assert self.ends is not None, "asked before"
         rows = [*self.gradient, *(x for own in self.ends.values() for x in own)]
         rows += [each.term for each in self.pair_sums.values()]
         states = {*self.family.states, *self.family.partners.values()}
