@@ -195,6 +195,22 @@ def test_long_steps_need_the_energies_at_both_ends(chain, monkeypatch):
     assert drift("discrete_gradient") > 1e-10
 
 
+def test_roundings_of_many_members_decide_nothing(chain, monkeypatch):
+    """Steps are so short that the mean of the gradient has nothing to correct."""
+    n = 1000
+    line, k = chain.resize({"i": n}), {"k": np.zeros(n)}
+    start = np.concatenate([0.8 * np.arange(n), np.random.default_rng(1).normal(size=n)])
+
+    def run(method):
+        given = {"method": method, "step": 0.1, "samples": 1, "target": "numpy"}
+        return line.simulate(start, (0, 3), k, **given).state
+
+    mean = run("average_gradient")
+    np.testing.assert_array_equal(run("discrete_gradient"), mean)
+    monkeypatch.setattr("coadjoint.solve.methods.discrete_gradient.LANES", np.inf)
+    assert (run("discrete_gradient") != mean).any()
+
+
 def test_orders_and_drifts_are_those_that_are_claimed(ring):
     """As `python -m` measures them: 2 and 4."""
     for found in check_methods(ring.resize({"i": 5}), list(METHODS)):
