@@ -25,7 +25,8 @@ QUARTIC = RING.replace("S[i], S[i+1])) +", "S[i], S[i+1])) + sum(i, S[i, 1]^4) +
     '"energy", "M"]', '"energy"]'
 )
 CHAINS = {"chain": CHAIN, "closed": CLOSED, "held": HELD, "walls": WALLS, "planar": PLANAR}
-TEXTS = {**CHAINS, "vortices": VORTICES, "quartic": QUARTIC}
+CUBIC = CHAIN.replace("exp(q[i] - q[i+1])", "(q[i] - q[i+1])^3")
+TEXTS = {**CHAINS, "vortices": VORTICES, "quartic": QUARTIC, "cubic": CUBIC}
 #: A strand whose stiffness grows with its turns.
 STRAND = (
     shipped("spin_chain")
