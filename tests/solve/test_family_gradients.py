@@ -82,7 +82,7 @@ def judge(text):
 
 
 def test_what_a_theorem_needs_decides():
-    """Polynomials and others, Casimirs of degree 2; and no default, which one loop a sweep is."""
+    """Polynomials and others, Casimirs of degree 2; none is the default."""
     spins, masses = judge(QUARTIC), judge(CHAIN)
     for name in METHODS:
         assert spins[name]["exactly"] == ["energy", "dot(S[i], S[i])"]

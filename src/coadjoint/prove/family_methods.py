@@ -294,7 +294,7 @@ def judge_family(
     if facts.is_driven:
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
-    # a sweep of the midpoint is one loop, and one of a discrete gradient has about a dozen
+    # a sweep of the midpoint is one loop, and one of a discrete gradient has eight
     preferred = [name for name in prefer(facts) if name not in by_energy]
     judged = judge(facts, refusals, {}, rules, preferred)
     if in_plane is not None:
