@@ -20,8 +20,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isqrt
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
+#: Parts of a sum over members, and members that are computed together where there are sums.
+LANES: Final = 8
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
 Symbol = Any
 Tree = Any
@@ -298,6 +300,28 @@ class MatrixMotion:
 
 
 @dataclass(frozen=True)
+class Action:
+    """A motion as a bracket with its energy, in two functions, where this is not quadratic.
+
+    Attributes:
+        gradient: Derivatives of the energy by the components of member i, in symbols of the family
+            and those of ``pair_sums``.
+        gradient_ends: Of an open chain, the same of members at the ends, by their numbers.
+        pair_sums: Sums over the partners j of member i, which the gradient names.
+        bracket: The tensor times a vector, for each component of member i.
+        bracket_ends: Where it is another one at the ends, that of members there, likewise.
+        vector: Symbols of the vector, by those of the state of member i and of its neighbours.
+    """
+
+    gradient: tuple[Tree, ...]
+    gradient_ends: Mapping[int, tuple[Tree, ...]]
+    pair_sums: tuple[Sum, ...]
+    bracket: tuple[Tree, ...]
+    bracket_ends: Mapping[int, tuple[Tree, ...]]
+    vector: Mapping[Symbol, Symbol]
+
+
+@dataclass(frozen=True)
 class Family:
     """The equations of the generic member of an indexed system.
 
@@ -339,6 +363,8 @@ class Family:
         solved: Components that rates and totals read next to those of the state, with neighbours as
             these have.
         matrices: What the members are where they are entries of matrices, else None.
+        action: The bracket and the gradient of the energy; None where nothing asks for them, or
+            they are no loops.
     """
 
     index: Index
@@ -368,6 +394,7 @@ class Family:
     count: tuple[Symbol, ...] = ()
     solved: tuple[Solved, ...] = ()
     matrices: MatrixMotion | None = None
+    action: Action | None = None
 
     @property
     def completed(self) -> tuple[Symbol, ...]:

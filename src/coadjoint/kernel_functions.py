@@ -79,7 +79,8 @@ Systems whose rates are loops over a table have no such matrix.""",
         shape="(n, *batch)",
         doc="""Only systems with an energy and a tensor in closed form have it: with
 `bracket_vector` the motion is ``rhs = bracket_vector(state, energy_gradient)`` plus forces, and
-plus ``metric_vector(state, entropy_gradient)`` where it is metriplectic.""",
+plus ``metric_vector(state, entropy_gradient)`` where it is metriplectic. Equal members, and fields
+by differences, have both where the energy is not quadratic.""",
         looped="never",
     ),
     KernelFunction(

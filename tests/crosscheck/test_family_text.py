@@ -63,6 +63,7 @@ SPOILED = [
     ("driven", "kernel.py", "t = time[0]", "t = parameters[0]"),
     ("driven", "kernel_python.py", "t = time[0]", "t = state[0]"),
     ("vortices", "kernel.c", "(_turned ? _value2 : _value0)", "(_turned ? _value0 : _value2)"),
+    ("chain", "kernel.py", "h_p = state[3 * size + i]", "h_p = state[2 * size + i]"),
 ]
 
 
@@ -80,7 +81,8 @@ def test_every_part_reads_back(rendered, name):
     own, texts = rendered[name].family, rendered[name].texts
     lines = check_family_text(own.context, texts, own.printed)
     assert min(lines.values()) > 0
-    assert list(lines) == ["rhs", "jacobian_vector", "energy", "observables"]
+    acting = [] if own.family.action is None else ["energy_gradient", "bracket_vector"]
+    assert list(lines) == ["rhs", "jacobian_vector", "energy", "observables", *acting]
 
 
 @pytest.mark.parametrize(("name", "file", "old", "new"), SPOILED)

@@ -7,6 +7,7 @@ import pytest
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
+from coadjoint.methods import ACTION
 from tests.families import (
     CHAIN,
     CLOSED,
@@ -40,8 +41,10 @@ def families():
 def test_loops_compute_what_the_family_says(families, name):
     """Rates, their derivative along a vector, energy and observables, of every kind of family."""
     loops = lower_family(families[name])
-    turned = {"constraint_residual", "projection"} if name == "tops" else set()
-    assert set(loops) == {"rhs", "jacobian_vector", "energy", "observables", *turned}
+    more = {"constraint_residual", "projection"} if name == "tops" else set(ACTION)
+    if name in ("ring", "peakons"):  # a quadratic energy, and one with kinks
+        more = set()
+    assert set(loops) == {"rhs", "jacobian_vector", "energy", "observables", *more}
     check_loops(families[name], loops)
 
 
@@ -52,7 +55,13 @@ CASES = [
 
 
 @pytest.mark.parametrize(
-    ("name", "function"), [*CASES, ("tops", "constraint_residual"), ("tops", "projection")]
+    ("name", "function"),
+    [
+        *CASES,
+        ("tops", "constraint_residual"),
+        ("tops", "projection"),
+        *((name, function) for name in ("chain", "vortices") for function in ACTION),
+    ],
 )
 def test_a_wrong_part_is_seen(families, name, function):
     """The check above can fail: the outputs of one part change places or signs."""

@@ -653,6 +653,11 @@ MUTANTS = (
         tests=("tests/solve/methods/test_gradients.py",),
     ),
     *of(
+        "solve/methods/discrete_gradient",
+        "sweep: rewrite self.growth * _1 -> _1",
+        tests=("tests/solve/test_family_gradients.py -k roundings",),
+    ),
+    *of(
         "solve/methods/metriplectic_gradient",
         "find_rates: rewrite project(moved, s) -> moved",
         "find_rates: rewrite project(s, g) -> s",
@@ -664,6 +669,19 @@ MUTANTS = (
         "sweep: rewrite last - first -> first - last",
         "sweep: rewrite 0.5 * rise -> rise",
         tests=("tests/solve/methods/test_metriplectic.py", "tests/solve/methods/test_nambu.py"),
+    ),
+    *of(
+        "derive/action",
+        "_shift: rewrite shift + by -> shift - by",
+        "_has_term: rewrite end - shift -> end + shift",
+        "_list_alone: rewrite number - end -> number",
+        "_is_linear: rewrite _1.total_degree() <= 1 -> _1.total_degree() <= 2",
+        tests=("tests/derive/test_action.py",),
+    ),
+    *of(
+        "derive/fields/generic",
+        "_find_weight: rewrite number + i -> number",
+        tests=("tests/derive/test_action.py",),
     ),
     *of(
         "derive/times_vector",

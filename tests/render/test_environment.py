@@ -36,7 +36,8 @@ def test_every_kernel_template_is_rendered():
     parts |= {"c/methods/lie_poisson.c.j2", "c/methods/isospectral_midpoint.c.j2"}
     parts |= {"c/methods/dop853_tables.c.j2", "c/methods/gauss_tables.c.j2", "c/normals.c.j2"}
     parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2", "c/methods/spheres.c.j2"}
-    parts |= {"c/methods/family_steps.c.j2", "c/methods/family_kinks.c.j2"}  # of family_solver.c.j2
+    own = ("steps", "gradients", "kinks")  # of family_solver.c.j2
+    parts |= {f"c/methods/family_{each}.c.j2" for each in own}
     parts |= {"c/methods/stopping.c.j2", "c/methods/chord.c.j2", "c/methods/arc.c.j2"}
     parts |= {"c/methods/newton.c.j2", "c/methods/krylov.c.j2", "c/methods/bands.c.j2"}
     parts |= {*OTHERS["js"].files.values(), "js/family.js.j2"}  # of `coadjoint.render.scripts`

@@ -320,6 +320,8 @@ def _list_structured(system: Any) -> list[Choice]:
     own = {each.name: Choice(name=each.name, order=2) for each in system.METHODS if each.order == 2}
     if "spherical_midpoint" in own:
         own.pop("midpoint")
+    if "discrete_gradient" in own:
+        own.pop("average_gradient")
     return list(own.values())
 
 

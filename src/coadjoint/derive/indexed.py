@@ -16,12 +16,13 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy
 
+from coadjoint.derive.action import add_action
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
@@ -60,7 +61,7 @@ def derive_family(equations: Equations) -> Family:
     every = (*rates, *noise, *(rate for end in ends for rate in end))
     named |= {s for rate in every for s in rate.free_symbols}
     neighbours = {place: s for place, s in reader.neighbours.items() if s in named}
-    return Family(
+    family = Family(
         index=declared.index,
         states=reader.states,
         shifts=tuple(sorted({shift for _, shift in neighbours})),
@@ -85,6 +86,7 @@ def derive_family(equations: Equations) -> Family:
         singles=reader.singles_of(totals),
         wraps=declared.index.periodic or reader.is_closed,
     )
+    return add_action(family, reader.multiply) if reader.has_blocks else family
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,40 @@ class _Reader(TotalsReader):
             if min([0, *shifts]) < -end <= 0 or max([0, *shifts]) >= -end > 0:
                 return True
         return False
+
+    # -- the bracket --------------------------------------------------------------------
+
+    @cached_property
+    def tensor(self) -> list[dict[str, Element]]:
+        """Rows of the bracket of the member in the middle, by the components of all members."""
+        equations, names = self.equations, self.names_of(self.declared.variables, self.middle)
+        tensor, state = equations.exact.poisson_tensor, equations.variables
+        assert tensor is not None, equations.route
+        rows = (map(equations.close, tensor[state.index(name)]) for name in names)
+        zero = equations.setting.field.is_zero
+        return [{c: x for c, x in zip(state, row, strict=True) if not zero(x)} for row in rows]
+
+    @property
+    def has_blocks(self) -> bool:
+        """Whether there is a bracket, and that of a member is one of its own components."""
+        equations = self.equations
+        if equations.exact.poisson_tensor is None or equations.distribution is not None:
+            return False
+        own = {*self.names_of(self.names, self.middle), *self.shared}
+        reach = equations.setting.field.reach
+        return all({c} | reach(x) <= own for row in self.tensor for c, x in row.items())
+
+    def multiply(self, find: Callable[[str, int], sympy.Symbol]) -> list[sympy.Expr]:
+        """The bracket of a member times a vector, whose components are given by their names."""
+        new, names = (
+            self.rename(self.middle, 0, 0),
+            self.names_of(self.declared.variables, self.middle),
+        )
+        own = dict(zip(names, (s.name for s in self.states), strict=True))
+        return [
+            sympy.Add(*(self.write(x).xreplace(new) * find(own[c], 0) for c, x in row.items()))
+            for row in self.tensor
+        ]
 
     # -- noise --------------------------------------------------------------------------
 

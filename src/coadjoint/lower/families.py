@@ -27,15 +27,13 @@ from typing import Final
 
 import sympy
 
-from coadjoint.families import Family, Sum, Symbol, Total, Tree
+from coadjoint.families import LANES, Action, Family, Sum, Symbol, Total, Tree
 from coadjoint.lower.family_kinks import HeldFamily, hold_family
 from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
 from coadjoint.lower.program import Program
 
-#: Parts of a sum over members, and members that are computed together where there are sums.
-LANES: Final = 8
 #: The fewest members that are taken in blocks: for less there is nothing to gain.
 FEWEST: Final = 5 * LANES
 #: What the names of sums begin with; their number follows.
@@ -254,6 +252,8 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.of_members("energy_gradient", slopes))
         functions.append(lowering.of_members("bracket_vector", product, blocks=2))
         functions.append(lowering.of_members("sandwich", product, blocks=2))
+    if family.action is not None and held is None:
+        functions += [lowering.gradient(family.action), lowering.bracket(family.action)]
     return {each.name: lowering.complete(each) for each in functions}
 
 
@@ -341,6 +341,14 @@ class _Lowering:
             replace(read, name=naming.find(f"h_{read.name}"), blocks=read.blocks + below)
             for read in self._moving
         ]
+        #: The names of the vector that a bracket is applied to.
+        self._given: dict[Symbol, str] = {}
+        if family.action is not None:
+            below_of = {
+                read.name: own.name for read, own in zip(self._moving, self._vector, strict=True)
+            }
+            of = family.action.vector.items()
+            self._given = {own: below_of[self._reads[symbol].name] for symbol, own in of}
         #: The name of the other member of a pair, of each name that one of them has.
         self._others = self._pair_names()
 
@@ -411,6 +419,33 @@ class _Lowering:
             member=self._part(name, trees, {}),
         )
 
+    def gradient(self, action: Action) -> Loops:
+        """The derivatives of the energy by the components of each member."""
+        name = "energy_gradient"
+        sums = {each.symbol: f"{SUM}{n}" for n, each in enumerate(action.pair_sums)}
+        terms = [each.term for each in action.pair_sums]
+        return Loops(
+            name=name,
+            wraps=self.family.wraps,
+            blocks=len(self.family.states),
+            shape=None,
+            partners=self._part(name, terms, sums, of_pair=True) if terms else None,
+            member=self._part(name, action.gradient, sums),
+            ends=self._parts(name, action.gradient_ends, sums),
+        )
+
+    def bracket(self, action: Action) -> Loops:
+        """The tensor times a vector, which stands below the state."""
+        name = "bracket_vector"
+        return Loops(
+            name=name,
+            wraps=self.family.wraps,
+            blocks=2 * len(self.family.states),
+            shape=None,
+            member=self._part(name, action.bracket, {}),
+            ends=self._parts(name, action.bracket_ends, {}),
+        )
+
     def kinks(self, held: HeldFamily) -> Loops:
         """What is 0 at the kinks of each member, in the sums that rates read."""
         family = self.family
@@ -425,21 +460,20 @@ class _Lowering:
             shape=None,
             partners=self._part("kinks", terms, sums, of_pair=True) if terms else None,
             member=self._part("kinks", held.kinks, sums),
-            ends=tuple((end, self._part("kinks", rows, sums)) for end, rows in held.ends.items()),
+            ends=self._parts("kinks", held.ends, sums),
         )
 
     def noise(self) -> Loops:
         """What increments of Wiener processes do to each member; they stand below the state."""
         family = self.family
         assert all(symbol not in family.partners for symbol in family.indexed_noise), "no pairs"
-        ends = family.noise_ends.items()
         return Loops(
             name="noise_vector",
             wraps=family.wraps,
             blocks=len(family.states) + len(family.indexed_noise),
             shape=None,
             member=self._part("noise_vector", family.noise, {}),
-            ends=tuple((end, self._part("noise_vector", trees, {})) for end, trees in ends),
+            ends=self._parts("noise_vector", family.noise_ends, {}),
             rows=len(family.shared_noise),
         )
 
@@ -466,6 +500,12 @@ class _Lowering:
         )
 
     # -- parts --------------------------------------------------------------------------
+
+    def _parts(
+        self, name: str, ends: Mapping[int, Sequence[Tree]], sums: Mapping[Symbol, str]
+    ) -> tuple[tuple[int, Part], ...]:
+        """Those of members at the ends."""
+        return tuple((end, self._part(name, trees, sums)) for end, trees in ends.items())
 
     def _part(
         self,
@@ -505,7 +545,8 @@ class _Lowering:
     ) -> Part:
         """Trees as a Program, in the form that they have."""
         graph = Graph()
-        names = {symbol: read.name for symbol, read in self._reads.items()} | dict(sums)
+        names = {symbol: read.name for symbol, read in self._reads.items()}
+        names |= {**self._given, **sums}
         others = self._others if of_pair else {}
         values = list(Inserting(graph, names, self._own, trees, others).nodes())
         if slopes is not None:

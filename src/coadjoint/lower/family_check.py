@@ -18,9 +18,10 @@ from sympy.polys import lex
 from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.families import Family, MatrixMotion, Symbol, Tree
+from coadjoint.families import Action, Family, MatrixMotion, Symbol, Tree
 from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
+from coadjoint.methods import ACTION
 
 #: Digits of the comparison where functions are called, and how much of them has to agree.
 _DIGITS: Final = 60
@@ -108,6 +109,7 @@ class _Symbols:
                 *(s for c, s in family.partners.items() if c in family.states),
             )
         }
+        self.vector |= {} if family.action is None else family.action.vector
 
     def find(self, read: Read, function: str) -> Symbol:
         """The symbol that stands in the row of a name."""
@@ -307,7 +309,10 @@ def _list_parts(
         assert len(ordered) == len(known), loops.name
         yield loops.finish, [total.formula for total in totals], ordered
         return
-    if loops.name in ("energy_gradient", "bracket_vector", "sandwich"):
+    if loops.name in ACTION and family.action is not None:
+        yield from _list_action(family.action, loops, symbols)
+        return
+    if loops.name in (*ACTION, "sandwich"):
         assert family.matrices is not None, loops.name
         is_slope = loops.name == "energy_gradient"
         yield loops.member, [family.completed[not is_slope]], ()
@@ -339,6 +344,24 @@ def _list_parts(
     read = [*sums, *slopes.values()] if keeps else list(slopes.values())
     for part, rates in places:
         yield part, [symbols.slope(rate, slopes) for rate in rates], read
+
+
+def _list_action(
+    action: Action, loops: Loops, symbols: _Symbols
+) -> Iterator[tuple[Part, Sequence[Tree], Sequence[Symbol]]]:
+    """The same of the bracket, or of the gradient of the energy."""
+    assert loops.member is not None, loops.name
+    is_bracket = loops.name == "bracket_vector"
+    whole = action.bracket if is_bracket else action.gradient
+    ends = action.bracket_ends if is_bracket else action.gradient_ends
+    pairs = () if is_bracket else action.pair_sums
+    sums = [each.symbol for each in pairs]
+    assert (loops.partners is not None) == bool(pairs), loops.name
+    if loops.partners is not None:
+        yield loops.partners, symbols.of_both([each.term for each in pairs]), ()
+    yield loops.member, whole, sums
+    yield from ((part, ends[member], sums) for member, part in loops.ends)
+    assert len(loops.ends) == len(ends), loops.name
 
 
 def _check_part(

@@ -5,8 +5,8 @@ and every method judged by them, as of other systems. Facts are those of a windo
 block for each member, and totals are sums of the same terms for every number of members, so that
 kinds of tensors, degrees and the split of the energy do not depend on it. Integrals count where the
 certificate has them for every number of members. Steps of families are loops over members
-(templates/c/family_methods.c.j2): midpoints, spherical midpoints, and splittings of an energy
-``T(p) + V(q)``.
+(templates/c/methods/family_steps.c.j2): midpoints, spherical midpoints, discrete gradients of an
+energy that is not quadratic, and splittings of an energy ``T(p) + V(q)``.
 Read next: `coadjoint.prove.methods`.
 """
 
@@ -24,16 +24,25 @@ from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.lower.families import Loops
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
-from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
+from coadjoint.methods import (
+    BACKWARD,
+    BY_ENERGY,
+    MAPPED,
+    STRUCTURED,
+    JudgedMethod,
+    Sphere,
+    StructuredMethod,
+    list_backward,
+)
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
-from coadjoint.prove.methods import KINKED, SWEEPS, Judgement, judge, judge_spheres
+from coadjoint.prove.methods import KINKED, SWEEPS, Judgement, judge, judge_spheres, prefer
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Windows
 
 #: Files of methods whose steps there are as loops over members.
-LOOPED: Final = ("midpoint", "spherical_midpoint", "sequence")
+LOOPED: Final = ("midpoint", "spherical_midpoint", "sequence", *BY_ENERGY)
 #: The two flows of a splitting: positions move with the momenta at rest, and the other way round.
 FLOWS: Final = ("flow1", "flow2")
 _NONE: Final = "its solvers are loops over {}, without it"
@@ -43,6 +52,14 @@ _SPHERES: Final = (
 )
 _SPLIT: Final = (
     "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
+)
+_QUADRATIC: Final = (
+    "its energy is quadratic, so that the gradient at the middle of a step is a discrete gradient, "
+    "and the step is that of the midpoint"
+)
+_BLOCKS: Final = (
+    "it expects an energy that is a sum over members and pairs, and a bracket in closed form of "
+    "the components of each member"
 )
 _PLANE: Final = "Python leads the steps of a field in a plane, between transforms"
 _NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
@@ -141,6 +158,26 @@ class FamilyFacts(Facts):
         return all(
             _is_kept_by_flows(Facts(each, {}, self._certificate), name) for each in self._windows
         )
+
+    # -- discrete gradients ---------------------------------------------------------------
+
+    @cached_property
+    def is_bracket(self) -> bool:
+        """As of `Facts`."""
+        return self.family.action is not None and self.is_hamiltonian
+
+    def is_kept_by_tensor(self, values: Sequence[Element], still: Sequence[int] = ()) -> bool:
+        """As of `Facts`, where functions are Casimirs."""
+        return self._is_casimir(values)
+
+    @cached_property
+    def lacks_action(self) -> str:
+        """Why there are no discrete gradients, as a clause; "" where there are."""
+        if self.family.action is not None:
+            return ""
+        if self.family.matrices is not None or self.energy_degree is not None:
+            return _QUADRATIC
+        return _BLOCKS
 
     # -- integrals ------------------------------------------------------------------------
 
@@ -243,6 +280,11 @@ def judge_family(
         refusals |= dict.fromkeys(spheres, _SPHERES)
     if not facts.positions:
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
+    by_energy = [name for name, x in STRUCTURED.items() if x.file in BY_ENERGY]
+    if facts.lacks_action:
+        refusals |= dict.fromkeys(by_energy, facts.lacks_action)
+    elif facts.is_dissipative:
+        refusals |= dict.fromkeys(list_backward().intersection(by_energy), BACKWARD)
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
     elif in_plane is not None:
@@ -252,7 +294,9 @@ def judge_family(
     if facts.is_driven:
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
-    judged = judge(facts, refusals, {}, rules)
+    # a sweep of the midpoint is one loop, and one of a discrete gradient has eight
+    preferred = [name for name in prefer(facts) if name not in by_energy]
+    judged = judge(facts, refusals, {}, rules, preferred)
     if in_plane is not None:
         judged = tuple(_judge_plane(each, in_plane) for each in judged)
     return facts, judged

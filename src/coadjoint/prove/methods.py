@@ -99,6 +99,7 @@ def judge(
     refusals: Mapping[str, str],
     maps: Mapping[str, Program],
     rules: Mapping[str, Rule] = MappingProxyType({}),
+    preferred: Sequence[str] | None = None,
 ) -> tuple[JudgedMethod, ...]:
     """Every method of the list, judged.
 
@@ -107,6 +108,8 @@ def judge(
         refusals: Why methods do not apply, by name, as far as they do not.
         maps: What explicit methods make a step of, by name.
         rules: By files of methods, in the place of those of a system without an index.
+        preferred: Names of methods in the order in which ``"auto"`` takes them, in the place of
+            that of `prefer`.
     """
     every = {**_RULES, **rules}
     judged = {
@@ -115,7 +118,7 @@ def judge(
         else _judge(every, facts, method, maps)
         for name, method in {**STRUCTURED, **MAPPED}.items()
     }
-    return _rank(facts, judged)
+    return _rank(prefer(facts) if preferred is None else preferred, judged)
 
 
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
@@ -376,9 +379,9 @@ def _keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool
 # -- the order of preference ----------------------------------------------------------------------
 
 
-def _rank(facts: Facts, judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
+def _rank(preferred: Sequence[str], judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
     """The methods with their ranks: those that apply and keep something, as they are preferred."""
-    wanted = [judged[name] for name in prefer(facts) if name in judged]
+    wanted = [judged[name] for name in preferred if name in judged]
     fit = [each.name for each in wanted if each.applies and (each.exactly or each.is_poisson)]
     return tuple(
         replace(each, rank=fit.index(name) + 1) if name in fit else each

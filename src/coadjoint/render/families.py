@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from coadjoint.declared import Quantity
 from coadjoint.families import (
+    LANES,
     Connection,
     Index,
     PrincipalSymbol,
@@ -25,10 +26,10 @@ from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.bands import find_bands
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
-from coadjoint.lower.families import FEWEST, LANES, SUM, Loops, Part, Read
+from coadjoint.lower.families import FEWEST, SUM, Loops, Part, Read
 from coadjoint.lower.program import Node, Statement
 from coadjoint.lower.tableau import dop853
-from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod
+from coadjoint.methods import BY_ENERGY, MAPPED, STRUCTURED, JudgedMethod
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.family_solvers import Counts, arrange_family
 from coadjoint.render.kernels import (
@@ -46,6 +47,7 @@ from coadjoint.render.kernels import (
 from coadjoint.render.solvers import list_normals
 from coadjoint.render.tables import fill
 from coadjoint.solve.methods import krylov, spherical_midpoint
+from coadjoint.solve.methods.discrete_gradient import GRADIENTS
 from coadjoint.solve.methods.lie_poisson import STOPPING
 
 
@@ -604,6 +606,8 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "krylov": {name: getattr(krylov, name) for name in ("MOST", "LEAST", "SUMS")},
         "near": spherical_midpoint.NEAR,
         "roundings": spherical_midpoint.ROUNDINGS,
+        "acts": "energy_gradient" in context.loops,
+        "gradients": GRADIENTS if any(each.file in BY_ENERGY for each in implicit) else None,
     }
 
 

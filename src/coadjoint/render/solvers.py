@@ -50,12 +50,8 @@ from coadjoint.render.recurrences import (
     find_next,
     list_reads,
 )
-from coadjoint.solve.methods import (
-    average_gradient,
-    coadjoint_mean,
-    discrete_gradient,
-    spherical_midpoint,
-)
+from coadjoint.solve.methods import coadjoint_mean, spherical_midpoint
+from coadjoint.solve.methods.discrete_gradient import GRADIENTS
 from coadjoint.solve.methods.gauss import TABLEAUS
 from coadjoint.solve.methods.lie_poisson import STOPPING
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -362,11 +358,7 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
             "with_vector": [
                 each.name for each in KERNEL_FUNCTIONS.values() if each.below == "vector"
             ],
-            "gradients": {
-                "NODES": average_gradient.NODES,
-                "ROUNDINGS": discrete_gradient.ROUNDINGS,
-                "NEAR": discrete_gradient.NEAR,
-            },
+            "gradients": GRADIENTS,
             "mean": {name: getattr(coadjoint_mean, name) for name in ("TERMS", "LEAST", "PARTS")},
             "tableaus": {
                 each.macro: TABLEAUS[each.order] for each in methods if each.file == "gauss"

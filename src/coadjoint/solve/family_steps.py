@@ -185,6 +185,8 @@ class FamilyTwin(StepwiseStepper):
             functions: dict[str, Any] = {"rates": self._rates, "field": self._rates}
             functions |= {"spheres": spheres, "bracket": self._bracket, "sandwich": self._sandwich}
             functions["gradient"] = partial(self._evaluate, ("energy_gradient",))
+            functions["energy"] = partial(self._evaluate, ("energy",))
+            functions["members"] = family.size
             if choice.newton and family.series.has("BANDS"):
                 reach, wraps = family.series.value("BANDS")
                 functions["bands"] = Bands(family.size, reach, bool(wraps))
@@ -237,7 +239,9 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        others = ("projection", "noise_vector", "kinks", *ACTION, "sandwich")
+        last = "sandwich" if "sandwich" in system.functions else "energy"
+        acting = (*ACTION, last) if {*ACTION} <= system.functions.keys() else ()
+        others = ("projection", "noise_vector", "kinks", *acting)
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}

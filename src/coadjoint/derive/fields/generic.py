@@ -17,11 +17,12 @@ from typing import Any
 
 import sympy
 
+from coadjoint.derive.action import Bracket, add_action
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.ends import CLOSURES, EndCalculus, find_weight
 from coadjoint.derive.fields.jets import Jets, jets_of, narrow, solved
-from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, name_at
+from coadjoint.derive.fields.lattice import Calculus, Lattice, LatticeField, LatticeTerm, name_at
 from coadjoint.derive.fields.operators import Operator
 from coadjoint.derive.fields.solved import (
     find_factors,
@@ -116,11 +117,14 @@ class GenericPoint:
     def motion(self, calculus: Calculus, place: Callable[[Element], Lattice]) -> list[Lattice]:
         """The rates of the fields at points."""
         slopes = [calculus.vary([place(x) for x in own]) for own in self.slopes]
-        entries = [
+        return calculus.compose(self._place_operator(place), slopes)
+
+    def _place_operator(self, place: Callable[[Element], Lattice]) -> list[list[list[LatticeTerm]]]:
+        """The operator of the bracket at points."""
+        return [
             [[(place(t.left), t.order, place(t.right)) for t in entry] for entry in row]
             for row in self.operator
         ]
-        return calculus.compose(entries, slopes)
 
     def placer(
         self,
@@ -197,6 +201,12 @@ class GenericPoint:
 
     def _write(self, number: int | None) -> tuple[list[sympy.Expr], dict[str, sympy.Expr]]:
         """The same of a point near an end."""
+        calculus, place = self._place_in_trees(number)
+        rates = [f(0) for f in self.motion(calculus, place)]
+        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+
+    def _place_in_trees(self, number: int | None) -> tuple[Calculus, Callable[[Element], Lattice]]:
+        """Differences and expressions as SymPy has them."""
         field = self.setting.field
         inverse = self.find_inverse(sympy.Symbol(self.count), sympy.Symbol(self.space.length))
         given = {"inverse": inverse, "number": rational, "tidy": sympy.factor_terms}
@@ -206,9 +216,10 @@ class GenericPoint:
             new = {sympy.Symbol(name): value for name, value in values.items()}
             return field.to_sympy(element).xreplace(new)
 
-        place = self.placer(calculus, lambda name, i: sympy.Symbol(name_at(name, i)), convert)
-        rates = [f(0) for f in self.motion(calculus, place)]
-        return rates, {name: place(value)(0) for name, value in self.densities.items()}
+        def value(name: str, i: int) -> sympy.Symbol:
+            return sympy.Symbol(name_at(name, i))
+
+        return calculus, self.placer(calculus, value, convert)
 
     @cached_property
     def reach(self) -> int:
@@ -367,7 +378,7 @@ class GenericPoint:
             for name, term in densities.items()
         )
         named = {s for each in totals for s in each.formula.free_symbols}
-        return Family(
+        family = Family(
             index=self.space.index,
             states=states,
             shifts=tuple(sorted({shift for _, shift in neighbours})),
@@ -385,6 +396,33 @@ class GenericPoint:
             count=(count,),
             solved=write_solved(self.setting, self.order, inverse),
         )
+        return add_action(family, self._multiply(None), self._multiply_ends())
+
+    def _multiply_ends(self) -> dict[int, Bracket]:
+        """The bracket at points that read one with a weight; empty on a circle."""
+        some = len(self.numbers) // 2
+        reach = some and some + width_of(1, self.order)
+        return {n: self._multiply(n) for n in (*range(reach), *range(-reach, 0))}
+
+    def _multiply(self, number: int | None) -> Bracket:
+        """The bracket of a point times a vector: on one over the weights and the spacing."""
+
+        def apply(find: Callable[[str, int], sympy.Symbol]) -> list[sympy.Expr]:
+            calculus, place = self._place_in_trees(number if number in self.numbers else None)
+
+            def look_up(name: str) -> Lattice:
+                return lambda i: find(name, i) / rational(self._find_weight(number, i))
+
+            vector = list(map(look_up, self.setting.state))
+            rows = calculus.compose(self._place_operator(place), vector)
+            return [calculus.inverse * f(0) for f in rows]
+
+        return apply
+
+    def _find_weight(self, number: int | None, i: int) -> Fraction:
+        """The weight of a point so many points after one near an end."""
+        at = None if number is None else number + i
+        return find_weight(self.order, at if at in self.numbers else None)
 
     @property
     def least(self) -> int:

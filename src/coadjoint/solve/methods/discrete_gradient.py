@@ -11,13 +11,15 @@ Read next: `coadjoint.solve.methods.average_gradient`, which says what steps kee
 
 from __future__ import annotations
 
+from math import sqrt
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from coadjoint.solve.methods.average_gradient import AverageGradient
+from coadjoint.families import LANES
+from coadjoint.solve.methods.average_gradient import NODES, AverageGradient
 from coadjoint.solve.methods.lie_poisson import Arc, Gradient, Sweep
-from coadjoint.solve.steps import larger
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,6 +33,10 @@ ROUNDINGS: Final = 2.0**-50
 #: By what part of the state the middle of a step may move once c stays: what c corrects is so small
 #: that it is known by then, and its roundings would go on to move the step.
 NEAR: Final = 2.0**-40
+#: These numbers, as templates read them.
+GRADIENTS: Final = MappingProxyType(
+    {"NODES": NODES, "ROUNDINGS": ROUNDINGS, "NEAR": NEAR, "PARTS": LANES}
+)
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> DiscreteGradient:
@@ -42,6 +48,7 @@ def make(functions: Mapping[str, Any], size: float, order: int) -> DiscreteGradi
         bracket=functions["bracket"],
         size=size,
         order=order,
+        members=functions.get("members", 1),
     )
 
 
@@ -60,9 +67,10 @@ class Corrected:
 
     def approach(self, middle: Array) -> None:
         """Go on to a middle."""
-        change, size = np.zeros(self.done.shape), np.zeros(self.done.shape)
-        for one, other in zip(middle, self.middle, strict=True):
-            change, size = larger(np.abs(one - other), change), larger(np.abs(one), size)
+        change, size = (
+            np.fmax.reduce(np.abs(rows), axis=0, initial=0.0)  # what is no number is left out
+            for rows in (middle - self.middle, middle)
+        )
         self.middle, self.done = middle, self.done | (change <= NEAR * size)
 
 
@@ -71,12 +79,14 @@ class DiscreteGradient(AverageGradient):
 
     Args:
         energy: The energy, ``(1, N)`` or ``(N,)``.
+        members: Of how many equal members it is a sum. Kernels add them up in `LANES` parts, whose
+            roundings grow as a walk with steps to both sides.
         given: As of `AverageGradient`.
     """
 
-    def __init__(self, *, energy: Gradient, **given: Any) -> None:
+    def __init__(self, *, energy: Gradient, members: int = 1, **given: Any) -> None:
         super().__init__(**given)
-        self.energy = energy
+        self.energy, self.growth = energy, sqrt(max(1.0, members / LANES))
 
     def prepare(self, arc: Arc, middle: Array) -> Corrected:
         """As `LiePoisson.prepare`."""
@@ -91,11 +101,12 @@ class DiscreteGradient(AverageGradient):
             self.energy(arc.lanes, arc.middle, end).reshape(-1)
             for end in (arc.state, arc.state + (arc.low + chord))
         )
-        along, square = np.zeros(first.shape), np.zeros(first.shape)
-        for part, more, step in zip(slope, excess, chord, strict=True):
-            along, square = along + (part + more) * step, square + step * step
+        along, square = (  # row by row, as C adds them up
+            np.add.accumulate(rows)[-1] for rows in ((slope + excess) * chord, chord * chord)
+        )
         missing = (last - first) - along
-        factor = find_factor(missing, np.abs(first) + np.abs(last), square)
+        size = self.growth * (np.abs(first) + np.abs(last))
+        factor = find_factor(missing, size, square)
         kept.approach(middle)
         kept.factor = np.where(kept.done, kept.factor, factor)
         return self.move(arc, middle, excess + kept.factor * chord)
