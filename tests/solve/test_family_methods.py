@@ -241,7 +241,7 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
     """And `auto` with a step takes the default."""
     system = ring.resize({"i": 4})
     start = draw_spins(4)
-    for name in ("gauss4", "coadjoint_mean", "splitting4", "discrete_gradient"):
+    for name in ("gauss4", "coadjoint_mean", "kahan", "discrete_gradient"):
         with pytest.raises(KernelArgumentError, match="does not apply to its equal members"):
             system.simulate(start, (0, 1), method=name, step=0.1)
     assert set(judged(ring)) <= {*STRUCTURED, *MAPPED}

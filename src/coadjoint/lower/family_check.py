@@ -18,7 +18,7 @@ from sympy.polys import lex
 from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.families import Family, MatrixMotion, Symbol, Tree
+from coadjoint.families import Family, MatrixMotion, Rises, Symbol, Tree
 from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 
@@ -119,6 +119,10 @@ class _Symbols:
                 return family.shared_noise[read.rows]
             assert (read.array, read.rows) == ("state", len(family.shared_noise)), read
             return self._place(family.indexed_noise[read.blocks - count], read)
+        if function.startswith("flow") and read.blocks >= count:
+            assert (read.array, read.rows, read.blocks) == ("state", 0, count), read
+            assert read.shift is None, read
+            return family.step[0]
         if read.array in ("time", "sizes"):
             return {"time": family.time, "sizes": family.count}[read.array][read.rows]
         if read.array != "state":
@@ -315,6 +319,12 @@ def _list_parts(
     if loops.name in ("constraint_residual", "projection"):
         yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
         return
+    if loops.name.startswith("flow"):
+        flow = family.flows[int(loops.name.removeprefix("flow")) - 1]
+        yield loops.member, _write_out(flow.member), ()
+        yield from ((part, _write_out(flow.ends[end]), ()) for end, part in loops.ends)
+        assert len(loops.ends) == len(flow.ends) == len(family.ends), loops.name
+        return
     if loops.name == "noise_vector":
         yield loops.member, family.noise, ()
         yield from ((part, family.noise_ends[member], ()) for member, part in loops.ends)
@@ -339,6 +349,14 @@ def _list_parts(
     read = [*sums, *slopes.values()] if keeps else list(slopes.values())
     for part, rates in places:
         yield part, [symbols.slope(rate, slopes) for rate in rates], read
+
+
+def _write_out(rises: Rises) -> list[Tree]:
+    """What a flow adds, without symbols of angles."""
+    known = dict[Symbol, Tree]()
+    for symbol, tree in rises.definitions:
+        known[symbol] = tree.xreplace(known)
+    return [tree.xreplace(known) for tree in rises.trees]
 
 
 def _check_part(

@@ -5,8 +5,8 @@ and every method judged by them, as of other systems. Facts are those of a windo
 block for each member, and totals are sums of the same terms for every number of members, so that
 kinds of tensors, degrees and the split of the energy do not depend on it. Integrals count where the
 certificate has them for every number of members. Steps of families are loops over members
-(templates/c/family_methods.c.j2): midpoints, spherical midpoints, and splittings of an energy
-``T(p) + V(q)``.
+(templates/c/methods/family_steps.c.j2): midpoints, spherical midpoints, and splittings, by shifts
+of an energy ``T(p) + V(q)`` and of others by the flows of their parts.
 Read next: `coadjoint.prove.methods`.
 """
 
@@ -18,16 +18,26 @@ from functools import cached_property
 from typing import Final
 
 from coadjoint.derive import Equations
+from coadjoint.derive.splittings import Splitting
 from coadjoint.exact import Element
 from coadjoint.families import Family
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.lower.families import Loops
+from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, Sphere, StructuredMethod
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
-from coadjoint.prove.methods import KINKED, SWEEPS, Judgement, judge, judge_spheres
+from coadjoint.prove.methods import (
+    KINKED,
+    SWEEPS,
+    Judgement,
+    count,
+    judge,
+    judge_spheres,
+    keeps,
+)
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Windows
@@ -42,7 +52,8 @@ _SPHERES: Final = (
     "multiple of it"
 )
 _SPLIT: Final = (
-    "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
+    "it expects coordinates and momenta with the canonical bracket and an energy T(p) + V(q), or "
+    "an energy of neighbours in parts with flows in closed form"
 )
 _PLANE: Final = "Python leads the steps of a field in a plane, between transforms"
 _NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
@@ -57,6 +68,7 @@ class FamilyFacts(Facts):
         family: Those of the generic member.
         loops: Its functions.
         certificate: What is proved for every number of members.
+        splittings: The windows in the parts whose flows the family has.
     """
 
     def __init__(
@@ -66,10 +78,11 @@ class FamilyFacts(Facts):
         family: Family,
         loops: Mapping[str, Loops],
         certificate: Certificate,
+        splittings: Sequence[Splitting] = (),
     ) -> None:
         super().__init__(windows[-1], {}, certificate)
         self.family, self._windows, self._loops = family, windows, loops
-        self._declared = declared
+        self._declared, self._splittings = declared, splittings
 
     @cached_property
     def has_kinks(self) -> bool:
@@ -133,21 +146,29 @@ class FamilyFacts(Facts):
         return tuple(n for n, name in enumerate(self._members[0]) if name in where)
 
     def is_kept_by_flows(self, name: str) -> bool:
-        """Whether an integral has the rate 0 along ``T(p)`` alone and along ``V(q)`` alone.
+        """Whether the flow of each part of the energy keeps an integral.
 
-        Along each flow what moves it stays, so that the integral does. Either flow is a motion of
-        the form of the whole one: what holds in the windows holds for every number of members.
+        Along ``T(p)`` alone and along ``V(q)`` alone what moves it stays, so that the integral does
+        where its rate is 0. Each flow is a motion of the form of the whole one: what holds in the
+        windows holds for every number of members.
         """
-        return all(
-            _is_kept_by_flows(Facts(each, {}, self._certificate), name) for each in self._windows
-        )
+        facts = [Facts(each, {}, self._certificate) for each in self._windows]
+        if not self.flows:
+            return all(_is_kept_by_shifts(each, name) for each in facts)
+        windows = zip(facts, self.flows, strict=True)
+        return all(_is_kept_by_maps(each, name, programs) for each, programs in windows)
+
+    @cached_property
+    def flows(self) -> tuple[tuple[Program, ...], ...]:
+        """Of each window the flows of the parts of its energy, where these are no shifts."""
+        return tuple(map(lower_flows, self._splittings))
 
     # -- integrals ------------------------------------------------------------------------
 
     @cached_property
     def integrals(self) -> tuple[Kept, ...]:
         """What is conserved for every number of members, and the squared radii of spheres."""
-        proved = [each.partition(",")[0] for each in self._proved]
+        proved = [each.partition(",")[0].partition(" where ")[0] for each in self._proved]
         said = {"energy": "the energy is conserved"}
         own = (*super().integrals,)
         named = [x for x in own if said.get(x.name, f"{x.name} is conserved") in proved]
@@ -194,8 +215,15 @@ class FamilyFacts(Facts):
         return found
 
 
-def _is_kept_by_flows(facts: Facts, name: str) -> bool:
-    """The same of one window."""
+def _is_kept_by_maps(facts: Facts, name: str, programs: Sequence[Program]) -> bool:
+    """The same of one window, by the flows of its parts."""
+    named = [each for each in facts.integrals if each.name == name]
+    pairs = ((each, program) for each in named for program in programs)
+    return bool(named) and all(keeps(facts, *pair, is_flow=True) for pair in pairs)
+
+
+def _is_kept_by_shifts(facts: Facts, name: str) -> bool:
+    """The same of one window, along ``T(p)`` and ``V(q)``."""
     field, state = facts.field, facts.state
     rates = [facts.equations.close(rate) for rate in facts.equations.exact.rates]
     rest = {*facts.motion.positions}
@@ -221,6 +249,7 @@ def judge_family(
     *,
     over: str = "equal members",
     in_plane: Sequence[str] | None = None,
+    splittings: Sequence[Splitting] = (),
 ) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
     """The facts of a system of equal members, and every method judged by them.
 
@@ -232,8 +261,9 @@ def judge_family(
         certificate: What is proved for every number of members.
         over: What its solvers are loops over, in words.
         in_plane: Where the members are points of a plane, the integrals that truncated series keep.
+        splittings: The windows in the parts whose flows the family has.
     """
-    facts = FamilyFacts(windows, declared, family, loops, certificate)
+    facts = FamilyFacts(windows, declared, family, loops, certificate, splittings)
     looped = {*LOOPED, *(["isospectral_midpoint"] if family.matrices is not None else [])}
     none = _NONE.format(over)
     refusals = {name: none for name, x in STRUCTURED.items() if x.file not in looped}
@@ -241,7 +271,7 @@ def judge_family(
     if not facts.spheres:
         spheres = (name for name, x in STRUCTURED.items() if x.file == "spherical_midpoint")
         refusals |= dict.fromkeys(spheres, _SPHERES)
-    if not facts.positions:
+    if not (facts.positions or facts.flows):
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
@@ -281,8 +311,22 @@ def _judge_spheres(
 
 
 def _judge_splitting(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
-    """Products of the flows of ``T(p)`` and ``V(q)``, each a shift of positions or of momenta."""
+    """Products of flows: shifts of positions or of momenta, or those of parts of the energy."""
     assert isinstance(facts, FamilyFacts), method.name
+    if facts.flows:
+        parts = [program.name for program in facts.flows[0]]
+        exactly = tuple(
+            x for x in facts.integrals if x.is_casimir or facts.is_kept_by_flows(x.name)
+        )
+        decides = (
+            f"the energy is the sum of {count(len(parts), 'part')} whose flows are in closed form"
+        )
+        return Judgement(
+            exactly,
+            is_poisson=True,
+            decides=f"{decides}, for every number of members",
+            cost=count(len(list_schedules(parts)[method.name]), "explicit map"),
+        )
     exactly = tuple(each for each in facts.integrals if facts.is_kept_by_flows(each.name))
     shifts = len(list_schedules(FLOWS)[method.name])
     return Judgement(

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
+    from coadjoint.solve.methods.sequence import Part
     from coadjoint.solve.steps import Lanes, Method
 
     Array = NDArray[np.float64]
@@ -158,6 +159,8 @@ class FamilyTwin(StepwiseStepper):
         if "kinks" in system.functions:
             self._sizes |= {n: system.rows(n).size for n in ("kinks", "sided_rhs")}
             self._limits = replace(self._limits, kinks=partial(self._evaluate, ("kinks",)))
+        #: The flows of which steps of splittings are products; without any these are shifts.
+        self._flows = tuple(name for name in system.functions if name.startswith("flow"))
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
@@ -178,7 +181,10 @@ class FamilyTwin(StepwiseStepper):
         return self._evaluate((self._rates_name,), lanes, after, state)
 
     def _method(self, run: Ensemble) -> Method:
-        """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
+        """As `NumpyStepper` does; rates are the bracket with the energy.
+
+        Flows are functions of the kernel, or shifts.
+        """
         choice, family = self._choice, self._family
         if choice.is_structured:
             spheres = [(tuple(family.rows_of(rows)),) for rows in family.spheres.values()]
@@ -195,6 +201,13 @@ class FamilyTwin(StepwiseStepper):
                 branches=self._branches,
                 newton=choice.newton,
             )
+        if choice.name in MAPPED and self._flows:
+            all_rows = (slice(family.STATE.size),)
+            maps: list[Part] = [
+                (partial(self._flow, flow), h, all_rows)
+                for flow, h in list_schedules(self._flows)[choice.name]
+            ]
+            return Maps(maps, self._rates, run.size, is_compensated=False, branches=self._branches)
         if choice.name in MAPPED:
             count = len(family.STATE.components) // family.size
             moving = set(family.positions), set(range(count)).difference(family.positions)
@@ -210,6 +223,12 @@ class FamilyTwin(StepwiseStepper):
     def _along(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The derivative of the rates along a vector."""
         return self._evaluate(("jacobian_vector",), lanes, after, np.concatenate([state, vector]))
+
+    def _flow(self, name: str, state: Array, parameters: Array, after: Array) -> Array:
+        """What the flow of a part of the energy adds to a state."""
+        joined, given = np.concatenate([state, after[None]]), np.ascontiguousarray(parameters)
+        call = Call(joined, given, np.empty(state.shape), {"sizes": self._members})
+        return np.asarray(self._find_values(name, call))
 
     def _shift(self, state: Array, parameters: Array, after: Array) -> Array:
         """What a flow adds to the rows that it moves, by their rates, which the others decide."""
@@ -237,7 +256,7 @@ class FamilyStepper(FamilyTwin):
 
     def __init__(self, system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
         super().__init__(system, choice, target)
-        others = ("projection", "noise_vector", "kinks", *ACTION, "sandwich")
+        others = ("projection", "noise_vector", "kinks", *ACTION, "sandwich", *self._flows)
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}

@@ -7,7 +7,7 @@ Read next: `coadjoint.render.targets.c`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -38,6 +38,10 @@ class Generated(Protocol):
     @property
     def fixed(self) -> Mapping[str, NDArray[Any]]:
         """Arrays that every function takes beyond these, by name."""
+        ...
+
+    def list_called(self, function: str) -> Sequence[str]:
+        """What a function calls beyond ``+ - * / sqrt``, or what others do."""
         ...
 
     def sizes(self, function: str) -> Mapping[str, int]:
