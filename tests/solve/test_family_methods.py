@@ -261,8 +261,8 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
         ("half[l] = 0.5 * search->length[l]", "half[l] = 0.4375 * search->length[l]"),
         ("change >= turn->last", "change <= turn->last"),
         (
-            "(x[n] - (total - other)) + (added - other)",
-            "(x[n] - (total - other)) - (added - other)",
+            "(*x - (total - other)) + (added - other)",
+            "(*x - (total - other)) - (added - other)",
         ),
     ],
 )

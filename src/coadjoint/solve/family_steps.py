@@ -57,7 +57,7 @@ FUNCTIONS: Final = {
 }
 #: What two runs have alike.
 COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
-#: And of implicit methods.
+#: And of methods that keep structure, as far as they have them.
 LEFT: Final = ("memory", "sweeps")
 #: Arrays of an ensemble that are handed over.
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
@@ -207,7 +207,7 @@ class FamilyTwin(StepwiseStepper):
                 (partial(self._flow, flow), h, all_rows)
                 for flow, h in list_schedules(self._flows)[choice.name]
             ]
-            return Maps(maps, self._rates, run.size, is_compensated=False, branches=self._branches)
+            return Maps(maps, self._rates, run.size, is_compensated=True, branches=self._branches)
         if choice.name in MAPPED:
             count = len(family.STATE.components) // family.size
             moving = set(family.positions), set(range(count)).difference(family.positions)
@@ -217,7 +217,7 @@ class FamilyTwin(StepwiseStepper):
             steps = [
                 (self._shift, h, flows[flow]) for flow, h in list_schedules(flows)[choice.name]
             ]
-            return Maps(steps, self._rates, run.size, is_compensated=False, branches=self._branches)
+            return Maps(steps, self._rates, run.size, is_compensated=True, branches=self._branches)
         return super()._method(run)
 
     def _along(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
@@ -333,7 +333,7 @@ class FamilyStepper(FamilyTwin):
                 setattr(given, name, array.ctypes.data)
         if run.kinks is not None and run.brief is not None:
             given.crossed, given.brief = run.kinks.ctypes.data, run.brief.ctypes.data
-        for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
+        for name in (*ARRAYS, *_list_left(run)):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
@@ -422,6 +422,11 @@ class _Stages(DormandPrince8):
         return np.array([five]), np.array([three])
 
 
+def _list_left(run: Ensemble) -> list[str]:
+    """What the steps of a run leave."""
+    return [name for name in LEFT if getattr(run, name) is not None]
+
+
 def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
     """The steps of a family in C: what is missing or wrong is an error.
 
@@ -467,7 +472,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
             while stepper.advance(run, 0, members, 5):
                 pass
         kinked = ("kinks", "brief") if system.kinks else ()
-        for name in (*COMPARED, *(LEFT if structured and exact else ()), *kinked):
+        for name in (*COMPARED, *(_list_left(found) if exact else ()), *kinked):
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
