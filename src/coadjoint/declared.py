@@ -96,7 +96,8 @@ class Bound:
 class KernelFunction:
     """A function that a kernel may have.
 
-    What it computes, says the function of the same name in `coadjoint.derive.formulas`.
+    What it computes, says a function in `coadjoint.derive.formulas`, of the same name but for a
+    number at its end.
 
     Attributes:
         name: The same in every target.
@@ -108,8 +109,8 @@ class KernelFunction:
         turning_bound: The summary of such a system with constraints, where it is another one.
         by: What it is a derivative of the rates by: the name of an array, or "".
         below: What follows the rows of the state in its first argument: what is reconstructed,
-            a vector with a row for each of them, one with a row for each Wiener process, or one
-            with a sign for each kink.
+            a vector with a row for each of them, one with a row for each Wiener process, one with
+            a sign for each kink, or the length of a step.
         looped: Whether only systems whose rates are loops over a table have it, or only others.
     """
 
@@ -121,8 +122,13 @@ class KernelFunction:
     turning: str = ""
     turning_bound: str = ""
     by: Literal["", "state", "inputs", "parameters"] = ""
-    below: Literal["", "reconstructed", "vector", "noise", "sides"] = ""
+    below: Literal["", "reconstructed", "vector", "noise", "sides", "step"] = ""
     looped: Literal["", "only", "never"] = ""
+
+    @property
+    def formula(self) -> str:
+        """The name of its function in `coadjoint.derive.formulas`: flows of all parts share one."""
+        return self.name.rstrip("0123456789")
 
 
 @dataclass(frozen=True)

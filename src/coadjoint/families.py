@@ -322,6 +322,33 @@ class Action:
 
 
 @dataclass(frozen=True)
+class Rises:
+    """What a flow adds to a member in a time.
+
+    Attributes:
+        definitions: Symbols of half an angle, its tangent and the sine of the angle, with what they
+            are, in the symbols of rates, of the time and of earlier ones.
+        trees: What is added to each component, in these symbols.
+    """
+
+    definitions: tuple[tuple[Symbol, Tree], ...]
+    trees: tuple[Tree, ...]
+
+
+@dataclass(frozen=True)
+class PartFlow:
+    """The flow of a part of the energy.
+
+    Attributes:
+        member: What it adds to member i.
+        ends: The same of members that lack a neighbour, as in `Family.ends`.
+    """
+
+    member: Rises
+    ends: Mapping[int, Rises]
+
+
+@dataclass(frozen=True)
 class Family:
     """The equations of the generic member of an indexed system.
 
@@ -365,6 +392,8 @@ class Family:
         matrices: What the members are where they are entries of matrices, else None.
         action: The bracket and the gradient of the energy; None where nothing asks for them, or
             they are no loops.
+        flows: The flows of the parts of the energy, in the order of a symmetric product.
+        step: The symbol of the time over which these flow, if there are any.
     """
 
     index: Index
@@ -395,6 +424,8 @@ class Family:
     solved: tuple[Solved, ...] = ()
     matrices: MatrixMotion | None = None
     action: Action | None = None
+    flows: tuple[PartFlow, ...] = ()
+    step: tuple[Symbol, ...] = ()
 
     @property
     def completed(self) -> tuple[Symbol, ...]:

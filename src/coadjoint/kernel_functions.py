@@ -170,6 +170,19 @@ processes that move all members, then those of members, process by process.""",
         below="noise",
         looped="only",
     ),
+    *(
+        KernelFunction(
+            name=f"flow{n}",
+            summary=f"What the flow of part {n} of the energy adds to the state in a time",
+            shape="(n, *batch)",
+            doc="""Only systems of equal members have it whose energy is a sum of parts with flows
+in closed form, other than those of momenta and of coordinates. Its first argument is the state with
+the time below it. Splittings are products of these flows.""",
+            below="step",
+            looped="only",
+        )
+        for n in range(1, 7)
+    ),
     KernelFunction(
         name="sided_rhs",
         summary="Time derivative of the state with given signs at the kinks",

@@ -21,11 +21,13 @@ from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.ladder import LEVELS, WRITTEN_LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
+from coadjoint.derive.family_flows import split_family
 from coadjoint.derive.fields.grid import Grid, make_grid
 from coadjoint.derive.fields.torus import TorusGrid, make_torus
 from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.reference import Reference
+from coadjoint.derive.splittings import Splitting
 from coadjoint.families import Family
 from coadjoint.lower.check import check_programs, check_sizes
 from coadjoint.lower.families import lower_family
@@ -60,12 +62,14 @@ class RenderedFamily:
         declared: What the spec says of the other members.
         family: Equations of the generic member.
         context: What the generated files say.
+        splittings: The windows in the parts whose flows the family has.
     """
 
     windows: tuple[Equations, ...]
     declared: Windows
     family: Family
     context: FamilyContext
+    splittings: tuple[Splitting, ...] = ()
 
     @property
     def printed(self) -> dict[str, str]:
@@ -139,13 +143,15 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     """
     first = routes[0]
     grid: Grid | TorusGrid | None = None
+    splittings: tuple[Splitting, ...] = ()
     if spec.space is not None:
         grid = make_torus(first) if spec.in_plane else make_grid(first)
         windows, declared, family = grid.windows, grid.declared, grid.family
     else:
         assert spec.family is not None, spec.name
-        declared, family = spec.family, derive_family(first)
+        declared = spec.family
         windows = tuple(derive(each, spec.routes[0]) for each in declared.windows)
+        family, splittings = split_family(first, derive_family(first), windows)
     progress("lower")
     loops = lower_family(family)
     progress("prove")
@@ -155,7 +161,7 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
     plane = [n for n, kept in grid.exact.items() if kept] if isinstance(grid, TorusGrid) else None
     over = "equal members" if grid is None else "points"
     given = (windows, declared, family, loops, certificate)
-    facts, methods = judge_family(*given, over=over, in_plane=plane)
+    facts, methods = judge_family(*given, over=over, in_plane=plane, splittings=splittings)
     supported = certificate.count(Verdict.SUPPORTED)
     own = first if grid is None else windows[-1]
     context = family_context(own, family, loops, supported, facts, methods)
@@ -172,7 +178,13 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
         certificate=certificate,
         programs={"rhs": replace(member.program, state=tuple(map(str, family.states)))},
         texts=texts,
-        family=RenderedFamily(windows=windows, declared=declared, family=family, context=context),
+        family=RenderedFamily(
+            windows=windows,
+            declared=declared,
+            family=family,
+            context=context,
+            splittings=splittings,
+        ),
     )
 
 
@@ -190,7 +202,8 @@ def verify(
     with load_texts(rendered.texts, LEVELS if loads else WRITTEN_LEVELS) as system:
         if (own := rendered.family) is not None:
             given = (own.windows, own.declared, own.family, own.context)
-            return crosscheck_family(*given, rendered.texts, own.printed, system)
+            texts, splittings = rendered.texts, own.splittings
+            return crosscheck_family(*given, texts, own.printed, system, splittings=splittings)
         reference = Reference(rendered.equations)
         maps = rendered.maps
         return crosscheck(rendered.programs, rendered.texts, reference, system, maps=maps)

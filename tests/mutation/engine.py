@@ -116,6 +116,17 @@ MUTANTS = (
         "_multiply_out: rewrite path[order] / h -> path[order] * h",
         tests=("tests/solve/test_ensemble.py -k the_path",),
     ),
+    *of(
+        "derive/family_flows",
+        "_Reader._rises_of: rewrite there[name] - field[name] -> there[name] + field[name]",
+        "_are_shifts: rewrite is_canonical and _1 -> _1",
+        tests=("tests/solve/test_family_flows.py -k turns_each_spin",),
+    ),
+    *of(
+        "family_methods",
+        "_is_kept_by_maps: rewrite bool(named) and _1 -> bool(named)",
+        tests=("tests/solve/test_family_flows.py -k keep_what",),
+    ),
     *(replace(mutant, always=True) for mutant in (*CHECKS, *SIGNS)),
     *of("identities", "drift: flip equations", tests=("tests/prove/test_driven.py",)),
     *of("prove/constrained", "_differentiate: drop own", tests=("tests/prove/test_driven.py",)),

@@ -98,7 +98,7 @@ int main(void)
             evaluate(sizes[k], count);
             if (simulate(sizes[k], count, 0.005))
                 return 1;
-#if !defined(HEUN) && !defined(MIDPOINT) && !defined(ISOSPECTRAL_MIDPOINT)
+#if !defined(HEUN) && !defined(MIDPOINT) && !defined(ISOSPECTRAL_MIDPOINT) && !defined(SPLITTING)
             if (simulate(sizes[k], count, 0.0))
                 return 1;
 #endif
@@ -108,7 +108,7 @@ int main(void)
 """
 METHODS = {"rk4": "RK4", "dop853": "DOP853", "taylor": "ORDER=6"}
 MEMBERS = tuple(METHODS.values())  # entries of matrices have one more
-METHODS["isospectral_midpoint"] = "ISOSPECTRAL_MIDPOINT"
+METHODS |= {"splitting": "SPLITTING", "isospectral_midpoint": "ISOSPECTRAL_MIDPOINT"}
 
 
 def has_method(name, method):
@@ -119,6 +119,8 @@ def has_method(name, method):
     solver = systems_folder() / name / "solver.py"
     if name != "tops" and not solver.exists():
         return False
+    if method == "splitting":
+        return name == "tops" or "defined(SPLITTING)" in solver.with_name("solver.c").read_text()
     if name == "tops" or method not in ("taylor", "isospectral_midpoint"):
         return method != "isospectral_midpoint"
     if method == "taylor":
@@ -160,7 +162,11 @@ def write(rendered, change=lambda main: main):
         "indexed": len(family.indexed),
         "small": family.small,
         "calls": calls,
-        "projection": f".projection = {name}_projection," if family.turned else "",
+        "projection": " ".join(
+            f".{each} = {name}_{each},"
+            for each in functions
+            if each.startswith("flow") or (each == "projection" and family.turned)
+        ),
         "sizes": "SMALL, SMALL + 1, 7, 17, 43",
     }
     if family.matrices is not None:

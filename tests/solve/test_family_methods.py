@@ -12,10 +12,12 @@ from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
 from coadjoint.spec.reader import read_spec_text
 from coadjoint.systems import (
+    elastic_chain,
     heisenberg_lattice,
     n_body,
     point_vortices,
     sphere_vortices,
+    spin_chain_lattice,
     toda_lattice,
 )
 from tests.families import (
@@ -74,12 +76,14 @@ def draw_spins(n, members=1):
         (sphere_vortices, "spherical_midpoint", {"M", "dot(x[i], x[i])"}, {"energy"}),
         (toda_lattice, "splitting4", {"P"}, {"energy", "T"}),
         (n_body, "splitting4", {"P", "J"}, {"energy"}),
+        (spin_chain_lattice, "splitting4", {"J"}, {"energy"}),
+        (elastic_chain, "splitting4", {"L", "J"}, {"energy"}),
         (point_vortices, "gauss4", None, None),
     ],
     ids=lambda each: getattr(each, "name", None),
 )
 def test_the_default_is_what_keeps_the_bracket(system, default, exactly, nearly):
-    """Spins and vortices on spheres, masses with ``T(p) + V(q)``; of plane vortices neither."""
+    """Spins on spheres, masses with ``T(p) + V(q)``, bodies by parts; of plane vortices none."""
     methods = judged(system.system)
     if exactly is None:  # not separable: {x, y} = 1/Gamma, and log of both
         assert not {"spherical_midpoint", "splitting4"} & methods.keys()
@@ -199,6 +203,7 @@ def test_laws_of_ten_thousand_spins(method):
     [
         (heisenberg_lattice, ("spherical_midpoint4",)),
         (toda_lattice, ("splitting4",)),
+        (spin_chain_lattice, ("splitting", "splitting4")),
         (sphere_vortices, ("spherical_midpoint", "midpoint")),
     ],
     ids=lambda each: getattr(each, "name", None),
@@ -241,7 +246,7 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
     """And `auto` with a step takes the default."""
     system = ring.resize({"i": 4})
     start = draw_spins(4)
-    for name in ("gauss4", "coadjoint_mean", "splitting4", "discrete_gradient"):
+    for name in ("gauss4", "coadjoint_mean", "kahan", "discrete_gradient"):
         with pytest.raises(KernelArgumentError, match="does not apply to its equal members"):
             system.simulate(start, (0, 1), method=name, step=0.1)
     assert set(judged(ring)) <= {*STRUCTURED, *MAPPED}
@@ -256,8 +261,8 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
         ("half[l] = 0.5 * search->length[l]", "half[l] = 0.4375 * search->length[l]"),
         ("change >= turn->last", "change <= turn->last"),
         (
-            "(x[n] - (total - other)) + (added - other)",
-            "(x[n] - (total - other)) - (added - other)",
+            "(*x - (total - other)) + (added - other)",
+            "(*x - (total - other)) - (added - other)",
         ),
     ],
 )

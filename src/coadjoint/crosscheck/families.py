@@ -21,6 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from decimal import localcontext
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -36,6 +37,7 @@ from coadjoint.crosscheck.ladder import NO_COMPILER, Report, available_targets
 from coadjoint.crosscheck.oracle import (
     CONTEXT,
     OutsideDomain,
+    call,
     errors,
     exact,
     oracle,
@@ -45,6 +47,8 @@ from coadjoint.crosscheck.solver_objects import NOISY
 from coadjoint.crosscheck.subject import K_ARITHMETIC, K_ELEMENTARY, depth
 from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.reference import Reference
+from coadjoint.derive.setting import STEP
+from coadjoint.derive.splittings import Splitting
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
@@ -114,6 +118,7 @@ class _Window:
         inputs: Names of the rows of the inputs.
         noise: Names of the Wiener processes; those that no member has in a window are missing in
             its equations.
+        splitting: The parts of its energy whose flows the family has.
     """
 
     reference: Reference
@@ -126,9 +131,16 @@ class _Window:
     time: tuple[str, ...]
     inputs: tuple[str, ...]
     noise: tuple[str, ...]
+    splitting: Splitting | None
 
     @classmethod
-    def of(cls, equations: Equations, declared: Windows, family: Family) -> _Window:
+    def of(
+        cls,
+        equations: Equations,
+        declared: Windows,
+        family: Family,
+        splitting: Splitting | None = None,
+    ) -> _Window:
         """The window of Equations of a few members."""
         spec = equations.spec
         quantities = (*spec.variables, *spec.parameters, *spec.inputs)
@@ -173,6 +185,7 @@ class _Window:
                 *declared.shared_noise,
                 *(member_name(each, k) for each in declared.indexed_noise for k in range(size)),
             ),
+            splitting=splitting,
         )
 
     def evaluate(self, function: str, points: Sequence[_Point]) -> dict[int, list[Any]]:
@@ -188,6 +201,8 @@ class _Window:
                     numbers = point.state[len(self.state) :].tolist()
                     found[n] = self._move_by_noise(inputs[n], numbers)
             return found
+        if function.startswith("flow"):
+            return self._follow(int(function.removeprefix("flow")) - 1, points, inputs)
         own = "rhs" if function == "sided_rhs" else function  # at the signs that the points have
         columns = {name: np.array([each[name] for each in inputs]) for name in inputs[0]}
         known = find_exact(self.replayed, own, columns)
@@ -220,6 +235,23 @@ class _Window:
             return [by_name[name] for name in self.residuals]
         return values
 
+    def _follow(
+        self, place: int, points: Sequence[_Point], inputs: Sequence[Mapping[str, float]]
+    ) -> dict[int, list[Any]]:
+        """What the flow of a part adds, as the elements say that were proved for this window."""
+        assert self.splitting is not None, place
+        field, flow = self.splitting.equations.setting.field, self.splitting.parts[place].flow
+        there = dict(zip(self.reference.state, flow.values, strict=True))
+        rises, found = [there[name] - field[name] for name in self.state], dict[int, list[Any]]()
+        for n, point in enumerate(points):
+            given = {**inputs[n], STEP: float(point.state[-1])}
+            with suppress(OutsideDomain, ArithmeticError), localcontext(CONTEXT):
+                known = {name: exact(value) for name, value in given.items()}
+                for name, element in flow.define(field):
+                    known[name] = field.evaluate(element, known, exact, call)
+                found[n] = [field.evaluate(rise, known, exact, call) for rise in rises]
+        return found
+
     def _move_by_noise(self, inputs: Mapping[str, float], numbers: Sequence[float]) -> list[Any]:
         """What each process does to the state, times a number, one after the other."""
         given = dict(zip(self.noise, numbers, strict=True))
@@ -242,6 +274,7 @@ def crosscheck_family(
     printed: Mapping[str, str],
     system: Any,
     targets: Sequence[str] | None = None,
+    splittings: Sequence[Splitting] = (),
 ) -> Report:
     """Run rungs 3, 4 and 5.
 
@@ -254,6 +287,7 @@ def crosscheck_family(
         printed: What the templates print.
         system: The loaded system.
         targets: What to compare; by default all, or those that need no compiler without one.
+        splittings: The windows in the parts whose flows the family has.
 
     Raises:
         CompilerError: The compiler does not work, or fails on this kernel.
@@ -267,8 +301,8 @@ def crosscheck_family(
         if source != hashlib.sha256(texts[BUILDS[target].kernel].encode()).hexdigest():
             raise _fail(system.name, f"the target {target} was not loaded from this text", 3)
     figures: dict[str, dict[str, Figures]] = {name: {} for name in loops}
-    for equations in windows:
-        window = _Window.of(equations, declared, family)
+    for equations, splitting in zip_longest(windows, splittings):
+        window = _Window.of(equations, declared, family, splitting)
         for name, each in loops.items():
             _check_window(window, each, system, chosen, figures[name])
         sized = _resize(system, window.size)

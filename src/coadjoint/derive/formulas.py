@@ -54,7 +54,7 @@ class Rows:
 
 def rows_of(equations: Equations, function: str) -> Rows | None:
     """What a function of the table computes; None where a system has no such function."""
-    formula = getattr(sys.modules[__name__], KERNEL_FUNCTIONS[function].name)
+    formula = getattr(sys.modules[__name__], KERNEL_FUNCTIONS[function].formula)
     rows: Rows | None = formula(equations)
     return rows
 
@@ -207,6 +207,10 @@ def noise_gradient(equations: Equations) -> Rows | None:
 
 def noise_vector(equations: Equations) -> None:
     """Of equal members alone, whose noise is read off from `noise` of a few of them."""
+
+
+def flow(equations: Equations) -> None:
+    """Of equal members alone, of which a Family has the flow of each part of the energy."""
 
 
 def sided_rhs(equations: Equations) -> None:

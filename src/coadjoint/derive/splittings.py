@@ -13,6 +13,8 @@ splittings of one body apart by orders of magnitude; so parts and order are chos
     flows of a step and the sum is over the default state; where a component has no default, over
     states with those of 1, 1/2, 1/3, ... in turn. The first one of equals to 12 digits.
 
+Of equal members terms of the same components are one, so that parts are the same for any number of
+members.
 Read next: `coadjoint.derive.flows`, and `coadjoint.lower.compositions`.
 """
 
@@ -24,6 +26,7 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
 from itertools import permutations, product
+from types import MappingProxyType
 from typing import Any
 
 import mpmath
@@ -48,14 +51,23 @@ STATES = 6
 DIGITS = 40
 #: Work of nested brackets, in products of terms; beyond, parts keep their order.
 WORK = 300_000
+#: Of a part, on which kinds of coordinates its terms depend.
+Kinds = frozenset[frozenset[str]]
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the energy, with its flow."""
+    """A part of the energy, with its flow.
+
+    Attributes:
+        energy: The part.
+        flow: Its flow.
+        kinds: The kinds of coordinates of its terms: of equal members components, else names.
+    """
 
     energy: Element
     flow: Flow
+    kinds: Kinds
 
 
 @dataclass(frozen=True)
@@ -86,8 +98,19 @@ class NoSplitting:
     reason: str
 
 
-def find_splitting(equations: Equations) -> Splitting | NoSplitting:
-    """The splitting of a system, its flows proved, or why there is none."""
+def find_splitting(
+    equations: Equations,
+    kinds: Mapping[str, str] = MappingProxyType({}),
+    parts: Sequence[Kinds] = (),
+) -> Splitting | NoSplitting:
+    """The splitting of a system, its flows proved, or why there is none.
+
+    Args:
+        equations: Of the system.
+        kinds: What coordinates are of one kind, by their names; terms of the same kinds are one.
+        parts: The kinds of the terms of each part, in order, where they are known; else they are
+            chosen.
+    """
     reason = _find_hindrance(equations)
     if reason:
         return NoSplitting(reason)
@@ -95,7 +118,7 @@ def find_splitting(equations: Equations) -> Splitting | NoSplitting:
     setting = registry.make_setting(equations.spec, list_symbols(size), 2 * size)
     own = derive(equations.spec, equations.route, setting=setting)
     try:
-        return _Search(own).run()
+        return _Search(own, kinds).run(parts)
     except (NoFlowError, AlgebraError) as error:
         return NoSplitting(str(error))
 
@@ -130,9 +153,10 @@ def _find_hindrance(equations: Equations) -> str:
 class _Search:
     """The search for the splitting of one system."""
 
-    def __init__(self, equations: Equations) -> None:
+    def __init__(self, equations: Equations, kinds: Mapping[str, str]) -> None:
         self.equations, self.setting = equations, equations.setting
         self.field, self.state = self.setting.field, self.setting.state
+        self.kinds = tuple(kinds.get(name, name) for name in self.state)
         exact = equations.exact
         assert exact.poisson_tensor is not None
         assert exact.energy is not None
@@ -140,8 +164,8 @@ class _Search:
         self.structure = PoissonStructure(self.field, self.state, tensor)
         self.energy = equations.close(exact.energy)
 
-    def run(self) -> Splitting:
-        """The splitting.
+    def run(self, given: Sequence[Kinds]) -> Splitting:
+        """The splitting, into parts that are given or chosen.
 
         Raises:
             NoFlowError: There is none; the text says why.
@@ -150,11 +174,13 @@ class _Search:
         if algebra is None:
             raise NoFlowError("its Poisson tensor is not affine in the state")
         self.flows = Flows(self.field, self.state, algebra)
-        self._atoms = self._take_apart()
-        chosen, errors = self._choose()
+        atoms = self._take_apart()
+        self._atoms = [function for _, function in atoms]
+        chosen, errors = self._choose() if not given else ([*_find_groups(atoms, given)], {})
         parts = tuple(
-            Part(function, self.flows.follow(function))
-            for function in (self.field.sum(self._atoms[n] for n in group) for group in chosen)
+            Part(function, self.flows.follow(function), frozenset().union(*(k for k, _ in own)))
+            for own in ([atoms[n] for n in group] for group in chosen)
+            for function in [self.field.sum(each for _, each in own)]
         )
         rest = self.energy - self.field.sum(part.energy for part in parts)
         moved = self.structure.hamiltonian_vector_field(rest)
@@ -166,26 +192,28 @@ class _Search:
         reach = self.field.reach(function)
         return [n for n, name in enumerate(self.state) if name in reach]
 
-    def _take_apart(self) -> list[Element]:
-        """The terms of the energy, together those of the same coordinates, and those of kicks."""
-        field, terms = self.field, dict[frozenset[int], list[Element]]()
+    def _take_apart(self) -> list[tuple[Kinds, Element]]:
+        """The terms of the energy, together those of the same kinds, and those of kicks."""
+        field, terms = self.field, dict[frozenset[str], list[Element]]()
+        first = {kind: n for n, kind in reversed([*enumerate(self.kinds)])}
         for term in field.terms(self.energy):
-            if places := frozenset(self._places(term)):
-                terms.setdefault(places, []).append(term)
+            if kinds := frozenset(self.kinds[n] for n in self._places(term)):
+                terms.setdefault(kinds, []).append(term)
         if not terms:
             raise NoFlowError("its energy does not depend on the state")
-        groups: list[tuple[frozenset[int], Element]] = []
-        for places in sorted(terms, key=sorted):
-            function = field.sum(terms[places])
+        groups: list[tuple[frozenset[int], Kinds, Element]] = []
+        for kinds in sorted(terms, key=lambda own: sorted(first[kind] for kind in own)):
+            function, one = field.sum(terms[kinds]), frozenset([kinds])
+            places = frozenset(self._places(function))
             self._check_term(places, function)
-            for n, (known, before) in enumerate(groups):
+            for n, (known, before, other) in enumerate(groups):
                 both = known | places
                 if self._are_kicks(both):
-                    groups[n] = both, before + function
+                    groups[n] = both, before | one, other + function
                     break
             else:
-                groups.append((places, function))
-        return [function for _, function in groups]
+                groups.append((places, one, function))
+        return [(kinds, function) for _, kinds, function in groups]
 
     def _check_term(self, places: frozenset[int], function: Element) -> None:
         """Refuse what has no flow here."""
@@ -301,6 +329,14 @@ class _Search:
             name: np.array([_number(value) for value in row], dtype=object)
             for name, row in sample.items()
         }
+
+
+def _find_groups(
+    atoms: Sequence[tuple[Kinds, Element]], parts: Sequence[Kinds]
+) -> Iterator[list[int]]:
+    """The atoms of each part that is given."""
+    for part in parts:
+        yield [n for n, (kinds, _) in enumerate(atoms) if kinds <= part]
 
 
 def _find_error(brackets: NDArray[np.float64], order: Sequence[Sequence[int]]) -> float:

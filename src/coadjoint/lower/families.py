@@ -27,7 +27,7 @@ from typing import Final
 
 import sympy
 
-from coadjoint.families import LANES, Action, Family, Sum, Symbol, Total, Tree
+from coadjoint.families import LANES, Action, Family, PartFlow, Rises, Sum, Symbol, Total, Tree
 from coadjoint.lower.family_kinks import HeldFamily, hold_family
 from coadjoint.lower.family_trees import Inserting, factor, factor_whole, leave
 from coadjoint.lower.graph import Graph
@@ -243,6 +243,7 @@ def lower_family(family: Family) -> dict[str, Loops]:
         functions.append(lowering.of_members("projection", family.turned))
     if family.noise:
         functions.append(lowering.noise())
+    functions += [lowering.flow(f"flow{n}", each) for n, each in enumerate(family.flows, 1)]
     held = hold_family(family)
     if held is not None:
         functions.append(_Lowering(held.family).rates("sided_rhs"))
@@ -316,6 +317,12 @@ class _Lowering:
         for n, symbol in enumerate(family.shared_noise):
             name = naming.find(symbol.name)
             read = Read(name=name, array="state", rows=n, blocks=below, shift=None)
+            self._reads[symbol] = read
+        for symbol in family.step:
+            assert not solved, "no more"
+            assert not family.noise, "no more"
+            name = naming.find("step")
+            read = Read(name=name, array="state", rows=0, blocks=below, shift=None)
             self._reads[symbol] = read
         for symbol in family.time:
             name = naming.find(symbol.name)
@@ -477,6 +484,22 @@ class _Lowering:
             rows=len(family.shared_noise),
         )
 
+    def flow(self, name: str, flow: PartFlow) -> Loops:
+        """What the flow of a part adds to each member in a time, which stands below the state."""
+
+        def lower(rises: Rises) -> Part:
+            return self._part(name, rises.trees, {}, definitions=rises.definitions)
+
+        return Loops(
+            name=name,
+            wraps=self.family.wraps,
+            blocks=len(self.family.states),
+            shape=None,
+            member=lower(flow.member),
+            ends=tuple((end, lower(rises)) for end, rises in flow.ends.items()),
+            rows=len(self.family.step),
+        )
+
     def totals(self, name: str, totals: Sequence[Total], shape: tuple[int, ...]) -> Loops:
         """Numbers of the whole system: sums first, then what follows from them."""
         groups: dict[tuple[str, int, int], list[Sum]] = {}
@@ -515,6 +538,7 @@ class _Lowering:
         slopes: Mapping[Symbol, str] | None = None,
         *,
         of_pair: bool = False,
+        definitions: Sequence[tuple[Symbol, Tree]] = (),
     ) -> Part:
         """Trees as a Program, in the form that takes the fewest operations.
 
@@ -524,14 +548,16 @@ class _Lowering:
             sums: Names of the sums that they read.
             slopes: Names of the derivatives of these along the vector, if derivatives are meant.
             of_pair: Whether both members of a pair have them: those of member j follow.
+            definitions: What symbols are that trees and later definitions read.
         """
         family = self.family
         shared = (*family.shared, *family.shared_inputs, *family.time, *family.count)
-        own = family.states
+        own, symbols = family.states, [symbol for symbol, _ in definitions]
+        trees = [*(tree for _, tree in definitions), *trees]
         is_long = any(sympy.count_ops(tree) > COLLECTED for tree in trees)
         ways = (leave,) if is_long else (factor_whole, factor, leave)
         forms = ([form(tree, own, shared) for tree in trees] for form in ways)
-        parts = [self._lower(name, form, sums, slopes, of_pair=of_pair) for form in forms]
+        parts = [self._lower(name, form, sums, slopes, symbols, of_pair=of_pair) for form in forms]
         return min(parts, key=lambda part: sum(part.program.operation_counts().values()))
 
     def _lower(
@@ -540,15 +566,16 @@ class _Lowering:
         trees: Sequence[Tree],
         sums: Mapping[Symbol, str],
         slopes: Mapping[Symbol, str] | None,
+        symbols: Sequence[Symbol],
         *,
         of_pair: bool,
     ) -> Part:
-        """Trees as a Program, in the form that they have."""
+        """Trees as a Program, in the form that they have; the first ones define symbols."""
         graph = Graph()
         names = {symbol: read.name for symbol, read in self._reads.items()}
         names |= {**self._given, **sums}
         others = self._others if of_pair else {}
-        values = list(Inserting(graph, names, self._own, trees, others).nodes())
+        values = list(Inserting(graph, names, self._own, trees, others).nodes(symbols))
         if slopes is not None:
             named = {sums[each]: slopes[each] for each in sums}
             values = self._differentiate(graph, values, named)

@@ -18,7 +18,7 @@ from sympy.polys import lex
 from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
-from coadjoint.families import Action, Family, MatrixMotion, Symbol, Tree
+from coadjoint.families import Action, Family, MatrixMotion, Rises, Symbol, Tree
 from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 from coadjoint.methods import ACTION
@@ -121,6 +121,10 @@ class _Symbols:
                 return family.shared_noise[read.rows]
             assert (read.array, read.rows) == ("state", len(family.shared_noise)), read
             return self._place(family.indexed_noise[read.blocks - count], read)
+        if function.startswith("flow") and read.blocks >= count:
+            assert (read.array, read.rows, read.blocks) == ("state", 0, count), read
+            assert read.shift is None, read
+            return family.step[0]
         if read.array in ("time", "sizes"):
             return {"time": family.time, "sizes": family.count}[read.array][read.rows]
         if read.array != "state":
@@ -320,6 +324,12 @@ def _list_parts(
     if loops.name in ("constraint_residual", "projection"):
         yield loops.member, family.turned if loops.name == "projection" else family.residuals, ()
         return
+    if loops.name.startswith("flow"):
+        flow = family.flows[int(loops.name.removeprefix("flow")) - 1]
+        yield loops.member, _write_out(flow.member), ()
+        yield from ((part, _write_out(flow.ends[end]), ()) for end, part in loops.ends)
+        assert len(loops.ends) == len(flow.ends) == len(family.ends), loops.name
+        return
     if loops.name == "noise_vector":
         yield loops.member, family.noise, ()
         yield from ((part, family.noise_ends[member], ()) for member, part in loops.ends)
@@ -362,6 +372,14 @@ def _list_action(
     yield loops.member, whole, sums
     yield from ((part, ends[member], sums) for member, part in loops.ends)
     assert len(loops.ends) == len(ends), loops.name
+
+
+def _write_out(rises: Rises) -> list[Tree]:
+    """What a flow adds, without symbols of angles."""
+    known = dict[Symbol, Tree]()
+    for symbol, tree in rises.definitions:
+        known[symbol] = tree.xreplace(known)
+    return [tree.xreplace(known) for tree in rises.trees]
 
 
 def _check_part(

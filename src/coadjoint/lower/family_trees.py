@@ -37,6 +37,7 @@ class Inserting:
     ) -> None:
         self.graph, self._names, self._own, self._trees = graph, names, own, trees
         self._others, self._exchanged = others, dict[int, int]()
+        self._defined: dict[Symbol, int] = {}
         self._quotients: dict[Tree, set[Tree]] = {}
         for tree in trees:
             for each in sympy.preorder_traversal(tree):
@@ -44,13 +45,17 @@ class Inserting:
                 if below:
                     self._quotients.setdefault(below, set()).add(each)
 
-    def nodes(self) -> Iterable[int]:
-        """The node of each tree."""
-        return map(self.node, self._trees)
+    def nodes(self, definitions: Sequence[Symbol] = ()) -> Iterable[int]:
+        """The node of each tree; the first ones define symbols that later ones read."""
+        for symbol, tree in zip(definitions, self._trees, strict=False):
+            self._defined[symbol] = self.node(tree)
+        return map(self.node, self._trees[len(definitions) :])
 
     def node(self, tree: Tree) -> int:
         """The node of a tree."""
         graph = self.graph
+        if tree in self._defined:
+            return self._defined[tree]
         if tree in self._names:
             return graph.symbol(self._names[tree])
         if tree.is_Rational:

@@ -6,7 +6,8 @@ block for each member, and totals are sums of the same terms for every number of
 kinds of tensors, degrees and the split of the energy do not depend on it. Integrals count where the
 certificate has them for every number of members. Steps of families are loops over members
 (templates/c/methods/family_steps.c.j2): midpoints, spherical midpoints, discrete gradients of an
-energy that is not quadratic, and splittings of an energy ``T(p) + V(q)``.
+energy that is not quadratic, and splittings, by shifts of an energy ``T(p) + V(q)`` and of others
+by the flows of their parts.
 Read next: `coadjoint.prove.methods`.
 """
 
@@ -18,10 +19,12 @@ from functools import cached_property
 from typing import Final
 
 from coadjoint.derive import Equations
+from coadjoint.derive.splittings import Splitting
 from coadjoint.exact import Element
 from coadjoint.families import Family
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.lower.families import Loops
+from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.program import Program
 from coadjoint.methods import (
@@ -36,7 +39,16 @@ from coadjoint.methods import (
 )
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
-from coadjoint.prove.methods import KINKED, SWEEPS, Judgement, judge, judge_spheres, prefer
+from coadjoint.prove.methods import (
+    KINKED,
+    SWEEPS,
+    Judgement,
+    count,
+    judge,
+    judge_spheres,
+    keeps,
+    prefer,
+)
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Windows
@@ -51,7 +63,8 @@ _SPHERES: Final = (
     "multiple of it"
 )
 _SPLIT: Final = (
-    "it expects coordinates and momenta with the canonical bracket, and an energy T(p) + V(q)"
+    "it expects coordinates and momenta with the canonical bracket and an energy T(p) + V(q), or "
+    "an energy of neighbours in parts with flows in closed form"
 )
 _QUADRATIC: Final = (
     "its energy is quadratic, so that the gradient at the middle of a step is a discrete gradient, "
@@ -74,6 +87,7 @@ class FamilyFacts(Facts):
         family: Those of the generic member.
         loops: Its functions.
         certificate: What is proved for every number of members.
+        splittings: The windows in the parts whose flows the family has.
     """
 
     def __init__(
@@ -83,10 +97,11 @@ class FamilyFacts(Facts):
         family: Family,
         loops: Mapping[str, Loops],
         certificate: Certificate,
+        splittings: Sequence[Splitting] = (),
     ) -> None:
         super().__init__(windows[-1], {}, certificate)
         self.family, self._windows, self._loops = family, windows, loops
-        self._declared = declared
+        self._declared, self._splittings = declared, splittings
 
     @cached_property
     def has_kinks(self) -> bool:
@@ -150,14 +165,22 @@ class FamilyFacts(Facts):
         return tuple(n for n, name in enumerate(self._members[0]) if name in where)
 
     def is_kept_by_flows(self, name: str) -> bool:
-        """Whether an integral has the rate 0 along ``T(p)`` alone and along ``V(q)`` alone.
+        """Whether the flow of each part of the energy keeps an integral.
 
-        Along each flow what moves it stays, so that the integral does. Either flow is a motion of
-        the form of the whole one: what holds in the windows holds for every number of members.
+        Along ``T(p)`` alone and along ``V(q)`` alone what moves it stays, so that the integral does
+        where its rate is 0. Each flow is a motion of the form of the whole one: what holds in the
+        windows holds for every number of members.
         """
-        return all(
-            _is_kept_by_flows(Facts(each, {}, self._certificate), name) for each in self._windows
-        )
+        facts = [Facts(each, {}, self._certificate) for each in self._windows]
+        if not self.flows:
+            return all(_is_kept_by_shifts(each, name) for each in facts)
+        windows = zip(facts, self.flows, strict=True)
+        return all(_is_kept_by_maps(each, name, programs) for each, programs in windows)
+
+    @cached_property
+    def flows(self) -> tuple[tuple[Program, ...], ...]:
+        """Of each window the flows of the parts of its energy, where these are no shifts."""
+        return tuple(map(lower_flows, self._splittings))
 
     # -- discrete gradients ---------------------------------------------------------------
 
@@ -184,7 +207,7 @@ class FamilyFacts(Facts):
     @cached_property
     def integrals(self) -> tuple[Kept, ...]:
         """What is conserved for every number of members, and the squared radii of spheres."""
-        proved = [each.partition(",")[0] for each in self._proved]
+        proved = [each.partition(",")[0].partition(" where ")[0] for each in self._proved]
         said = {"energy": "the energy is conserved"}
         own = (*super().integrals,)
         named = [x for x in own if said.get(x.name, f"{x.name} is conserved") in proved]
@@ -231,8 +254,15 @@ class FamilyFacts(Facts):
         return found
 
 
-def _is_kept_by_flows(facts: Facts, name: str) -> bool:
-    """The same of one window."""
+def _is_kept_by_maps(facts: Facts, name: str, programs: Sequence[Program]) -> bool:
+    """The same of one window, by the flows of its parts."""
+    named = [each for each in facts.integrals if each.name == name]
+    pairs = ((each, program) for each in named for program in programs)
+    return bool(named) and all(keeps(facts, *pair, is_flow=True) for pair in pairs)
+
+
+def _is_kept_by_shifts(facts: Facts, name: str) -> bool:
+    """The same of one window, along ``T(p)`` and ``V(q)``."""
     field, state = facts.field, facts.state
     rates = [facts.equations.close(rate) for rate in facts.equations.exact.rates]
     rest = {*facts.motion.positions}
@@ -258,6 +288,7 @@ def judge_family(
     *,
     over: str = "equal members",
     in_plane: Sequence[str] | None = None,
+    splittings: Sequence[Splitting] = (),
 ) -> tuple[FamilyFacts, tuple[JudgedMethod, ...]]:
     """The facts of a system of equal members, and every method judged by them.
 
@@ -269,8 +300,9 @@ def judge_family(
         certificate: What is proved for every number of members.
         over: What its solvers are loops over, in words.
         in_plane: Where the members are points of a plane, the integrals that truncated series keep.
+        splittings: The windows in the parts whose flows the family has.
     """
-    facts = FamilyFacts(windows, declared, family, loops, certificate)
+    facts = FamilyFacts(windows, declared, family, loops, certificate, splittings)
     looped = {*LOOPED, *(["isospectral_midpoint"] if family.matrices is not None else [])}
     none = _NONE.format(over)
     refusals = {name: none for name, x in STRUCTURED.items() if x.file not in looped}
@@ -278,7 +310,7 @@ def judge_family(
     if not facts.spheres:
         spheres = (name for name, x in STRUCTURED.items() if x.file == "spherical_midpoint")
         refusals |= dict.fromkeys(spheres, _SPHERES)
-    if not facts.positions:
+    if not (facts.positions or facts.flows):
         refusals |= dict.fromkeys(SPLITTINGS, _SPLIT)
     by_energy = [name for name, x in STRUCTURED.items() if x.file in BY_ENERGY]
     if facts.lacks_action:
@@ -327,8 +359,22 @@ def _judge_spheres(
 
 
 def _judge_splitting(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
-    """Products of the flows of ``T(p)`` and ``V(q)``, each a shift of positions or of momenta."""
+    """Products of flows: shifts of positions or of momenta, or those of parts of the energy."""
     assert isinstance(facts, FamilyFacts), method.name
+    if facts.flows:
+        parts = [program.name for program in facts.flows[0]]
+        exactly = tuple(
+            x for x in facts.integrals if x.is_casimir or facts.is_kept_by_flows(x.name)
+        )
+        decides = (
+            f"the energy is the sum of {count(len(parts), 'part')} whose flows are in closed form"
+        )
+        return Judgement(
+            exactly,
+            is_poisson=True,
+            decides=f"{decides}, for every number of members",
+            cost=count(len(list_schedules(parts)[method.name]), "explicit map"),
+        )
     exactly = tuple(each for each in facts.integrals if facts.is_kept_by_flows(each.name))
     shifts = len(list_schedules(FLOWS)[method.name])
     return Judgement(

@@ -258,7 +258,7 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
         each
         for each in facts.integrals
         if (is_flow and each.is_casimir)
-        or all(_keeps(facts, each, program, is_flow=is_flow) for program in used)
+        or all(keeps(facts, each, program, is_flow=is_flow) for program in used)
     )
     if not is_flow:
         return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
@@ -355,7 +355,7 @@ _RULES: Final[Mapping[str, Rule]] = {
 }
 
 
-def _keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
+def keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
     """Whether a map leaves a function as it is, at points modulo primes.
 
     Flows turn attitudes, so that these are rotations there.

@@ -27,7 +27,7 @@ from coadjoint.lower import normals
 from coadjoint.lower.bands import find_bands
 from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.families import FEWEST, SUM, Loops, Part, Read
-from coadjoint.lower.program import Node, Statement
+from coadjoint.lower.program import Node, Program, Statement
 from coadjoint.lower.tableau import dop853
 from coadjoint.methods import BY_ENERGY, MAPPED, STRUCTURED, JudgedMethod
 from coadjoint.render.environment import names_read, render_templates
@@ -469,6 +469,7 @@ def render_family_template(
     """One file, given the id."""
     parts = [part for loops in context.loops.values() for part in loops.parts]
     programs = [part.program for part in parts]
+    elementary, by_flows = _list_elementary(context)
     shared, table = rows_of(context.shared), dop853()
     indexed = rows_of(context.indexed, len(shared))
     shared_inputs = rows_of(context.shared_inputs)
@@ -499,7 +500,7 @@ def render_family_template(
         "parameters": shared,
         "indexed": indexed,
         "called": list_called(programs),
-        "elementary": tuple_text(map(quote, elementary_functions(programs))),
+        "elementary": tuple_text(map(quote, elementary)),
         "functions": [
             arrange_loops(loops, target, tell_summary(loops), count_costs(loops))
             for loops in context.loops.values()
@@ -531,6 +532,7 @@ def render_family_template(
             *([f"wave={tuple_text(map(quote, context.wave))}"] * bool(context.wave)),
             *([f"spheres={_tell_spheres(context)}"] * bool(context.spheres)),
             *([f"positions={context.positions}"] * bool(context.positions)),
+            *([f"called_by_flows={tuple_text(map(quote, by_flows))}"] * bool(by_flows)),
             *(["connections=CONNECTIONS"] * bool(context.connections)),
             *(["spectral=SPECTRAL"] * bool(context.spectral)),
             *(["symbol=SYMBOL"] * bool(context.symbol)),
@@ -565,6 +567,15 @@ def render_family_template(
     return render_templates((template,), {name: values[name] for name in names})[template]
 
 
+def _list_elementary(context: FamilyContext) -> tuple[tuple[str, ...], list[str]]:
+    """What functions but flows call beyond ``+ - * / sqrt``, and what flows call in addition."""
+    parts: dict[bool, list[Program]] = {False: [], True: []}
+    for name, loops in context.loops.items():
+        parts[name.startswith("flow")] += [part.program for part in loops.parts]
+    others, flows = (elementary_functions(parts[is_flow]) for is_flow in (False, True))
+    return others, [name for name in flows if name not in others]
+
+
 def _declare_driving(context: FamilyContext) -> dict[str, list[list[str]]]:
     """What drives the members, by its names in the package, as far as there is any."""
     groups = {
@@ -583,8 +594,9 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
     led_by_python = context.torus is not None
     own = [] if led_by_python else [every[each.name] for each in context.methods]
     implicit = [each for each in own if each.name in STRUCTURED]
-    schedules = list_schedules(("flow1", "flow2"))
-    flows = {"flow1": 0, "flow2": 1}
+    flows = [name for name in context.loops if name.startswith("flow")]
+    places = {name: n for n, name in enumerate(flows or ("flow1", "flow2"))}
+    schedules = list_schedules(places)
     count = sum(len(each.components) for each in context.state)
     return {
         "names": {each.macro: (each.file, each.order) for each in implicit},
@@ -595,10 +607,11 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
         "spheres": [rows[0] for rows in context.spheres.values()],
         "matrices": any(loops.products for loops in context.loops.values()),
         "schedules": {
-            each.macro: [(flows[flow], repr(part)) for flow, part in schedules[each.name]]
+            each.macro: [(places[flow], repr(part)) for flow, part in schedules[each.name]]
             for each in own
             if each.name in MAPPED
         },
+        "flows": flows,
         "positions": [int(n in context.positions) for n in range(count)],
         "sweeps": normals.SWEEPS,
         "stopping": STOPPING,

@@ -62,7 +62,7 @@ class Choice:
         """
         known = {**STRUCTURED, **MAPPED}.get(self.name)
         if not searches:
-            return rows if self.is_structured else 0
+            return rows if self.is_structured or self.name in MAPPED else 0
         return 0 if known is None or self.is_noisy else known.count_memory(rows)
 
     @property

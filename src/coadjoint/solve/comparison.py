@@ -74,6 +74,8 @@ def has_same_bits(system: System, method: str) -> bool:
     """Whether a method has the same bits in NumPy and exact C: nothing it calls is a library's."""
     if system.elementary:
         return False
+    if isinstance(system, FamilySystem):
+        return method not in MAPPED or not system.list_called("flow1")
     return method not in MAPPED or bool(KernelModule(system, SOLVER.files[2]).value("EXACT"))
 
 

@@ -69,6 +69,7 @@ class FamilySystem(System):
         spectral: Of fields, what is computed where derivatives are those of Fourier series.
         symbol: Of fields, their principal symbol.
         profiles: Where fields begin.
+        called_by_flows: What flows of parts of the energy call beyond what `elementary` has.
         own_state: Components of a member.
         torus: Of a field in a plane, what is computed around its points.
     """
@@ -106,13 +107,14 @@ class FamilySystem(System):
         spectral: Spectral | None = None,
         symbol: PrincipalSymbol | None = None,
         profiles: Profiles | None = None,
+        called_by_flows: Sequence[str] = (),
     ) -> None:
         self.index, self.small = index
         self.spheres, self.positions = spheres, positions
         self.kinks, self.pair_kinks, self.wave = kinks, pair_kinks, wave
         self.connections, self.spectral, self.symbol = connections, spectral, symbol
         self.own_state = [name for each in state.values() for name in each.components]
-        self.profiles = profiles
+        self.profiles, self.called_by_flows = profiles, called_by_flows
         self._declared = (state, shared, indexed, observables, functions, elementary)
         alike, own = (each or Quantities() for each in (shared_inputs, indexed_inputs))
         noise, own_noise = (each or Quantities() for each in (shared_noise, indexed_noise))
@@ -153,6 +155,9 @@ class FamilySystem(System):
         """What the rows of the first argument of a function are."""
         if KERNEL_FUNCTIONS[function].below == "noise":
             return Quantities(*self.STATE.values(), *self.NOISE.values())
+        if KERNEL_FUNCTIONS[function].below == "step":
+            step = Quantity(name="step", shape=(), unit=self.unit_of_time, components=("step",))
+            return Quantities(*self.STATE.values(), step)
         if KERNEL_FUNCTIONS[function].below == "sides":
             count = len(self.kinks.get(None, ()))
             names = [f"side{n}" for n in range(1, count + 1)]
@@ -160,6 +165,11 @@ class FamilySystem(System):
             sides = [self._repeat(each, self.size) for each in signs]
             return Quantities(*self.STATE.values(), *sides)
         return super().rows(function)
+
+    def list_called(self, function: str) -> tuple[str, ...]:
+        """As of other systems; flows may call more."""
+        further = self.called_by_flows if function.startswith("flow") else ()
+        return (*self.elementary, *further)
 
     @cached_property
     def kink_names(self) -> tuple[str, ...]:
@@ -291,6 +301,7 @@ class FamilySystem(System):
             "spectral": self.spectral,
             "symbol": self.symbol,
             "profiles": self.profiles,
+            "called_by_flows": self.called_by_flows,
         }
         file, first = str(self.folder / "__init__.py"), (index, self.small)
         made = type(self)(self.name, file, first, *self._declared, self.id, **given | changed)

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
+    from coadjoint.solve.methods.sequence import Part
     from coadjoint.solve.steps import Lanes, Method
 
     Array = NDArray[np.float64]
@@ -56,7 +57,7 @@ FUNCTIONS: Final = {
 }
 #: What two runs have alike.
 COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
-#: And of implicit methods.
+#: And of methods that keep structure, as far as they have them.
 LEFT: Final = ("memory", "sweeps")
 #: Arrays of an ensemble that are handed over.
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
@@ -158,6 +159,8 @@ class FamilyTwin(StepwiseStepper):
         if "kinks" in system.functions:
             self._sizes |= {n: system.rows(n).size for n in ("kinks", "sided_rhs")}
             self._limits = replace(self._limits, kinks=partial(self._evaluate, ("kinks",)))
+        #: The flows of which steps of splittings are products; without any these are shifts.
+        self._flows = tuple(name for name in system.functions if name.startswith("flow"))
         if choice.name == "taylor":
             module = system.series
             self._series = module.function("expand")
@@ -178,7 +181,10 @@ class FamilyTwin(StepwiseStepper):
         return self._evaluate((self._rates_name,), lanes, after, state)
 
     def _method(self, run: Ensemble) -> Method:
-        """As `NumpyStepper` does; flows are shifts, and rates are the bracket with the energy."""
+        """As `NumpyStepper` does; rates are the bracket with the energy.
+
+        Flows are functions of the kernel, or shifts.
+        """
         choice, family = self._choice, self._family
         if choice.is_structured:
             spheres = [(tuple(family.rows_of(rows)),) for rows in family.spheres.values()]
@@ -197,6 +203,13 @@ class FamilyTwin(StepwiseStepper):
                 branches=self._branches,
                 newton=choice.newton,
             )
+        if choice.name in MAPPED and self._flows:
+            all_rows = (slice(family.STATE.size),)
+            maps: list[Part] = [
+                (partial(self._flow, flow), h, all_rows)
+                for flow, h in list_schedules(self._flows)[choice.name]
+            ]
+            return Maps(maps, self._rates, run.size, is_compensated=True, branches=self._branches)
         if choice.name in MAPPED:
             count = len(family.STATE.components) // family.size
             moving = set(family.positions), set(range(count)).difference(family.positions)
@@ -206,12 +219,18 @@ class FamilyTwin(StepwiseStepper):
             steps = [
                 (self._shift, h, flows[flow]) for flow, h in list_schedules(flows)[choice.name]
             ]
-            return Maps(steps, self._rates, run.size, is_compensated=False, branches=self._branches)
+            return Maps(steps, self._rates, run.size, is_compensated=True, branches=self._branches)
         return super()._method(run)
 
     def _along(self, lanes: Lanes, after: Array, state: Array, vector: Array) -> Array:
         """The derivative of the rates along a vector."""
         return self._evaluate(("jacobian_vector",), lanes, after, np.concatenate([state, vector]))
+
+    def _flow(self, name: str, state: Array, parameters: Array, after: Array) -> Array:
+        """What the flow of a part of the energy adds to a state."""
+        joined, given = np.concatenate([state, after[None]]), np.ascontiguousarray(parameters)
+        call = Call(joined, given, np.empty(state.shape), {"sizes": self._members})
+        return np.asarray(self._find_values(name, call))
 
     def _shift(self, state: Array, parameters: Array, after: Array) -> Array:
         """What a flow adds to the rows that it moves, by their rates, which the others decide."""
@@ -241,7 +260,7 @@ class FamilyStepper(FamilyTwin):
         super().__init__(system, choice, target)
         last = "sandwich" if "sandwich" in system.functions else "energy"
         acting = (*ACTION, last) if {*ACTION} <= system.functions.keys() else ()
-        others = ("projection", "noise_vector", "kinks", *acting)
+        others = ("projection", "noise_vector", "kinks", *acting, *self._flows)
         called = {"rates": self._rates_name}
         called |= {n: n for n in others if n in system.functions}
         self._called = {n: system._kernels.find(target, of) for n, of in called.items()}
@@ -318,7 +337,7 @@ class FamilyStepper(FamilyTwin):
                 setattr(given, name, array.ctypes.data)
         if run.kinks is not None and run.brief is not None:
             given.crossed, given.brief = run.kinks.ctypes.data, run.brief.ctypes.data
-        for name in (*ARRAYS, *(LEFT if run.is_implicit else ())):
+        for name in (*ARRAYS, *_list_left(run)):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
@@ -407,6 +426,11 @@ class _Stages(DormandPrince8):
         return np.array([five]), np.array([three])
 
 
+def _list_left(run: Ensemble) -> list[str]:
+    """What the steps of a run leave."""
+    return [name for name in LEFT if getattr(run, name) is not None]
+
+
 def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
     """The steps of a family in C: what is missing or wrong is an error.
 
@@ -452,7 +476,7 @@ def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Li
             while stepper.advance(run, 0, members, 5):
                 pass
         kinked = ("kinks", "brief") if system.kinks else ()
-        for name in (*COMPARED, *(LEFT if structured and exact else ()), *kinked):
+        for name in (*COMPARED, *(_list_left(found) if exact else ()), *kinked):
             one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
             tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
             if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):

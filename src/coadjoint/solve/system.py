@@ -164,6 +164,10 @@ class System(Functions):
                 return Quantities(*self.STATE.values(), *map(_name_below, self.STATE.values()))
         return self.STATE
 
+    def list_called(self, function: str) -> tuple[str, ...]:
+        """What a function of the kernels calls beyond ``+ - * / sqrt``, or what others do."""
+        return self.elementary
+
     def sizes(self, function: str) -> dict[str, int]:
         """How many rows each array has that a function takes."""
         driving = {"inputs": self.INPUTS.size, "time": self.TIME.size}

@@ -7,7 +7,7 @@ Read next: `coadjoint.render.targets.c`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -43,6 +43,10 @@ class Generated(Protocol):
     @property
     def probed(self) -> Generated:
         """What fresh objects are compared with; of few members where texts are those of any."""
+        ...
+
+    def list_called(self, function: str) -> Sequence[str]:
+        """What a function calls beyond ``+ - * / sqrt``, or what others do."""
         ...
 
     def sizes(self, function: str) -> Mapping[str, int]:
