@@ -74,9 +74,21 @@ _GNU = (
 _UNSURE = ("-Wno-maybe-uninitialized",)
 #: It fuses a product and a sum with the first alone of all that the second level has in addition.
 _FUSING = ("-fexpensive-optimizations",)
-#: What is run for some points alone, and fused, needs none of the first level's other long passes
-#: (docs/decisions/compiler.md has the figures): as many operations are fused without them.
-_HASTY = ("-fno-tree-loop-optimize", "-fno-tree-dse", "-fno-dse", "-fira-region=one")
+#: What is run for some points alone, and fused, needs none of the first level's other passes, and
+#: no registers that are shared out with care (docs/decisions/compiler.md has the figures): as many
+#: operations are fused without them.
+_SPARED_PASSES = (
+    "tree-loop-optimize tree-dse dse tree-fre tree-dominator-opts tree-sink tree-vrp tree-ccp "
+    "tree-copy-prop tree-pta forward-propagate cprop-registers if-conversion if-conversion2 "
+    "combine-stack-adjustments move-loop-invariants ssa-phiopt guess-branch-probability "
+    "reorder-blocks split-wide-types caller-saves ipa-icf ipa-vrp ipa-pure-const ipa-reference "
+    "ira-share-spill-slots"
+)
+_HASTY = (
+    "-fira-region=one",
+    "-fira-algorithm=priority",
+    *(f"-fno-{each}" for each in _SPARED_PASSES.split()),
+)
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
 #: What a driver says of a program that ran out of processor time.
