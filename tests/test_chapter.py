@@ -113,6 +113,9 @@ def test_the_cost_of_members_is_that_of_their_parts(tmp_path):
     (words,) = (part["words"] for part in complete(RECORD, {}, tmp_path)["sections"][1:2])
     told = "2 operations for each member: 1 *, 1 +; 1 operation for each pair: 1 -; "
     assert words == [("rhs", told + "1 operation at last: 1 /")]
+    field = complete(RECORD, {"structure": {"over": "points"}}, tmp_path)["sections"]
+    ((_, told),) = field[1]["words"]
+    assert told.startswith("2 operations for each point: 1 *, 1 +;")
 
 
 WORDS = {"add": "+-", "multiply": "*", "divide": "/"}

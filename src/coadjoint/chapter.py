@@ -11,6 +11,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import starmap
 from pathlib import Path
 from typing import Any, Final
@@ -148,8 +149,9 @@ def _sentence(statement: str, verdict: str, method: str, usual: str) -> str:
 
 def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Operations of the generated code, counted in its text, and what methods keep."""
+    over = certificate.get("structure", {}).get("over", "")
     words = [
-        (function, "; ".join(starmap(_tell_cost, parts.items())))
+        (function, "; ".join(starmap(partial(_tell_cost, over), parts.items())))
         for function, parts in count_operations(folder / "kernel_python.py").items()
     ]
     yield section(
@@ -173,8 +175,9 @@ def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, An
             yield section("Methods that do not apply", "unfit", rows=unfit)
 
 
-def _tell_cost(where: str, operations: Mapping[str, int]) -> str:
-    """Operations, where they are made."""
+def _tell_cost(over: str, where: str, operations: Mapping[str, int]) -> str:
+    """Operations, where they are made, in loops over equal members or over points."""
+    where = where.replace("member", "point") if over == "points" else where
     if not operations:
         return where
     listed = ", ".join(f"{number} {sign}" for sign, number in sorted(operations.items()))

@@ -169,7 +169,8 @@ def _render_family(spec: Spec, routes: Sequence[Equations], progress: Progress) 
         context = tell_torus(context, grid)
     elif grid is not None:
         context = tell_fields(context, grid)
-    record = certificate_json(spec, certificate, facts.as_record(), methods, motion_sections(first))
+    told = facts.as_record() | {"over": over}
+    record = certificate_json(spec, certificate, told, methods, motion_sections(first))
     texts = {**render_family(context), "certificate.json": record}
     member = loops["rhs"].member
     assert member is not None, spec.name
