@@ -42,12 +42,13 @@ class Stepper {
   constructor(size, rates, method, spheres, flow) {
     Object.assign(this, { size, rates, method, spheres, flow });
     this.work = Array.from({ length: 8 }, () => new Float64Array(size));
-    this.wide = new Float64Array(size + 1);
+    this.wide = new Float64Array(2 * size);
   }
 
   step(x, h) {
     if (this.method.schedule.length) this.compose(x, h);
     else if (this.method.name === "spherical_midpoint") this.roundMidpoint(x, h);
+    else if (this.method.name === "isospectral_midpoint") this.turnMatrix(x, h);
     else if (IMPLICIT[this.method.name]) this.collocate(x, h, IMPLICIT[this.method.name]);
     else this.explicit(x, h);
   }
@@ -61,6 +62,26 @@ class Stepper {
       this.flow(flow, this.wide, rise);
       for (let i = 0; i < this.size; i++) x[i] += rise[i];
     }
+  }
+
+  /* W = w + h [X, V], X = w + h/2 [X, V] + h^2/4 V X V, V that of X; the last product is a function of the kernel. */
+  turnMatrix(x, h) {
+    const [middle, rates, xi, both] = this.work, n = this.size;
+    middle.set(x);
+    for (let sweep = 0, change = 1; sweep < SWEEPS && change > 0; sweep++) {
+      this.rates(middle, rates);
+      this.flow("energy_gradient", middle, xi);
+      this.wide.set(middle);
+      for (let i = 0; i < n; i++) this.wide[n + i] = 0.5 * h * xi[i];
+      this.flow("sandwich", this.wide, both);
+      change = 0;
+      for (let i = 0; i < n; i++) {
+        const next = x[i] + (0.5 * h * rates[i] + both[i]);
+        if (Math.abs(next - middle[i]) > 4e-16 * (Math.abs(next) + 1)) change = 1;
+        middle[i] = next;
+      }
+    }
+    for (let i = 0; i < n; i++) x[i] += h * rates[i];
   }
 
   /* The classical method of Runge and Kutta. */

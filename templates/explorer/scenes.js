@@ -55,7 +55,7 @@ class BodyScene extends Scene {
   /* Whether it turns by its inertia alone: the momentum rests in space, and the energy is half its product with the angular velocity. */
   isFree() {
     const { model } = this, { spinning, turning } = scene;
-    if (!spinning || spinning.table !== "state" || scene.vertical || scene.moving || model.u.length || !model.has("energy")) return false;
+    if (scene.noise || !spinning || spinning.table !== "state" || scene.vertical || scene.moving || model.u.length || !model.has("energy")) return false;
     const m = model.read(spinning), w = model.read(turning), rates = model.call("rhs", model.x, new Float64Array(model.n));
     const own = spinning.rows.map((row) => rates[row]), size = norm(m) * norm(w);
     return norm(minus(own, cross(m, w))) < 1e-9 * size && Math.abs(2 * model.energyAt(model.x) - dot(m, w)) < 1e-9 * size;

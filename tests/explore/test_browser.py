@@ -43,6 +43,10 @@ SHOWN = (
     "peakons",
     "toda_lattice",
     "heisenberg_lattice",
+    "stochastic_rigid_body",
+    "euler_2d",
+    "zeitlin_su_n",
+    "zeitlin_torus",
 )
 #: Colours on the canvas of the scene, where something is drawn, in steps of 16.
 COLOURS = """(() => {
@@ -136,6 +140,7 @@ ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
         ("heisenberg_lattice", "explorer.view.handles()[3]", "explorer.model.x[48]"),
         ("spin_chain", "explorer.view.tips[20]", "explorer.model.x[20]"),
         ("camassa_holm", "explorer.view.tips[40]", "explorer.model.x[40]"),
+        ("euler_2d", "[0.1, 0.1, 0]", "explorer.model.y[0]"),
     ],
 )  # fmt: skip
 def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
@@ -150,6 +155,27 @@ def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
     assert page.run("explorer.model.x.every(Number.isFinite)")
     page.run("explorer.reset()")
     assert page.run(value) == pytest.approx(after, abs=1e-9)
+    assert page.problems == []
+
+
+def test_a_seed_is_a_path_of_a_body_whose_momentum_rests_in_space(page, pages):
+    """The same seed leads to the same state, another one elsewhere; the address holds it."""
+    show(page, pages("stochastic_rigid_body"), calm=True)
+    space = "rotate(explorer.model.pose(), explorer.model.read(scene.spinning))"
+    walk = (
+        "explorer.reset(); for (let k = 0; k < 500; k++) explorer.model.step(explorer.model.h);"
+        "[...explorer.model.x]"
+    )
+    at = page.run(space)
+    first = page.run(walk)
+    np.testing.assert_allclose(page.run(space), at, atol=1e-11)
+    page.run("document.getElementById('other').click()")
+    assert page.run("location.hash").endswith("&s=2")
+    second = page.run(walk)
+    assert np.abs(np.subtract(first, second)).max() > 0.1
+    page.run("location.hash = location.hash.replace('&s=2', '&s=1')")
+    page.wait("document.getElementById('seed').value === '1'")
+    assert page.run(walk) == pytest.approx(first, abs=1e-7)  # the address has nine digits
     assert page.problems == []
 
 

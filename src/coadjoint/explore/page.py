@@ -28,11 +28,15 @@ from coadjoint.spec import Spec
 #: The parts of the script, in order; the kernel stands before them.
 SCRIPTS: Final = (
     "numerics.js",
+    "noise.js",
+    "waves.js",
+    "matrices.js",
     "drawing.js",
     "model.js",
     "scenes.js",
     "carriages.js",
     "members.js",
+    "surfaces.js",
     "panels.js",
     "main.js",
 )
