@@ -8,7 +8,7 @@ import pytest
 from coadjoint.solve.illustrate import illustrate
 from coadjoint.solve.plot import draw
 from coadjoint.solve.scenes import choose_view, energy_levels, faces_viewer, find_paths, find_sphere
-from coadjoint.systems import kepler, n_body, rigid_body
+from coadjoint.systems import kepler, n_body, rigid_body, stochastic_rigid_body
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -49,6 +49,26 @@ def test_level_curves_have_one_energy_each():
         assert np.linalg.norm(level, axis=0) == pytest.approx(1.002 * radius)
         energy = (level**2 / inertia).sum(axis=0) / 2
         assert np.ptp(energy) < 0.02 * energy.max()  # the grid is 4 degrees wide
+
+
+def test_paths_with_noise_are_drawn_by_their_seeds(monkeypatch):
+    """Three paths from one start on one sphere, each that of its seed; the caption names them."""
+    drawn = []
+    monkeypatch.setattr("coadjoint.solve.plot.draw", lambda *s: drawn.append(draw(*s)) or drawn[0])
+    start = [0.6, 0.0, -0.8]
+    told = illustrate(stochastic_rigid_body.system, start)
+    assert told["picture"].startswith("data:image/png;base64,")
+    assert "3 paths from one start" in told["caption"]
+    assert "over 6 s" in told["caption"]
+    assert "the seeds 1, 2, 3" in told["caption"]
+    (paths,) = (axes.coadjoint_path for axes in drawn[0].axes if hasattr(axes, "coadjoint_path"))
+    np.testing.assert_allclose((paths**2).sum(axis=1), 1.0, rtol=1e-12)
+    for seed, path in enumerate(paths, start=1):
+        run = stochastic_rigid_body.simulate(
+            start, (0.0, 6.0), step=1 / 64, seed=seed, samples=3, progress=False
+        )
+        np.testing.assert_array_equal(path[:, [0, 192, 384]], run["Pi"])
+    assert len({tuple(path[:, -1]) for path in paths}) == 3
 
 
 def test_drift_is_a_small_strip():

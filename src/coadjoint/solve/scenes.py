@@ -173,7 +173,7 @@ def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
     Each is ``(3, T)``; none where the energy is not a function of the vector.
     """
     system = solution.system
-    if set(system.STATE) != {name} or "energy" not in solution.conserved:
+    if set(system.STATE) != {name} or "energy" not in system.OBSERVABLES:
         return []
     longitude = np.linspace(-np.pi, np.pi, ALONG)
     latitude = np.linspace(-np.pi / 2, np.pi / 2, ACROSS)
