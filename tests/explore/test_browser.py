@@ -140,6 +140,11 @@ ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
         ("heisenberg_lattice", "explorer.view.handles()[3]", "explorer.model.x[48]"),
         ("spin_chain", "explorer.view.tips[20]", "explorer.model.x[20]"),
         ("camassa_holm", "explorer.view.tips[40]", "explorer.model.x[40]"),
+        (
+            "double_spherical_pendulum",
+            "explorer.view.positions()[1]",
+            "explorer.model.x[3]",
+        ),
         ("euler_2d", "[0.1, 0.1, 0]", "explorer.model.y[0]"),
     ],
 )  # fmt: skip
@@ -177,6 +182,21 @@ def test_a_seed_is_a_path_of_a_body_whose_momentum_rests_in_space(page, pages):
     page.wait("document.getElementById('seed').value === '1'")
     assert page.run(walk) == pytest.approx(first, abs=1e-7)  # the address has nine digits
     assert page.problems == []
+
+
+def test_rods_are_a_linkage_by_their_energy(page, pages):
+    """Lengths and masses that sliders choose are found again; rods that are none are directions."""
+    show(page, pages("double_spherical_pendulum"), calm=True)
+    names = page.run("scene.tables.parameters.map(each => each.name)")
+    assert names == ["m1", "m2", "l1", "l2", "g"]
+    page.run("explorer.model.p.set([5, 2, 0.6, 1.4, 9.81]); explorer.view.moving()")
+    np.testing.assert_allclose(page.run("explorer.view.rods.lengths"), [0.3, 0.7], rtol=1e-9)
+    small, large = page.run("explorer.view.rods.sizes")[::-1]
+    assert small / large == pytest.approx((2 / 5) ** (1 / 3), rel=1e-9)
+    first, second = np.array(page.run("explorer.view.positions()"))
+    np.testing.assert_allclose(np.linalg.norm([first, second - first], axis=1), [0.3, 0.7])
+    page.run("explorer.model.call = (name, x, out) => (out[0] = x[6] * x[9], out)")
+    assert page.run("findRods(explorer.model)") is None  # no mass has such an energy
 
 
 def test_a_raised_picture_is_met_where_it_is_drawn(page, pages):

@@ -34,6 +34,7 @@ SCRIPTS: Final = (
     "drawing.js",
     "model.js",
     "scenes.js",
+    "particles.js",
     "carriages.js",
     "members.js",
     "surfaces.js",
