@@ -115,6 +115,13 @@ def _tell_colours(scene: Paths | RollingBody | Vehicle | str | None) -> str:
     from coadjoint.solve.vehicles import Vehicle
 
     match scene:
+        case Paths(linked=True):
+            return (
+                "The path of each mass has the colour of its rod; lengths are parts of that of all "
+                "rods, found by the energy."
+            )
+        case Paths(labels=labels) if labels:
+            return "Each vector has a colour of its own."
         case Paths(members=members) if len(members) > 1:
             return "Each member has a colour of its own."
         case Paths() | str():

@@ -187,13 +187,17 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     for n, path in enumerate(paths.members):
         colour = COLOURS[n % len(COLOURS)]
         if several:
-            axes.plot(*path, color=colour, linewidth=1.1, label=f"member {n}")
+            label = symbol_label(paths.labels[n]) if paths.labels else f"member {n}"
+            axes.plot(*path, color=colour, linewidth=1.1, label=label)
         else:
             lines = draw_coloured(axes, path, solution.time)
             _time_bar(figure, axes, lines, solution)
         own = {"color": colour} if several else {"color": "#000000"}
         axes.plot(*path[:, -1:], marker="o", markersize=5, linestyle="", **own)
         axes.plot(*path[:, :1], marker="o", markersize=5, fillstyle="none", linestyle="", **own)
+    if paths.linked:
+        rods = np.concatenate([np.zeros((1, 3)), paths.members[:, :, -1]]).T  # (3, joints)
+        axes.plot(*rods, color="#000000", linewidth=2.0, zorder=1, label="rods at the end")
     axes.coadjoint_path = paths.members
     _limit_space(axes, paths)
     if several:
@@ -240,6 +244,8 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
 def _limit_space(axes: Any, paths: Paths) -> None:
     """Equal scales, and a view of the plane of the motion."""
     low, high = paths.members.min(axis=(0, 2)), paths.members.max(axis=(0, 2))
+    if paths.linked:  # the fixed point is seen, too
+        low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     middle, half = (low + high) / 2, 0.55 * float((high - low).max()) or 1.0
     limits = (axes.set_xlim, axes.set_ylim, *([axes.set_zlim] if len(middle) == 3 else []))
     for limit, centre in zip(limits, middle, strict=True):
