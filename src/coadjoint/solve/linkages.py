@@ -2,8 +2,8 @@
 
 Mass a of a chain is at the sum of ``l_i gamma_i`` over the rods up to its own. Where the directions
 gamma have the rates v, the energy has the products ``v_i . v_j`` with ``l_i l_j`` times the mass
-from ``max(i, j)`` on, so that each pair gives ``l_i/l_j``: no name of a parameter is known. Rods hang on each other in the
-order in which they are declared; two have such lengths in both orders.
+from ``max(i, j)`` on, so that each pair gives ``l_i/l_j``: no name of a parameter is known. Rods
+hang on each other in the order in which they are declared; two have such lengths in both orders.
 Comes in: a `Solution`, and which variables may be these. Goes out: parts of the whole length.
 Read next: `coadjoint.solve.scenes`.
 """

@@ -116,7 +116,13 @@ def _find_rods(solution: Solution, rates: Mapping[str, str]) -> Paths:
     members = np.stack([np.asarray(solution[name]) for name in rates])  # (members, 3, T)
     if lengths is not None:
         members = np.cumsum(lengths[:, None, None] * members, axis=0)
-    return Paths(("x", "y", "z"), "1", members, tuple(rates), linked=lengths is not None)
+    return Paths(
+        names=("x", "y", "z"),
+        unit="1",
+        members=members,
+        labels=tuple(rates),
+        linked=lengths is not None,
+    )
 
 
 def _find_rate(solution: Solution, name: str) -> str:
