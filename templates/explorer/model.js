@@ -13,6 +13,8 @@ function nameOn(element, name) {
 }
 const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
 
+const FIELDS = ["strand", "profile", "surface"];
+
 class Model {
   constructor() {
     this.n = size("state");
@@ -227,7 +229,7 @@ class Model {
   /* A step from how fast nearby motions part; with noise a power of two, so that it is easily said. */
   find() {
     const rate = this.findRate((x, out) => this.call("rhs", x, out));
-    const [part, most] = this.plane || scene.matrix ? [0.12, 0.05] : [0.04, 0.02]; // transforms and products of matrices take their time
+    const [part, most] = FIELDS.includes(scene.kind) ? [0.12, 0.05] : [0.04, 0.02]; // of many rows; their fastest waves are those of two points' length
     this.h = clamp(part / (rate || 1), 1e-6, most);
     if (!scene.noise) return;
     const { slopes } = this.stepper, count = scene.noise.processes.length;

@@ -157,8 +157,8 @@ def _paths(names: tuple[str, ...], unit: str, members: Array) -> Paths | None:
     extents = np.ptp(members, axis=(0, 2))
     moving = [n for n, extent in enumerate(extents) if extent > FLAT * extents.max()]
     if len(names) == 3 and len(moving) == 2:
-        return Paths(tuple(names[n] for n in moving), unit, members[:, moving])
-    return Paths(names, unit, members)
+        names, members = tuple(names[n] for n in moving), members[:, moving]
+    return Paths(names=names, unit=unit, members=members)
 
 
 def find_sphere(solution: Solution) -> str:
