@@ -13,6 +13,7 @@ function nameOn(element, name) {
 }
 const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
 
+const MOST_SWEEPS = 16; // of a step of a field
 const FIELDS = ["strand", "profile", "surface"];
 
 class Model {
@@ -30,6 +31,7 @@ class Model {
     this.plane = scene.plane ? new PlaneField(scene.plane) : null;
     const method = scene.methods[0] || { name: scene.noise ? "midpoint" : "rk4", schedule: [], keeps: [] }, rates = (x, out) => this.call("rhs", x, out);
     this.stepper = scene.noise ? new NoisyMidpoint(this.n, rates, (x, out) => this.call("noise", x, out), scene.noise)
+      : this.isRing(method) ? new RingMidpoint(scene.members, this.n / scene.members, rates, (x, v, out) => this.call("jacobian_vector", Float64Array.from([...x, ...v]), out))
       : new Stepper(this.n, rates, method, scene.spheres, (flow, x, out) => this.call(flow, x, out));
     this.method = method;
     for (const table of ["parameters", "inputs"]) this.fill(table, table === "inputs" ? this.u : this.p);
@@ -39,6 +41,9 @@ class Model {
     scene.slipping = this.findSlip();
     if (scene.slips && !scene.slipping) scene.kind = "body";
   }
+
+  /* Whether it is a field around a circle, of which the linear part may direct a step. */
+  isRing(method) { return ["strand", "profile"].includes(scene.kind) && scene.ring && method.name === "midpoint" && this.has("jacobian_vector"); }
 
   fill(table, array) {
     let row = 0;
@@ -231,6 +236,7 @@ class Model {
     const rate = this.findRate((x, out) => this.call("rhs", x, out));
     const [part, most] = FIELDS.includes(scene.kind) ? [0.12, 0.05] : [0.04, 0.02]; // of many rows; their fastest waves are those of two points' length
     this.h = clamp(part / (rate || 1), 1e-6, most);
+    if (this.stepper instanceof RingMidpoint) { this.stepper.forget(); this.findStep(); }
     if (!scene.noise) return;
     const { slopes } = this.stepper, count = scene.noise.processes.length;
     const noisy = this.findRate((x, out) => { // increments grow with the root of a step
@@ -238,6 +244,16 @@ class Model {
       for (let i = 0; i < this.n; i++) out[i] = slopes.subarray(i * count, (i + 1) * count).reduce((sum, each) => sum + each);
     });
     this.h = 2 ** Math.floor(Math.log2(Math.min(this.h, 0.04 / (noisy * noisy || 1))));
+  }
+
+  /* The longest step at which a field moves by a small part, and few sweeps are needed. */
+  findStep() {
+    const rates = this.call("rhs", this.x, new Float64Array(this.n)), least = this.h;
+    this.h = clamp(0.04 * (Math.hypot(...this.x) || 1) / (Math.hypot(...rates) || 1), least, 0.02);
+    for (let found = 0; this.h > least; this.h = Math.max(0.5 * this.h, least)) {
+      found = this.stepper.step(this.x.slice(), this.h);
+      if (found && found <= MOST_SWEEPS) return;
+    }
   }
 
   /* The rate of what a function says of a state, by repeated differences. */
@@ -259,7 +275,9 @@ class Model {
 
   step(h) {
     this.old.set(this.x);
-    if (this.stepper.step(this.x, h) === false) return this.end("the equation of a step");
+    let solved = this.stepper.step(this.x, h);
+    if (solved === 0) { this.find(); h = this.h; solved = this.stepper.step(this.x, h); } // shorter, as the motion has become
+    if (solved === false || solved === 0) return this.end("the equation of a step");
     this.settleOn();
     if (!this.x.every(Number.isFinite)) return this.end("rates without value");
     if (scene.domain.length) {

@@ -141,6 +141,51 @@ def test_sums_over_a_circle_are_fourier_transforms(noisy, n):
     np.testing.assert_allclose(np.array(back) / n, z.real, atol=1e-13 * n)
 
 
+RING = """
+  const x = Float64Array.from(start), p = Float64Array.from(parameters), points = scene.members;
+  const call = (name, x, out) => kernel[name](x, p, points, out);
+  const along = (x, v, out) => call("jacobian_vector", Float64Array.from([...x, ...v]), out);
+  const rates = (x, out) => call("rhs", x, out);
+  const stepper = new RingMidpoint(points, x.length / points, rates, along);
+  const sweeps = [];
+  for (let n = 0; n < count; n++) sweeps.push(stepper.step(x, h));
+  return [[...x], sweeps];
+"""
+
+
+@pytest.mark.parametrize(("name", "h"), [("kdv", 0.005), ("landau_lifshitz", 0.01)])
+def test_steps_of_a_field_around_a_circle_are_midpoints(name, h):
+    """The state solves the equation of a step, at lengths at which plain sweeps part."""
+    page = open_page(name)
+    with load_texts(specs.rendered(name).texts) as system:
+        start = np.concatenate([np.ravel(v) for v in page_start(page)])
+        given = {"start": start.tolist(), "parameters": system.pack().tolist(), "h": h}
+        found, sweeps = page.run(RING, count=1, **given)
+        middle, step = (start + found) / 2, np.subtract(found, start)
+        wanted = h * np.ravel(system.rhs(middle, target="numpy"))
+        wave = np.resize([1.0, 1.0, -1.0, -1.0], len(start))
+        stiff = h * np.abs(system.jacobian_vector(middle, wave)).max()
+    assert stiff > 2.0  # sweeps by the rates alone would part
+    np.testing.assert_allclose(step, wanted, atol=1e-10 * np.abs(step).max())
+    assert 0 < sweeps[0] < 30
+    if name == "kdv":  # in which waves steepen
+        _, sweeps = page.run(RING, count=1, **{**given, "h": 100 * h})
+        assert sweeps == [0]
+
+
+def page_start(page):
+    """Where fields of a page begin: as declared."""
+    return [each["default"] for each in page.scene["tables"]["state"]]
+
+
+def test_complex_matrices_are_inverted(noisy):
+    """Of three rows, the first pivot of which is zero."""
+    matrix = np.array([[0, 2, 1j], [1 - 1j, 0.5, 3], [2, 1j, -1]])
+    rows = [[part for z in row for part in (z.real, z.imag)] for row in matrix]
+    found = np.array(noisy.run("return invert(rows, 3);", rows=rows))
+    np.testing.assert_allclose(found[:, ::2] + 1j * found[:, 1::2], np.linalg.inv(matrix))
+
+
 PLANE = """
   const plane = new PlaneField(scene.plane);
   const x = Float64Array.from(state), p = Float64Array.from(parameters);

@@ -99,7 +99,11 @@ def _choose_field(spec: Spec, context: FamilyContext) -> dict[str, Any]:
     names = [name for each in context.state for name in each.components]
     vectors = [each for each in context.state if len(each.components) == 3]
     first = [names.index(name) for name in vectors[0].components] if vectors else []
-    return {"kind": "strand" if first else "profile", "curve": first or [0]}
+    return {
+        "kind": "strand" if first else "profile",
+        "curve": first or [0],
+        "ring": context.index.periodic,
+    }
 
 
 def _choose_member(spec: Spec, context: FamilyContext) -> dict[str, Any]:

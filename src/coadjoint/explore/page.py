@@ -30,6 +30,7 @@ SCRIPTS: Final = (
     "numerics.js",
     "noise.js",
     "waves.js",
+    "rings.js",
     "matrices.js",
     "drawing.js",
     "model.js",
