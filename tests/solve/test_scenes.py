@@ -9,13 +9,11 @@ import pytest
 
 from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
-from coadjoint.solve.illustrate import describe, illustrate
-from coadjoint.solve.linkages import find_lengths
+from coadjoint.solve.illustrate import illustrate
 from coadjoint.solve.plot import draw
 from coadjoint.solve.scenes import choose_view, energy_levels, faces_viewer, find_paths, find_sphere
 from coadjoint.spec import read_spec
 from coadjoint.systems import (
-    double_spherical_pendulum,
     kepler,
     n_body,
     rigid_body,
@@ -49,22 +47,6 @@ def test_orbits_without_a_unit_are_found_by_their_rates(tmp_path):
         np.testing.assert_array_equal(paths.members[0], orbit["r"])
     free = rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)
     assert find_paths(free) is None
-
-
-def test_rods_hang_on_each_other():
-    """Joints of a double pendulum by its energy, with rods of 0.6 m and 1.4 m."""
-    parameters = {"m1": 5.0, "m2": 2.0, "l1": 0.6, "l2": 1.4}
-    motion = double_spherical_pendulum.simulate(None, (0, 3), parameters, samples=40)
-    paths = find_paths(motion)
-    assert (paths.labels, paths.linked) == (("gamma1", "gamma2"), True)
-    first = 0.3 * motion["gamma1"]
-    np.testing.assert_allclose(paths.members, [first, first + 0.7 * motion["gamma2"]], rtol=1e-12)
-    assert "found by the energy" in describe(motion)
-    figure = draw(motion)
-    (rods,) = (line for line in figure.axes[0].lines if line.get_label() == "rods at the end")
-    np.testing.assert_allclose(np.array(rods.get_data_3d())[:, 1:].T, paths.members[:, :, -1])
-    np.testing.assert_allclose(find_lengths(motion, ["v1", "v2"]), [0.3, 0.7], rtol=1e-12)
-    assert find_lengths(motion, ["v1", "gamma2"]) is None  # without a product of both
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
