@@ -76,6 +76,17 @@ void main() {
   float dark = 0.34 * exp(-2.2 * dot(world.xy - shadow.xy, world.xy - shadow.xy) / (shadow.z * shadow.z));
   result = vec4(mix(colour.rgb, second, line) * (1.0 - dark), fade * colour.a);
 }`;
+/* Colours of a grid, along both coordinates of a plane or by longitude and latitude. */
+const MAP_FRAGMENT = `#version 300 es
+precision highp float;
+uniform sampler2D colours; uniform float round_; uniform vec2 counts;
+in vec3 world, facing, local; out vec4 result;
+void main() {
+  vec3 p = normalize(local);
+  vec2 at = round_ > 0.5 ? vec2(atan(p.y, p.x) / 6.2831853 + 0.5, asin(clamp(p.z, -1.0, 1.0)) / 3.1415927 + 0.5)
+    : 0.5 * local.xy + 0.5 + 0.5 / counts;
+  result = vec4(textureLod(colours, at.yx, 0.0).rgb, 1.0); // the second coordinate is along rows
+}`;
 
 class Drawing {
   constructor(canvas) {
@@ -87,6 +98,7 @@ class Drawing {
     }
     this.solid = this.program(MESH_VERTEX, MESH_FRAGMENT);
     this.floorProgram = this.program(MESH_VERTEX, FLOOR_FRAGMENT);
+    this.mapped = this.program(MESH_VERTEX, MAP_FRAGMENT);
     this.ribbon = this.program(LINE_VERTEX, LINE_FRAGMENT);
     this.meshes = { sphere: this.mesh(ballMesh()), box: this.mesh(boxMesh()), tube: this.mesh(tubeMesh(1)), cone: this.mesh(tubeMesh(0)), floor: this.mesh(floorMesh()) };
     this.lines = gl.createVertexArray();
@@ -133,7 +145,7 @@ class Drawing {
     gl.bindVertexArray(array);
     for (const [name, data] of [["point", points], ["direction", normals]]) {
       this.fill(gl.createBuffer(), new Float32Array(data));
-      for (const program of [this.solid, this.floorProgram]) this.attribute(program, name, 3, 0, 0, 0);
+      for (const program of [this.solid, this.floorProgram, this.mapped]) this.attribute(program, name, 3, 0, 0, 0);
     }
     this.fill(gl.createBuffer(), new Uint32Array(triangles), gl.ELEMENT_ARRAY_BUFFER);
     gl.bindVertexArray(null);
@@ -183,6 +195,21 @@ class Drawing {
     gl.bindVertexArray(array);
     gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
     gl.depthMask(true);
+  }
+
+  /* A sphere, or a plane, with the colours of a grid of some counts: bytes, along the second coordinate next to each other. */
+  map(mesh, sizes, pixels, counts, round) {
+    const gl = this.gl, program = this.mapped;
+    if (!this.colours) {
+      gl.bindTexture(gl.TEXTURE_2D, (this.colours = gl.createTexture()));
+      for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.REPEAT);
+      for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.LINEAR);
+    }
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, counts[1], counts[0], 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    gl.useProgram(program);
+    this.uniform(program, "round_", round ? 1 : 0);
+    this.uniform(program, "counts", counts);
+    this.draw(mesh, [1, 0, 0, 0], [0, 0, 0], sizes, [1, 1, 1], { program });
   }
 
   floor(height, radius, cell, colour, line, shadow, middle) {

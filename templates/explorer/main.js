@@ -97,6 +97,22 @@ for (const [table, box, array] of [["inputs", "drive", model.u], ["parameters", 
   addSliders(table, array, id(box).querySelector("div"));
 }
 
+// -- noise ----------------------------------------------------------------------------------------
+
+const isSeed = (number) => Number.isSafeInteger(number) && number >= 0;
+if (scene.noise) {
+  id("noise").hidden = false;
+  const choose = () => {
+    const seed = Number(id("seed").value);
+    if (!isSeed(seed)) { tell("A seed is a whole number from 0 to 2^53."); return; }
+    model.stepper.restart(seed);
+    reset();
+    save();
+  };
+  id("seed").addEventListener("change", choose);
+  id("other").addEventListener("click", () => { id("seed").value = model.stepper.seed + 1; choose(); });
+}
+
 // -- the address ----------------------------------------------------------------------------------
 
 const MOST_SHARED = 400; // numbers of a state in an address
@@ -105,6 +121,7 @@ function save() {
   const parts = [`p=${numbers(model.p)}`];
   if (model.n <= MOST_SHARED) parts.push(`x=${numbers(running ? start.x : model.x)}`);
   if (model.u.length) parts.push(`u=${numbers(model.u)}`);
+  if (scene.noise) parts.push(`s=${model.stepper.seed}`);
   try { history.replaceState(null, "", `#${parts.join("&")}`); } catch { location.hash = parts.join("&"); }
 }
 function load() {
@@ -114,6 +131,8 @@ function load() {
     const numbers = (given.get(key) || "").split(",").map(Number);
     if (given.get(key) && numbers.length === array.length && numbers.every(Number.isFinite)) { array.set(numbers); found = true; }
   }
+  const seed = Number(given.get("s") || NaN);
+  if (scene.noise && isSeed(seed)) { model.stepper.restart(seed); id("seed").value = seed; found = true; }
   if (!found) return;
   start.x.set(model.x);
   model.settle();
@@ -161,7 +180,7 @@ drag(id("scene"), (x, y) => {
     end: () => finish(was),
   };
 });
-const HINT = !scene.functions.includes("energy") || model.u.length ? "Drag the point." : panel.vector?.partner.length
+const HINT = scene.noise ? "Curves: levels of the energy, which noise crosses. Drag the point." : !scene.functions.includes("energy") || model.u.length ? "Drag the point." : panel.vector?.partner.length
   ? "Curves: levels of the least energy there; orange bounds where this motion can go. Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
 function finish(was) {
   model.settleOn();
@@ -355,8 +374,10 @@ function frame(now) {
   if (costs.length > 600) costs.shift();
   requestAnimationFrame(frame);
 }
-const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
-id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${model.method.keeps.length ? `, which keeps ${model.method.keeps.map(plainName).join(", ")}` : ""}.`;
+const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", isospectral_midpoint: "the isospectral midpoint", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
+const keeping = scene.noise ? `with the increments of Wiener processes over steps of ${shorten(model.h)}${unitText(scene.unitOfTime)}; it keeps what is linear or quadratic and kept by each path`
+  : model.method.name === "isospectral_midpoint" ? "which keeps the eigenvalues of the matrix" : model.method.keeps.length ? `which keeps ${model.method.keeps.map(plainName).join(", ")}` : "";
+id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${keeping && `, ${keeping}`}.`;
 id("kept").hidden = !model.integrals.length;
 load();
 addEventListener("hashchange", load);

@@ -13,6 +13,9 @@ function nameOn(element, name) {
 }
 const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
 
+const MOST_SWEEPS = 16; // of a step of a field
+const FIELDS = ["strand", "profile", "surface"];
+
 class Model {
   constructor() {
     this.n = size("state");
@@ -25,9 +28,11 @@ class Model {
     this.old = new Float64Array(this.n);
     this.half = new Float64Array(this.n);
     this.given = { state: this.x, parameters: this.p, inputs: this.u, time: this.clock };
-    const method = scene.methods[0] || { name: "rk4", schedule: [], keeps: [] };
-    this.stepper = new Stepper(this.n, (x, out) => this.call("rhs", x, out), method, scene.spheres,
-      (flow, x, out) => this.call(flow, x, out));
+    this.plane = scene.plane ? new PlaneField(scene.plane) : null;
+    const method = scene.methods[0] || { name: scene.noise ? "midpoint" : "rk4", schedule: [], keeps: [] }, rates = (x, out) => this.call("rhs", x, out);
+    this.stepper = scene.noise ? new NoisyMidpoint(this.n, rates, (x, out) => this.call("noise", x, out), scene.noise)
+      : this.isRing(method) ? new RingMidpoint(scene.members, this.n / scene.members, rates, (x, v, out) => this.call("jacobian_vector", Float64Array.from([...x, ...v]), out))
+      : new Stepper(this.n, rates, method, scene.spheres, (flow, x, out) => this.call(flow, x, out));
     this.method = method;
     for (const table of ["parameters", "inputs"]) this.fill(table, table === "inputs" ? this.u : this.p);
     this.position = [0, 0, 0];
@@ -37,6 +42,9 @@ class Model {
     if (scene.slips && !scene.slipping) scene.kind = "body";
   }
 
+  /* Whether it is a field around a circle, of which the linear part may direct a step. */
+  isRing(method) { return ["strand", "profile"].includes(scene.kind) && scene.ring && method.name === "midpoint" && this.has("jacobian_vector"); }
+
   fill(table, array) {
     let row = 0;
     for (const each of scene.tables[table]) each.components.forEach((_, k) => {
@@ -45,6 +53,7 @@ class Model {
   }
 
   call(name, x, out) {
+    if (this.plane) return this.plane.call(name, x, this.p, out);
     if (scene.members) return kernel[name](x, this.p, scene.members, out);
     const names = scene.takes[name] || scene.takes.rhs;
     return kernel[name](...names.map((each) => (each === "state" ? x : this.given[each])), out);
@@ -80,7 +89,10 @@ class Model {
       const at = scene.place.indexOf(Math.floor(place / scene.members)), wide = scene.place.length / 3;
       this.x[place] = at >= 0 && Math.floor(at / wide) === at % wide ? 1 : 0;
     });
-    else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
+    else if (missing.length && this.plane) { // eddies that turn against each other
+      const [a, b] = scene.plane.counts;
+      missing.forEach((place) => { const u = 2 * Math.PI * Math.floor(place / b) / a, v = 2 * Math.PI * (place % b) / b; this.x[place] = Math.cos(2 * v) + 0.5 * Math.cos(u) + 0.3 * Math.sin(u + v); });
+    } else if (scene.members) missing.forEach((place) => { // one smooth wave for each component
       const block = Math.floor(place / scene.members), s = 2 * Math.PI * (place % scene.members) / scene.members;
       this.x[place] = 0.5 + 0.4 * Math.cos(s + 2 * block);
     });
@@ -188,6 +200,7 @@ class Model {
   /* What goes with a state: the attitude, step, and integrals that its drift is measured from. */
   settle() {
     this.clock[0] = 0;
+    if (scene.noise) this.stepper.restart();
     this.ended = "";
     this.settleOn();
     let row = 0;
@@ -218,26 +231,53 @@ class Model {
     return Math.max(...rows.map((row, k) => Math.abs(this.y[row] - first[k]))) / big;
   }
 
-  /* A step from how fast nearby motions part, found by repeated differences of the rates. */
+  /* A step from how fast nearby motions part; with noise a power of two, so that it is easily said. */
   find() {
+    const rate = this.findRate((x, out) => this.call("rhs", x, out));
+    const [part, most] = FIELDS.includes(scene.kind) ? [0.12, 0.05] : [0.04, 0.02]; // of many rows; their fastest waves are those of two points' length
+    this.h = clamp(part / (rate || 1), 1e-6, most);
+    if (this.stepper instanceof RingMidpoint) { this.stepper.forget(); this.findStep(); }
+    if (!scene.noise) return;
+    const { slopes } = this.stepper, count = scene.noise.processes.length;
+    const noisy = this.findRate((x, out) => { // increments grow with the root of a step
+      this.call("noise", x, slopes);
+      for (let i = 0; i < this.n; i++) out[i] = slopes.subarray(i * count, (i + 1) * count).reduce((sum, each) => sum + each);
+    });
+    this.h = 2 ** Math.floor(Math.log2(Math.min(this.h, 0.04 / (noisy * noisy || 1))));
+  }
+
+  /* The longest step at which a field moves by a small part, and few sweeps are needed. */
+  findStep() {
+    const rates = this.call("rhs", this.x, new Float64Array(this.n)), least = this.h;
+    this.h = clamp(0.04 * (Math.hypot(...this.x) || 1) / (Math.hypot(...rates) || 1), least, 0.02);
+    for (let found = 0; this.h > least; this.h = Math.max(0.5 * this.h, least)) {
+      found = this.stepper.step(this.x.slice(), this.h);
+      if (found && found <= MOST_SWEEPS) return;
+    }
+  }
+
+  /* The rate of what a function says of a state, by repeated differences. */
+  findRate(rates) {
     const base = new Float64Array(this.n), other = new Float64Array(this.n);
-    this.call("rhs", this.x, base);
+    rates(this.x, base);
     let v = Float64Array.from(base, (each, k) => each + 1e-3 * Math.sin(k + 1)), rate = 0;
     const scale = Math.max(...this.x.map(Math.abs), 1e-3);
     for (let round = 0; round < 12; round++) {
       const length = Math.hypot(...v) || 1, little = (1e-6 * scale) / length;
-      this.call("rhs", this.x.map((each, k) => each + little * v[k]), other);
+      rates(this.x.map((each, k) => each + little * v[k]), other);
       const next = other.map((each, k) => (each - base[k]) / little);
       rate = Math.max(rate * 0.7, Math.hypot(...next) / length);
       v = next;
     }
     const own = Math.hypot(...base) / (Math.hypot(...this.x) || 1);
-    this.h = clamp(0.04 / (Math.max(rate, own) || 1), 1e-6, 0.02);
+    return Math.max(rate, own);
   }
 
   step(h) {
     this.old.set(this.x);
-    this.stepper.step(this.x, h);
+    let solved = this.stepper.step(this.x, h);
+    if (solved === 0) { this.find(); h = this.h; solved = this.stepper.step(this.x, h); } // shorter, as the motion has become
+    if (solved === false || solved === 0) return this.end("the equation of a step");
     this.settleOn();
     if (!this.x.every(Number.isFinite)) return this.end("rates without value");
     if (scene.domain.length) {
@@ -248,13 +288,21 @@ class Model {
     for (let i = 0; i < this.n; i++) this.half[i] = 0.5 * (this.old[i] + this.x[i]);
     if (this.rest.length) this.follow(h);
     else if (scene.turning && !scene.attitude) {
-      const q = this.attitude, w = this.read(scene.turning, this.half);
-      this.attitude = normal(multiply(q, turnBy(scaled(h, w))));
+      const q = this.attitude, w = this.readSpeed(scene.turning, scene.spinning);
+      this.attitude = normal(multiply(q, scene.noise ? [1, ...scaled(0.5 * h, w)] : turnBy(scaled(h, w)))); // the midpoint turns by Cayley's transform
     }
     if (scene.moving && (scene.kind === "body" || scene.slipping))
-      this.position = plus(this.position, scaled(h, rotate(this.pose(), this.read(scene.moving, this.half))));
+      this.position = plus(this.position, scaled(h, rotate(this.pose(), this.readSpeed(scene.moving, scene.pushing))));
     this.clock[0] += h;
     return true;
+  }
+
+  /* A velocity in the middle of a step, with its noise: the derivatives of the Hamiltonians of noise by its momentum. */
+  readSpeed(velocity, momentum) {
+    const drift = this.read(velocity, this.half);
+    if (!scene.noise || !momentum || !this.has("noise_gradient")) return drift;
+    const { numbers } = this.stepper, slopes = this.call("noise_gradient", this.half, new Float64Array(this.n * numbers.length));
+    return drift.map((v, i) => numbers.reduce((sum, each, k) => sum + slopes[momentum.rows[i] * numbers.length + k] * each, v));
   }
 
   end(why) { this.x.set(this.old); this.ended = why; return false; }

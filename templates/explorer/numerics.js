@@ -42,12 +42,13 @@ class Stepper {
   constructor(size, rates, method, spheres, flow) {
     Object.assign(this, { size, rates, method, spheres, flow });
     this.work = Array.from({ length: 8 }, () => new Float64Array(size));
-    this.wide = new Float64Array(size + 1);
+    this.wide = new Float64Array(2 * size);
   }
 
   step(x, h) {
     if (this.method.schedule.length) this.compose(x, h);
     else if (this.method.name === "spherical_midpoint") this.roundMidpoint(x, h);
+    else if (this.method.name === "isospectral_midpoint") this.turnMatrix(x, h);
     else if (IMPLICIT[this.method.name]) this.collocate(x, h, IMPLICIT[this.method.name]);
     else this.explicit(x, h);
   }
@@ -63,6 +64,26 @@ class Stepper {
     }
   }
 
+  /* W = w + h [X, V], X = w + h/2 [X, V] + h^2/4 V X V, V that of X; the last product is a function of the kernel. */
+  turnMatrix(x, h) {
+    const [middle, rates, xi, both] = this.work, n = this.size;
+    middle.set(x);
+    for (let sweep = 0, change = 1; sweep < SWEEPS && change > 0; sweep++) {
+      this.rates(middle, rates);
+      this.flow("energy_gradient", middle, xi);
+      this.wide.set(middle);
+      for (let i = 0; i < n; i++) this.wide[n + i] = 0.5 * h * xi[i];
+      this.flow("sandwich", this.wide, both);
+      change = 0;
+      for (let i = 0; i < n; i++) {
+        const next = x[i] + (0.5 * h * rates[i] + both[i]);
+        if (Math.abs(next - middle[i]) > 4e-16 * (Math.abs(next) + 1)) change = 1;
+        middle[i] = next;
+      }
+    }
+    for (let i = 0; i < n; i++) x[i] += h * rates[i];
+  }
+
   /* The classical method of Runge and Kutta. */
   explicit(x, h) {
     const [k1, k2, k3, k4, y] = this.work, n = this.size;
@@ -76,27 +97,29 @@ class Stepper {
     for (let i = 0; i < n; i++) x[i] += (h / 6) * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   }
 
-  /* A method of Gauss: sweeps until no stage changes by more than rounding. */
+  /* A method of Gauss: sweeps until no stage changes by more than rounding, from the slopes of the step before. */
   collocate(x, h, { a, b }) {
-    const n = this.size, s = b.length, stages = this.work.slice(0, s), slopes = this.work.slice(s, 2 * s);
-    for (const stage of stages) stage.set(x);
+    const n = this.size, s = b.length, stages = this.work.slice(0, s), slopes = this.work.slice(s, 2 * s), next = this.work[2 * s];
+    for (let k = 0; k < s; k++) this.add(stages[k], x, h, a[k], slopes);
     for (let sweep = 0, change = 1; sweep < SWEEPS && change > 0; sweep++) {
-      stages.forEach((stage, k) => this.rates(stage, slopes[k]));
+      for (let k = 0; k < s; k++) this.rates(stages[k], slopes[k]);
       change = 0;
       for (let k = 0; k < s; k++) {
-        for (let i = 0; i < n; i++) {
-          let rise = 0;
-          for (let j = 0; j < s; j++) rise += a[k][j] * slopes[j][i];
-          const next = x[i] + h * rise;
-          if (Math.abs(next - stages[k][i]) > 4e-16 * (Math.abs(next) + 1)) change = 1;
-          stages[k][i] = next;
-        }
+        const stage = stages[k];
+        this.add(next, x, h, a[k], slopes);
+        for (let i = 0; i < n && !change; i++) if (!(Math.abs(next[i] - stage[i]) <= 4e-16 * (Math.abs(next[i]) + 1))) change = 1;
+        stage.set(next);
       }
     }
-    for (let i = 0; i < n; i++) {
-      let rise = 0;
-      for (let j = 0; j < s; j++) rise += b[j] * slopes[j][i];
-      x[i] += h * rise;
+    this.add(x, x, h, b, slopes);
+    if (!x.every(Number.isFinite)) for (const slope of slopes) slope.fill(0); // nothing to begin another step from
+  }
+  /* x + h times a sum of slopes. */
+  add(out, x, h, weights, slopes) {
+    out.set(x);
+    for (let j = 0; j < weights.length; j++) {
+      const slope = slopes[j], w = h * weights[j];
+      for (let i = 0; i < out.length; i++) out[i] += w * slope[i];
     }
   }
 

@@ -67,7 +67,7 @@ class SpherePanel {
   /* Level curves as segments, by triangles of a grid. They change with parameters and integrals. */
   curves(theme) {
     const { model, vector } = this, w = this.value(), length = norm(w), kept = vector.tied && vector.partner.length ? dot(w, vector.partner.map((row) => model.x[row])) : 0;
-    const energy = model.energyAt(model.x), key = [...model.p, ...model.u, length.toPrecision(5), kept.toPrecision(4), energy.toPrecision(4), theme.dark].join();
+    const energy = model.energyAt(model.x), key = [...model.p, ...model.u, length.toPrecision(5), kept.toPrecision(4), scene.noise ? "" : energy.toPrecision(4), theme.dark].join();
     if (key === this.key) return;
     this.key = key;
     const rows = 36, columns = 72, points = [], values = [];
@@ -79,7 +79,7 @@ class SpherePanel {
     const finite = values.filter(Number.isFinite).sort((a, b) => a - b), low = finite[0], high = finite[finite.length - 1];
     const segments = [], usable = high - low > 1e-9 * Math.max(Math.abs(high), 1);
     const levels = usable ? Array.from({ length: 11 }, (_, k) => [low + (k + 0.5) / 11 * (high - low), [...theme.line, 0.85]]) : [];
-    if (usable && this.model.has("energy")) levels.push([energy, [...ORANGE, 1]]);
+    if (usable && this.model.has("energy") && !scene.noise) levels.push([energy, [...ORANGE, 1]]);
     for (const [level, tint] of levels) for (let i = 0; i < rows; i++) for (let j = 0; j < columns; j++) {
       const a = i * (columns + 1) + j;
       for (const corner of [[a, a + 1, a + columns + 1], [a + 1, a + columns + 2, a + columns + 1]]) {

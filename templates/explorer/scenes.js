@@ -55,7 +55,7 @@ class BodyScene extends Scene {
   /* Whether it turns by its inertia alone: the momentum rests in space, and the energy is half its product with the angular velocity. */
   isFree() {
     const { model } = this, { spinning, turning } = scene;
-    if (!spinning || spinning.table !== "state" || scene.vertical || scene.moving || model.u.length || !model.has("energy")) return false;
+    if (scene.noise || !spinning || spinning.table !== "state" || scene.vertical || scene.moving || model.u.length || !model.has("energy")) return false;
     const m = model.read(spinning), w = model.read(turning), rates = model.call("rhs", model.x, new Float64Array(model.n));
     const own = spinning.rows.map((row) => rates[row]), size = norm(m) * norm(w);
     return norm(minus(own, cross(m, w))) < 1e-9 * size && Math.abs(2 * model.energyAt(model.x) - dot(m, w)) < 1e-9 * size;
@@ -279,83 +279,6 @@ class RollingScene extends Scene {
   turn(rotation) { this.model.turn(rotation); }
 }
 
-/* Particles on their orbits; a centre of force at the origin. */
-class ParticleScene extends Scene {
-  constructor(model, drawing) {
-    super(model, drawing);
-    this.hint = "Drag a particle or the tip of its velocity, the space around them to look";
-    this.camera.pitch = 0.5;
-    this.extent = Math.max(...this.positions().map(norm), 0.5);
-    const known = new Map(scene.tables.state.map((each) => [each.name, each])); // lengths one without a unit are directions
-    this.directions = scene.places.every((each, k) => known.get(each.name)?.units[0] === "1" && Math.abs(norm(this.positions()[k]) - 1) < 1e-9);
-    if (this.directions) this.hint = "Directions are points of a sphere: drag one or the tip of its rate, the space around them to look";
-    this.camera.distance = 6.5 * this.extent;
-    this.central = this.isCentral();
-  }
-  /* Whether one particle at rest is pulled to the origin. */
-  isCentral() {
-    const { model } = this, [at] = this.positions(), [speed] = scene.speeds;
-    if (scene.places.length !== 1 || speed.table !== "state") return false;
-    const x = Float64Array.from(model.x);
-    model.write(speed, speed.rows.map(() => 0), x);
-    const rates = model.call("rhs", x, new Float64Array(model.n)), pull = speed.rows.map((row) => rates[row]);
-    if (pull.length === 2) pull.push(0);
-    return dot(pull, at) < -0.999999 * norm(pull) * norm(at);
-  }
-  positions() { return scene.places.map((each) => { const r = this.model.read(each); return r.length === 2 ? [...r, 0] : r; }); }
-  draw(theme) {
-    const { drawing, extent } = this, points = this.positions();
-    const far = Math.max(...points.map(norm)) + 0.4 * extent; // an arrow's length
-    this.camera.distance += 0.02 * (clamp(5.2 * far, 4.6 * extent, 40 * extent) - this.camera.distance) * (far > this.camera.distance / 3.6 ? 1 : 0);
-    drawing.floor(0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
-    drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
-    if (this.directions) drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [1, 1, 1], [...(theme.dark ? theme.steel : theme.body), 0.4], { glass: 1 });
-    points.forEach((at, k) => {
-      if (this.directions) drawing.draw("tube", turnOnto(E[2], at), [0, 0, 0], [0.015, 0.015, norm(at)], theme.steel);
-      const tint = [BLUE, RED, GREEN][k % 3], trail = this.trail(k);
-      trail.add(at, 0.01 * extent);
-      drawing.line(trail.points, fade(tint), 2.5);
-      drawing.draw("sphere", [1, 0, 0, 0], at, Array(3).fill(0.075 * extent), tint);
-      drawing.line([at, [at[0], at[1], 0]], () => [...theme.line, 0.5], 1);
-      this.label(scene.places[k].name, plus(at, [0, 0, 0.12 * extent]));
-      const speed = scene.speeds[k];
-      if (speed) {
-        const v = this.model.read(speed), tip = plus(at, scaled(0.5 * extent / (this.fast ||= norm([...v, 0])), v.length === 2 ? [...v, 0] : v));
-        drawing.arrow(at, tip, GREEN, 0.014 * extent);
-        this.nameArrow(speed.name, at, tip, "green");
-      }
-    });
-  }
-  /* The tip of the arrow of a velocity. */
-  tip(k) {
-    const v = this.model.read(scene.speeds[k]);
-    return plus(this.positions()[k], scaled(0.5 * this.extent / this.fast, v.length === 2 ? [...v, 0] : v));
-  }
-  grab(x, y) {
-    const near = (p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 22; };
-    const tip = this.fast ? scene.speeds.findIndex((each, k) => each && each.table === "state" && near(this.tip(k)) && !near(this.positions()[k])) : -1;
-    if (tip >= 0) return { move: (a, b) => this.aim(tip, a, b) };
-    const found = this.positions().findIndex((p) => { const s = this.drawing.project(p); return Math.hypot(s.x - x, s.y - y) < 26; });
-    return found < 0 ? null : { move: (a, b) => this.carry(found, a, b) };
-  }
-  /* Of particles in a plane, its normal. */
-  flatOf(k) { return scene.places[k].rows.length === 2 ? E[2] : null; }
-  carry(k, x, y) {
-    if (this.directions) this.put(scene.places[k], this.drawing.hit(x, y, [0, 0, 0], 1).direction);
-    else this.put(scene.places[k], this.meet(this.positions()[k], x, y, this.flatOf(k)));
-  }
-  aim(k, x, y) {
-    const from = this.positions()[k], to = this.meet(this.tip(k), x, y, this.flatOf(k));
-    this.put(scene.speeds[k], scaled(this.fast / (0.5 * this.extent), minus(to, from)));
-  }
-  put(variable, value) {
-    this.model.write(variable, value);
-    this.model.ended = "";
-    this.clear();
-    this.model.measure();
-  }
-}
-
 /* A vehicle in the plane: each constraint is a wheel, on the line where it lets the frame turn. */
 class PlanarScene extends Scene {
   constructor(model, drawing) {
@@ -550,4 +473,4 @@ class PortraitScene extends Scene {
   }
 }
 
-const SCENES = { body: BodyScene, rolling: RollingScene, particles: ParticleScene, planar: PlanarScene, strand: FieldScene, profile: FieldScene, portrait: PortraitScene };
+const SCENES = { body: BodyScene, rolling: RollingScene, planar: PlanarScene, strand: FieldScene, profile: FieldScene, portrait: PortraitScene };

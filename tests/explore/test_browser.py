@@ -43,6 +43,10 @@ SHOWN = (
     "peakons",
     "toda_lattice",
     "heisenberg_lattice",
+    "stochastic_rigid_body",
+    "euler_2d",
+    "zeitlin_su_n",
+    "zeitlin_torus",
 )
 #: Colours on the canvas of the scene, where something is drawn, in steps of 16.
 COLOURS = """(() => {
@@ -136,6 +140,12 @@ ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
         ("heisenberg_lattice", "explorer.view.handles()[3]", "explorer.model.x[48]"),
         ("spin_chain", "explorer.view.tips[20]", "explorer.model.x[20]"),
         ("camassa_holm", "explorer.view.tips[40]", "explorer.model.x[40]"),
+        (
+            "double_spherical_pendulum",
+            "explorer.view.positions()[1]",
+            "explorer.model.x[3]",
+        ),
+        ("euler_2d", "[0.1, 0.1, 0]", "explorer.model.y[0]"),
     ],
 )  # fmt: skip
 def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
@@ -151,6 +161,42 @@ def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
     page.run("explorer.reset()")
     assert page.run(value) == pytest.approx(after, abs=1e-9)
     assert page.problems == []
+
+
+def test_a_seed_is_a_path_of_a_body_whose_momentum_rests_in_space(page, pages):
+    """The same seed leads to the same state, another one elsewhere; the address holds it."""
+    show(page, pages("stochastic_rigid_body"), calm=True)
+    space = "rotate(explorer.model.pose(), explorer.model.read(scene.spinning))"
+    walk = (
+        "explorer.reset(); for (let k = 0; k < 500; k++) explorer.model.step(explorer.model.h);"
+        "[...explorer.model.x]"
+    )
+    at = page.run(space)
+    first = page.run(walk)
+    np.testing.assert_allclose(page.run(space), at, atol=1e-11)
+    page.run("document.getElementById('other').click()")
+    assert page.run("location.hash").endswith("&s=2")
+    second = page.run(walk)
+    assert np.abs(np.subtract(first, second)).max() > 0.1
+    page.run("location.hash = location.hash.replace('&s=2', '&s=1')")
+    page.wait("document.getElementById('seed').value === '1'")
+    assert page.run(walk) == pytest.approx(first, abs=1e-7)  # the address has nine digits
+    assert page.problems == []
+
+
+def test_rods_are_a_linkage_by_their_energy(page, pages):
+    """Lengths and masses that sliders choose are found again; rods that are none are directions."""
+    show(page, pages("double_spherical_pendulum"), calm=True)
+    names = page.run("scene.tables.parameters.map(each => each.name)")
+    assert names == ["m1", "m2", "l1", "l2", "g"]
+    page.run("explorer.model.p.set([5, 2, 0.6, 1.4, 9.81]); explorer.view.moving()")
+    np.testing.assert_allclose(page.run("explorer.view.rods.lengths"), [0.3, 0.7], rtol=1e-9)
+    small, large = page.run("explorer.view.rods.sizes")[::-1]
+    assert small / large == pytest.approx((2 / 5) ** (1 / 3), rel=1e-9)
+    first, second = np.array(page.run("explorer.view.positions()"))
+    np.testing.assert_allclose(np.linalg.norm([first, second - first], axis=1), [0.3, 0.7])
+    page.run("explorer.model.call = (name, x, out) => (out[0] = x[6] * x[9], out)")
+    assert page.run("findRods(explorer.model)") is None  # no mass has such an energy
 
 
 def test_a_raised_picture_is_met_where_it_is_drawn(page, pages):

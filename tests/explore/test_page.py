@@ -143,6 +143,9 @@ def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):
         ("heisenberg_lattice", "members", {"shape": "arrows"}),
         ("spin_chain_lattice", "members", {"shape": "frames"}),
         ("n_body", "members", {"shape": "space"}),
+        ("euler_2d", "surface", {"surface": "plane"}),
+        ("zeitlin_su_n", "surface", {"surface": "sphere", "matrix": 17}),
+        ("zeitlin_torus", "surface", {"surface": "torus", "towers": []}),
     ],
 )
 def test_what_is_drawn_follows_from_the_records(tmp_path, name, kind, known):
@@ -192,28 +195,30 @@ def test_spins_repeat():
 
 
 @pytest.mark.parametrize(
-    ("name", "reason"),
+    ("change", "problem"),
     [
-        ("euler_2d", "it is a field in a plane"),
-        ("zeitlin_su_n", "entries of matrices"),
-        ("zeitlin_torus", "entries of matrices"),
+        ({"indexed_noise": ("dW",)}, "something drives it from outside"),
+        ({"torus": "sizes"}, "nobody has said how many points its plane has"),
     ],
 )
-def test_what_is_no_line_of_members_is_refused(name, reason):
-    """A plane and matrices would be drawn as members that they are not."""
-    spec = read_spec(derivations_folder() / f"{name}.toml")
-    with pytest.raises(KernelArgumentError, match=f"has no page to explore: .*{reason}"):
-        describe_scene(spec, render_claims(spec))
-
-
-def test_noise_is_refused_with_a_way_on():
+def test_what_a_page_does_not_show_is_refused_with_a_way_on(change, problem):
     """The message names the system, the reason and another command."""
-    spec = read_spec(derivations_folder() / "stochastic_rigid_body.toml")
+    spec = read_spec(derivations_folder() / "euler_2d.toml")
+    rendered = specs.rendered("euler_2d")
+    context = rendered.family.context
+    if "torus" in change:
+        torus = context.torus
+        change = {
+            "torus": type(torus)(
+                torus.coordinates, torus.lengths, (None, 32), torus.derivatives, torus.solved
+            )
+        }
+    other = replace(rendered.family, context=replace(context, **change))
     with pytest.raises(KernelArgumentError) as caught:
-        describe_scene(spec, render_claims(spec))
+        describe_scene(spec, replace(rendered, family=other))
     message = str(caught.value)
-    assert "stochastic_rigid_body has no page to explore: it has noise" in message
-    assert "coadjoint simulate stochastic_rigid_body" in message
+    assert f"euler_2d has no page to explore: {problem}" in message
+    assert "coadjoint simulate euler_2d" in message
 
 
 def steps(engine, name, scene, method, start, h, count):

@@ -53,6 +53,17 @@ def refused(along):
     return none, other, found
 
 
+def test_a_long_factor_has_a_letter(monkeypatch):
+    """What is too long for the product is told behind it, and the power stays with its letter."""
+    monkeypatch.setattr("coadjoint.prove.completeness.SHOWN", 20)
+    statement, verdict = about("veselova")
+    assert statement == (
+        "an invariant measure: |f1|^(1/2) dOmega dGamma on twistless = 0; where f1 is a function "
+        "with 3 terms that begins with Gamma1^2*I2*I3"
+    )
+    assert verdict is Verdict.PROVED
+
+
 def test_the_ball_has_chaplygins_measure():
     """Chaplygin 1903: (1 - m r^2 Gamma.J^-1 Gamma)^(-1/2) dM dGamma, dM = det(B^T M B) dOmega."""
     statement, verdict = about("chaplygin_ball_centred")

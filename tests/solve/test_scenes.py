@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
+from coadjoint.resources import derivations_folder
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.illustrate import illustrate
 from coadjoint.solve.plot import draw
 from coadjoint.solve.scenes import choose_view, energy_levels, faces_viewer, find_paths, find_sphere
-from coadjoint.systems import kepler, n_body, rigid_body
+from coadjoint.spec import read_spec
+from coadjoint.systems import (
+    kepler,
+    n_body,
+    rigid_body,
+    stochastic_rigid_body,
+)
+from tests.specs import render_claims
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -21,6 +32,21 @@ def test_orbits_are_found_by_their_unit():
     paths = find_paths(bodies)
     assert (paths.names, paths.members.shape) == (("r1", "r2"), (3, 2, 20))
     assert find_paths(rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)) is None
+
+
+def test_orbits_without_a_unit_are_found_by_their_rates(tmp_path):
+    """Kepler's without units: p is a multiple of the rate of r. A vector on a sphere is none."""
+    text = (derivations_folder() / "kepler.toml").read_text()
+    (tmp_path / "plain.toml").write_text(re.sub(r'unit( *)= "[^"]*"', r'unit\1= "1"', text))
+    with load_texts(render_claims(read_spec(tmp_path / "plain.toml")).texts) as system:
+        (place, _) = system.STATE
+        assert system.STATE[place].unit == "1"
+        orbit = system.simulate([1, 0, 0.2, 0, 1, 0.1], (0, 3), samples=50)
+        paths = find_paths(orbit)
+        assert (paths.names, paths.unit, paths.linked) == (("r1", "r2", "r3"), "1", False)
+        np.testing.assert_array_equal(paths.members[0], orbit["r"])
+    free = rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)
+    assert find_paths(free) is None
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -49,6 +75,26 @@ def test_level_curves_have_one_energy_each():
         assert np.linalg.norm(level, axis=0) == pytest.approx(1.002 * radius)
         energy = (level**2 / inertia).sum(axis=0) / 2
         assert np.ptp(energy) < 0.02 * energy.max()  # the grid is 4 degrees wide
+
+
+def test_paths_with_noise_are_drawn_by_their_seeds(monkeypatch):
+    """Three paths from one start on one sphere, each that of its seed; the caption names them."""
+    drawn = []
+    monkeypatch.setattr("coadjoint.solve.plot.draw", lambda *s: drawn.append(draw(*s)) or drawn[0])
+    start = [0.6, 0.0, -0.8]
+    told = illustrate(stochastic_rigid_body.system, start)
+    assert told["picture"].startswith("data:image/png;base64,")
+    assert "3 paths from one start" in told["caption"]
+    assert "over 6 s" in told["caption"]
+    assert "the seeds 1, 2, 3" in told["caption"]
+    (paths,) = (axes.coadjoint_path for axes in drawn[0].axes if hasattr(axes, "coadjoint_path"))
+    np.testing.assert_allclose((paths**2).sum(axis=1), 1.0, rtol=1e-12)
+    for seed, path in enumerate(paths, start=1):
+        run = stochastic_rigid_body.simulate(
+            start, (0.0, 6.0), step=1 / 64, seed=seed, samples=3, progress=False
+        )
+        np.testing.assert_array_equal(path[:, [0, 192, 384]], run["Pi"])
+    assert len({tuple(path[:, -1]) for path in paths}) == 3
 
 
 def test_drift_is_a_small_strip():

@@ -28,11 +28,17 @@ from coadjoint.spec import Spec
 #: The parts of the script, in order; the kernel stands before them.
 SCRIPTS: Final = (
     "numerics.js",
+    "noise.js",
+    "waves.js",
+    "rings.js",
+    "matrices.js",
     "drawing.js",
     "model.js",
     "scenes.js",
+    "particles.js",
     "carriages.js",
     "members.js",
+    "surfaces.js",
     "panels.js",
     "main.js",
 )

@@ -8,28 +8,22 @@ Read next: `coadjoint.explore.page`.
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from coadjoint.declared import KernelContext, Quantity
-from coadjoint.errors import KernelArgumentError
+from coadjoint.explore.families import describe_family
+from coadjoint.explore.records import describe, list_quantities, refuse
+from coadjoint.lower import normals
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
-from coadjoint.notation.names import spell
 from coadjoint.pipeline import Rendered
-from coadjoint.render.families import FamilyContext
-from coadjoint.resources import derivations_folder
+from coadjoint.solve.stochastic import SOLVED
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Variable
 
-#: Rows of a state that a page moves at the most.
-MOST_ROWS: Final = 4096
 #: Rows of a state at the most that a page shows by its first three where it knows nothing better.
 PORTRAIT: Final = 40
-#: Members at the most of which each has sliders for its parameters.
-MOST_SLIDERS: Final = 12
 
 Rows = dict[str, Any]
 
@@ -41,20 +35,18 @@ def describe_scene(spec: Spec, rendered: Rendered) -> dict[str, Any]:
         KernelArgumentError: It shows no such system.
     """
     if rendered.family is not None:
-        return _describe_family(spec, rendered.family.context, rendered)
+        return describe_family(spec, rendered.family.context, rendered)
     context = rendered.context
     assert context is not None
-    if spec.noise:
-        raise _refuse(spec, "it has noise", "a motion that its start decides")
     finder = _Finder(context)
     return {
-        **_describe(spec, rendered, context.unit_of_time),
+        **describe(spec, rendered, context.unit_of_time),
         "tables": {
-            "state": _list(context.state, spec),
-            "parameters": _list(context.parameters, spec),
-            "inputs": _list(context.inputs, spec),
-            "observables": _list(context.observables, spec),
-            "reconstructed": _list(context.reconstructed, spec),
+            "state": list_quantities(context.state, spec),
+            "parameters": list_quantities(context.parameters, spec),
+            "inputs": list_quantities(context.inputs, spec),
+            "observables": list_quantities(context.observables, spec),
+            "reconstructed": list_quantities(context.reconstructed, spec),
         },
         "functions": [each.name for each in context.programs],
         "takes": {each.name: list(each.arrays) for each in context.programs},
@@ -62,65 +54,29 @@ def describe_scene(spec: Spec, rendered: Rendered) -> dict[str, Any]:
         "time": bool(context.time),
         "domain": [{"name": each.label, "strict": each.strict} for each in context.domain],
         "members": 0,
-        "methods": _describe_methods(context.methods, context),
+        "methods": [] if spec.noise else _describe_methods(context.methods, context),
+        "noise": _describe_noise(spec),
         **_choose(spec, finder, rendered),
     }
 
 
-def _refuse(spec: Spec, problem: str, expected: str) -> KernelArgumentError:
-    """The error for a system without a page."""
-    known = spec.name if spec.path.parent == derivations_folder() else spec.path
-    return KernelArgumentError(
-        f"{spec.name} has no page to explore: {problem}; expected {expected}. "
-        f"Simulate it: coadjoint simulate {known} --help says how.",
-        found=spec.name,
-        expected=expected,
-    )
-
-
-def _describe(spec: Spec, rendered: Rendered, unit: str) -> dict[str, Any]:
-    """What the page says of a system."""
-    record = json.loads(rendered.texts["certificate.json"])
+def _describe_noise(spec: Spec) -> dict[str, Any] | None:
+    """The Wiener processes, and the tables from which their normal numbers are computed."""
+    if not spec.noise:
+        return None
     return {
-        "name": spec.name,
-        "title": spec.title or spec.name,
-        "source": spec.source,
-        "description": " ".join(spec.description.split()),
-        "unitOfTime": unit,
-        "spheres": record.get("structure", {}).get("spheres", []),
+        "processes": [each.name for each in spec.noise],
+        "multipliers": normals.MULTIPLIERS,
+        "weyl": normals.WEYL,
+        "rounds": normals.ROUNDS,
+        "middle": normals.MIDDLE,
+        "tail": normals.TAIL,
+        "far": normals.FAR,
+        "series": normals.SERIES,
+        "log2": normals.LOG2,
+        "sweeps": normals.SWEEPS,
+        "solved": SOLVED,
     }
-
-
-def _drop_member(name: str) -> str:
-    """The name of a variable of members, without the number of one.
-
-    >>> _drop_member("p_12")
-    'p'
-    """
-    return re.sub(r"_[0-9]+$", "", name)
-
-
-def _list(quantities: Iterable[Quantity], spec: Spec) -> list[dict[str, Any]]:
-    """Quantities with their units, explanations and defaults."""
-    declared: list[Any] = [*spec.variables, *spec.parameters, *spec.observables, *spec.inputs]
-    docs = {each.name: each.doc for each in [*declared, *spec.reconstruction]}
-    docs = {_drop_member(name): doc for name, doc in docs.items()} | docs
-    return [
-        {
-            "name": each.name,
-            "written": spell(each.name),
-            "components": list(each.components),
-            "letters": [spell(name) for name in each.components],
-            "units": [each.unit_of(name) for name in each.components],
-            "doc": docs.get(each.name, ""),
-            "default": None if each.default is None else list(each.default),
-            "positive": each.positive,
-            "conserved": each.conserved,
-            "upright": each.upright,
-            "quaternion": each.is_quaternion,
-        }
-        for each in quantities
-    ]
 
 
 def _describe_methods(
@@ -144,6 +100,7 @@ def _describe_methods(
 
 
 def _by_rank(method: JudgedMethod) -> int:
+    """The place of a method in the order in which they are taken."""
     return method.rank
 
 
@@ -237,7 +194,7 @@ def _choose(spec: Spec, finder: _Finder, rendered: Rendered) -> dict[str, Any]:
         }
     count = sum(len(each.components) for each in context.state)
     if count > PORTRAIT or count < 2:
-        raise _refuse(
+        raise refuse(
             spec,
             f"its state has {count} rows, none of them a body, a place or a field",
             f"one of these, or from 2 to {PORTRAIT} rows",
@@ -311,123 +268,3 @@ def _find_vertical(spec: Spec, finder: _Finder) -> Rows | None:
         if found is not None and not each.strain and each is not spec.attitude and size in (3, 4):
             return {**found, "rows": found["rows"][:3], "depth": found["rows"][3:]}
     return None
-
-
-def _describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> dict[str, Any]:
-    """The same of equal members, or of a field at the points of its grid.
-
-    Raises:
-        KernelArgumentError: Something drives it, it has too many rows, or nothing in it is shown.
-    """
-    size = context.index.size or context.small
-    names = [name for each in context.state for name in each.components]
-    for is_other, what in (
-        (context.torus is not None, "it is a field in a plane"),
-        (context.index.of_rows, "its members are entries of matrices"),
-    ):
-        if is_other:
-            raise _refuse(spec, what, "a body, particles or a field along a line")
-    if size * len(names) > MOST_ROWS:
-        raise _refuse(
-            spec, f"{size * len(names)} rows of its state are too many", f"at most {MOST_ROWS}"
-        )
-    driven = (context.shared_noise, context.indexed_noise, context.time)
-    if any((*driven, context.shared_inputs, context.indexed_inputs)):
-        raise _refuse(spec, "something drives it from outside", "a motion that its start decides")
-    state = _list(context.state, spec)
-    for each in state:
-        each["default"] = _spread(each, context, size)
-    return {
-        **_describe(spec, rendered, context.unit_of_time),
-        "tables": {
-            "state": state,
-            "parameters": [*_list(context.shared, spec), *_list_indexed(spec, context, size)],
-            "inputs": [],
-            "observables": _list(context.observables, spec),
-            "reconstructed": [],
-        },
-        "functions": list(context.loops),
-        "takes": {name: ["state", "parameters"] for name in context.loops},
-        "time": False,
-        "domain": [],
-        "members": size,
-        "methods": [
-            {"name": each.name, "keeps": list(each.exactly), "schedule": []}
-            for each in sorted(context.methods, key=_by_rank)
-            if each.name == "midpoint" and each.rank
-        ],
-        **(_choose_field if spec.space else _choose_member)(spec, context),
-    }
-
-
-def _spread(each: dict[str, Any], context: FamilyContext, size: int) -> list[float] | None:
-    """Defaults of a quantity of members, component after component, each for all members."""
-    name, count = each["name"], len(each["components"])
-    own = list(context.defaults.get(name, ()))
-    if not own:
-        return each["default"] and [value for value in each["default"] for _ in range(size)]
-    known = len(own) // count
-    if known != size and name not in context.repeating:
-        return None
-    return [own[known * k + i % known] for k in range(count) for i in range(size)]
-
-
-def _list_indexed(spec: Spec, context: FamilyContext, size: int) -> list[dict[str, Any]]:
-    """Parameters of each member: of few members, each component has a slider."""
-    found = _list(context.indexed, spec)
-    for each in found:
-        first, own = context.index.first, each["components"]
-        each["default"] = _spread(each, context, size)
-        each["components"] = [f"{name}_{first + i}" for name in own for i in range(size)]
-        each["letters"] = [spell(name) for name in each["components"]]
-        each["units"] = [unit for unit in each["units"] for _ in range(size)]
-        each["hidden"] = size > MOST_SLIDERS
-    return found
-
-
-def _choose_field(spec: Spec, context: FamilyContext) -> dict[str, Any]:
-    """A field is a curve: of its first vector, or of its first component."""
-    names = [name for each in context.state for name in each.components]
-    vectors = [each for each in context.state if len(each.components) == 3]
-    first = [names.index(name) for name in vectors[0].components] if vectors else []
-    return {"kind": "strand" if first else "profile", "curve": first or [0]}
-
-
-def _choose_member(spec: Spec, context: FamilyContext) -> dict[str, Any]:
-    """What is drawn of a member, by the roles and shapes of its variables, and their components.
-
-    Raises:
-        KernelArgumentError: None of them is a frame, a place, a vector or a number with its rate.
-    """
-    names = [name for each in context.state for name in each.components]
-    declared = {_drop_member(each.name): each for each in spec.variables}
-    own = [(declared[each.name], each.components) for each in context.state]
-    frames = [parts for each, parts in own if each.turning]
-    places = [parts for each, parts in own if each.role == "coordinate"]
-    momenta = [parts for each, parts in own if each.role in ("momentum", "velocity")]
-    widths = [len(each) for each in places]
-    shape = ""
-    place: tuple[str, ...] = ()
-    if frames and len(frames[0]) in (9, 12):
-        shape, place = "frames", frames[0]
-    elif widths[:1] == [3]:
-        shape, place = "globe" if context.spheres else "space", places[0]
-    elif widths[:1] == [2] or (widths == [1, 1] and not momenta):
-        shape, place = "plane", tuple(each for parts in places for each in parts)[:2]
-    elif widths == [] and momenta and len(momenta[0]) == 3:
-        shape, place = "arrows", momenta[0]
-    elif widths[:1] == [1]:
-        shape, place = "stems", (*places[0], *(momenta[0][:1] if momenta else ()))
-    if not shape:
-        raise _refuse(
-            spec,
-            "its equal members have none of what is drawn",
-            "a frame, a place, a vector or a number",
-        )
-    return {
-        "kind": "members",
-        "shape": shape,
-        "place": [names.index(name) for name in place],
-        "ring": context.index.periodic,
-        "first": context.index.first,
-    }

@@ -73,6 +73,8 @@ _SHORT: Final = {"eps": "epsilon", "lam": "lambda", "casimir": "C"}
 _RATE = re.compile(r"d(?P<of>.+)_dt")
 #: A name and the numbers of a member, a row or a component behind it.
 _PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
+#: A symbol with an index above and others below, as Christoffel's of the second kind.
+_MIXED = re.compile(r"(?P<of>[A-Za-z]+)\^(?P<above>[0-9]+)_(?P<below>[0-9]+)")
 _ALONG = re.compile(r"(?P<of>.+)_(?P<s>s+)")
 _TYPST_GREEK: Final = {"phi": "phi.alt", "epsilon": "epsilon.alt", "hbar": "planck.reduce"}
 
@@ -83,6 +85,8 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
 
     >>> name("Pi1", dot=True).latex, name("Gamma", bold=True).latex
     ('\\dot{\\Pi}_1', '\\boldsymbol{\\Gamma}')
+    >>> name("Gamma^1_11").latex
+    '\\Gamma_{11}^{1}'
     >>> name("M_1_10").latex, name("rolling_reaction2").latex, name("M_vpsi").latex
     ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
     """
@@ -91,6 +95,10 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     rate = _RATE.fullmatch(plain)
     if rate:
         return replace(name(rate["of"], bold=bold, dot=True), text=shown)
+    mixed = _MIXED.fullmatch(plain)
+    if mixed:
+        made = name(f"{mixed['of']}_{mixed['below']}", bold=bold)
+        return replace(attach(made, above=number(int(mixed["above"]))), text=shown)
     along = _find_along(plain)
     if along:
         of = name(along["of"], bold=bold)

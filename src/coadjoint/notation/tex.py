@@ -39,6 +39,8 @@ def to_mathml(latex: str) -> str | None:
 
     >>> to_mathml(r"\mu_1")
     '<math><msub><mi>μ</mi><mn>1</mn></msub></math>'
+    >>> to_mathml(r"\tfrac12(x)") == to_mathml(r"\tfrac{1}{2}(x)")
+    True
     >>> to_mathml(r"\unknown") is None
     True
     """
@@ -107,12 +109,20 @@ class _Reader:
         if name in _WORDS:
             return f"<mi>{name}</mi>"
         if name in ("frac", "tfrac"):
-            return f"<mfrac>{self._atom()}{self._atom()}</mfrac>"
+            return f"<mfrac>{self._argument()}{self._argument()}</mfrac>"
         if name == "sqrt":
             return f"<msqrt>{self._atom()}</msqrt>"
         if name in ("mathrm", "operatorname", "text", "mathcal", "mathbf"):
             return self._words(upright=name != "mathcal")
         raise _UnknownError(name)
+
+    def _argument(self) -> str:
+        """What stands in braces, or else one piece: of a number its first digit."""
+        piece = self.pieces[self.at]
+        if piece.isdigit() and len(piece) > 1:
+            self.pieces[self.at] = piece[1:]
+            return _plain(piece[0])
+        return self._atom()
 
     def _words(self, *, upright: bool) -> str:
         """Letters in braces as one word."""

@@ -35,6 +35,8 @@ from coadjoint.prove.zero import Decision, Discovery, decide_zero
 DEGREE = 4
 #: Characters of a Casimir that a statement shows; longer ones are described.
 SHOWN = 120
+#: How a statement tells of a longer one.
+UNWRITTEN = "a function with"
 #: What a Casimir does not change along, for a Poisson bracket and on constraints.
 BRACKET, FIELDS = "the bracket", "the Hamiltonian vector fields with their commutators"
 #: Where a count of independent functions holds.
@@ -260,4 +262,4 @@ def describe(field: Field, casimir: Element) -> str:
     text = element_text(field, casimir) if len(terms) < SHOWN else ""
     if text and len(text) <= SHOWN:
         return text
-    return f"a function with {len(terms)} terms that begins with {element_text(field, terms[0])}"
+    return f"{UNWRITTEN} {len(terms)} terms that begins with {element_text(field, terms[0])}"

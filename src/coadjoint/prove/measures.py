@@ -20,13 +20,14 @@ from fractions import Fraction
 from itertools import islice
 
 from coadjoint.derive.setting import once
+from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import BudgetSpent, Element, element_text
 from coadjoint.exact.dense import determinant, pfaffian
 from coadjoint.exact.irreducible import find_factors
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.limits import BRACKET_WORK
 from coadjoint.prove.certificate import Verdict
-from coadjoint.prove.completeness import SHOWN, describe
+from coadjoint.prove.completeness import SHOWN, UNWRITTEN, describe
 from coadjoint.prove.densities import (
     DENOMINATOR,
     POINTS,
@@ -255,7 +256,8 @@ def _state(motion: Motion, powers: Powers) -> Examined | None:
     """A measure, on vectors of any length if it can be; None if it is refuted."""
     defect, samples = [motion.grow(powers)], samples_of(motion)
     finite = ", where its density is finite" if any(x < 0 for _, x in powers) else ""
-    written = f"{_write(motion, powers)}{_form(motion)}{motion.at_all_times}"
+    density, told = _write(motion, powers)
+    written = f"{density}{_form(motion)}{motion.at_all_times}{told}"
     proof = decide_zero(defect, motion.field, motion.where)
     if proof.verdict is Verdict.PROVED:
         return f"an invariant measure{finite}: {written}", "measure", lambda: proof
@@ -308,18 +310,26 @@ def _form(motion: Motion) -> str:
     return " ".join(f"d{each.name}" for each in motion.spec.state) + kept
 
 
-def _write(motion: Motion, powers: Powers) -> str:
-    """A density in front of a volume; a long determinant goes by its name."""
-    text = ""
+def _write(motion: Motion, powers: Powers) -> tuple[str, str]:
+    """A density in front of a volume, and what its letters are behind it.
+
+    A long determinant goes by its name, another long factor by a letter.
+    """
+    text, told = "", list[str]()
+    letters = choose_names(motion.spec, [f"f{n}" for n in range(1, len(powers) + 1)])
     for factor, exponent in powers:
         turning = bool(motion.field.reach(factor) & {*motion.fibre})
         whole = element_text(motion.field, factor) if turning else ""
         shown = whole if turning and len(whole) <= LONGEST else describe(motion.field, factor)
         long = len(whole) > LONGEST if turning else len(shown) > SHOWN // 2
         name = _name(motion, factor) if long else ""
+        if not name and shown.startswith(UNWRITTEN):
+            letter = letters[len(told)]
+            told.append(f"{letter} is {shown}")
+            shown = letter
         base = f"|{name.strip('|') or shown}|" if turning or not name else name
         text += base + (f"^({exponent})" if exponent != 1 else "") + " "
-    return text
+    return text, "; where " * bool(told) + ", and ".join(told)
 
 
 def _name(motion: Motion, factor: Element) -> str:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
+#: Of what has noise: seeds of paths from one start, the units of time that they cover, and a step.
+#: Longer paths would cover each other.
+SEEDS, NOISY_SPAN, STEP = (1, 2, 3), 6.0, 1 / 64
 #: Dots for an inch of it: two for each point of a page.
 RESOLUTION = 100
 #: Colours of it: with fewer, time along a path is seen in steps; 256 take a third more room.
@@ -34,17 +37,34 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
     """
     from coadjoint.solve.plot import draw
 
-    # what follows from a motion, as a place, is drawn where there is some
-    reconstruct = bool(system.RECONSTRUCTED)
     with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
         warnings.simplefilter("ignore")
-        solution = system.simulate(
+        solutions = _simulate(system, state)
+    place = io.BytesIO()
+    draw(*solutions).savefig(place, format="png", dpi=RESOLUTION)
+    data = base64.b64encode(_take_colours(place)).decode("ascii")
+    return {"picture": f"data:image/png;base64,{data}", "caption": describe(*solutions)}
+
+
+def _simulate(system: System, state: Sequence[float]) -> list[Solution]:
+    """The motion from a state; with noise some paths, one for each seed."""
+    from coadjoint.solve.noisy import has_noise
+
+    if has_noise(system):
+        samples = 1 + round(NOISY_SPAN / STEP)  # at the ends of steps
+        return [
+            system.simulate(
+                state, (0.0, NOISY_SPAN), step=STEP, seed=seed, samples=samples, progress=False
+            )
+            for seed in SEEDS
+        ]
+    # what follows from a motion, as a place, is drawn where there is some
+    reconstruct = bool(system.RECONSTRUCTED)
+    return [
+        system.simulate(
             state, (0.0, SPAN), samples=SAMPLES, progress=False, reconstruct=reconstruct
         )
-    place = io.BytesIO()
-    draw(solution).savefig(place, format="png", dpi=RESOLUTION)
-    data = base64.b64encode(_take_colours(place)).decode("ascii")
-    return {"picture": f"data:image/png;base64,{data}", "caption": describe(solution)}
+    ]
 
 
 def _take_colours(place: io.BytesIO) -> bytes:
@@ -72,12 +92,18 @@ def _list_line_colours() -> list[int]:
     return [round(255 * part) for colour in LINES for part in to_rgb(colour)]
 
 
-def describe(solution: Solution) -> str:
-    """What the picture shows."""
+def describe(solution: Solution, *others: Solution) -> str:
+    """What the picture shows; with others, paths of noise by the seeds that they have."""
     from coadjoint.solve.plot import find_scene
 
     unit = solution.unit("time").removeprefix("1")  # of what has no dimension
-    span = f"{SPAN:g} {unit}".rstrip()
+    span = f"{NOISY_SPAN if others else SPAN:g} {unit}".rstrip()
+    if others:
+        return (
+            f"{len(SEEDS)} paths from one start with the default parameters over {span}, by the "
+            f"generated code, the implicit midpoint and the seeds {', '.join(map(str, SEEDS))}. "
+            "Each has a colour of its own."
+        )
     lead = f"A motion with the default parameters over {span}, by the generated code."
     return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
 
@@ -89,6 +115,13 @@ def _tell_colours(scene: Paths | RollingBody | Vehicle | str | None) -> str:
     from coadjoint.solve.vehicles import Vehicle
 
     match scene:
+        case Paths(linked=True):
+            return (
+                "The path of each mass has the colour of its rod; lengths are parts of that of all "
+                "rods, found by the energy."
+            )
+        case Paths(labels=labels) if labels:
+            return "Each vector has a colour of its own."
         case Paths(members=members) if len(members) > 1:
             return "Each member has a colour of its own."
         case Paths() | str():

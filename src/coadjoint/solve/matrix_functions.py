@@ -45,7 +45,7 @@ def show_on_sphere(entries: Array, heights: Array, longitudes: Array) -> Array:
     """
     n = len(entries)
     values = np.zeros((len(heights), len(longitudes)))
-    for order, towers in enumerate(_find_towers(n)):
+    for order, towers in enumerate(find_towers(n)):
         above, below = np.diagonal(entries, order), np.diagonal(entries, -order)
         waves = _list_legendre(heights, order, n - order)  # (degrees, a)
         cosine, sine = (4 * pi / n * towers @ part for part in (above + below, above - below))
@@ -83,7 +83,7 @@ def show_on_torus(entries: Array) -> Array:
 
 
 @cache
-def _find_towers(n: int) -> tuple[Array, ...]:
+def find_towers(n: int) -> tuple[Array, ...]:
     """By order m the diagonals of T_lm, l = m, m + 1, ...: ``(n - m, n - m)``."""
     degrees = [list_towers(n, degree) for degree in range(n)]
     return tuple(

@@ -71,15 +71,15 @@ def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     return finish(figure, solution, path)
 
 
-def draw(solution: Solution) -> Any:
-    """The figure alone, which no display knows of."""
+def draw(solution: Solution, *others: Solution) -> Any:
+    """The figure alone, which no display knows of; on a sphere other paths, too."""
     figure = new_figure(headless=True)
-    _draw_all(figure, solution)
+    _draw_all(figure, solution, *others)
     figure.suptitle(solution.system.title, fontsize=13)
     return figure
 
 
-def _draw_all(figure: Any, solution: Solution) -> None:
+def _draw_all(figure: Any, solution: Solution, *others: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
     scene = find_scene(solution)
     strip = 0.2 if scene is None else 0.14  # drift is no third of a picture
@@ -97,7 +97,7 @@ def _draw_all(figure: Any, solution: Solution) -> None:
         case RollingBody():
             _draw_rolling(figure, grid[0], solution, scene)
         case str():
-            _draw_sphere(figure.add_subplot(grid[0], projection="3d"), solution, scene)
+            _draw_sphere(figure.add_subplot(grid[0], projection="3d"), scene, solution, *others)
         case Vehicle():
             _draw_vehicle(figure, grid[0], solution, scene)
         case None:
@@ -187,13 +187,17 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     for n, path in enumerate(paths.members):
         colour = COLOURS[n % len(COLOURS)]
         if several:
-            axes.plot(*path, color=colour, linewidth=1.1, label=f"member {n}")
+            label = symbol_label(paths.labels[n]) if paths.labels else f"member {n}"
+            axes.plot(*path, color=colour, linewidth=1.1, label=label)
         else:
             lines = draw_coloured(axes, path, solution.time)
             _time_bar(figure, axes, lines, solution)
         own = {"color": colour} if several else {"color": "#000000"}
         axes.plot(*path[:, -1:], marker="o", markersize=5, linestyle="", **own)
         axes.plot(*path[:, :1], marker="o", markersize=5, fillstyle="none", linestyle="", **own)
+    if paths.linked:
+        rods = np.concatenate([np.zeros((1, 3)), paths.members[:, :, -1]]).T  # (3, joints)
+        axes.plot(*rods, color="#000000", linewidth=2.0, zorder=1, label="rods at the end")
     axes.coadjoint_path = paths.members
     _limit_space(axes, paths)
     if several:
@@ -240,6 +244,8 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
 def _limit_space(axes: Any, paths: Paths) -> None:
     """Equal scales, and a view of the plane of the motion."""
     low, high = paths.members.min(axis=(0, 2)), paths.members.max(axis=(0, 2))
+    if paths.linked:  # the fixed point is seen, too
+        low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     middle, half = (low + high) / 2, 0.55 * float((high - low).max()) or 1.0
     limits = (axes.set_xlim, axes.set_ylim, *([axes.set_zlim] if len(middle) == 3 else []))
     for limit, centre in zip(limits, middle, strict=True):
@@ -264,11 +270,14 @@ def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
     bar.ax.tick_params(labelsize=8)
 
 
-def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
-    """The trajectory of a vector on its sphere, the side that faces away drawn faint."""
-    vector = solution[name]
+def _draw_sphere(axes: Any, name: str, solution: Solution, *others: Solution) -> None:
+    """The trajectory of a vector on its sphere, the side that faces away drawn faint.
+
+    Time is its colour; with others, each has a colour of its own.
+    """
+    vector, paths = solution[name], [each[name] for each in (solution, *others)]
     radius = float(np.sqrt((vector[:, 0] ** 2).sum()))
-    toward = choose_view(vector)
+    toward = choose_view(np.concatenate(paths, axis=1))
     angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
     ball = (
         radius * np.sin(height) * np.cos(angle),
@@ -285,20 +294,28 @@ def _draw_sphere(axes: Any, solution: Solution, name: str) -> None:
         axes.plot_wireframe(
             *ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6, zorder=2
         )
-    near = faces_viewer(vector, toward)
-    axes.plot(*np.where(near, np.nan, vector), color="#56657a", linewidth=0.9, alpha=0.35, zorder=1)
-    if len(solution) > 1:
-        shown = np.where(near, vector, np.nan)
-        lines = draw_coloured(axes, shown, solution.time, zorder=3, linewidth=1.6)
-        _time_bar(axes.figure, axes, lines, solution)
-    axes.coadjoint_path = vector[np.newaxis]
-    axes.scatter(*vector[:, :1], color=COLOURS[1], s=36, zorder=4, label="start")
-    axes.scatter(*vector[:, -1:], color="#000000", s=36, marker="s", zorder=4, label="end")
+    for n, path in enumerate(paths):
+        near = faces_viewer(path, toward)
+        own = {"color": COLOURS[n]} if others else {"color": "#56657a"}
+        axes.plot(*np.where(near, np.nan, path), linewidth=0.9, alpha=0.35, zorder=1, **own)
+        shown = np.where(near, path, np.nan)
+        if others:
+            axes.plot(*shown, linewidth=1.1, zorder=3, label=f"path {n + 1}", **own)
+        elif len(solution) > 1:
+            lines = draw_coloured(axes, shown, solution.time, zorder=3, linewidth=1.6)
+            _time_bar(axes.figure, axes, lines, solution)
+    axes.coadjoint_path = np.stack(paths)
+    first = "#000000" if others else COLOURS[1]  # a path may have that colour
+    axes.scatter(*vector[:, :1], color=first, s=36, zorder=4, label="start")
+    ends = np.stack([path[:, -1] for path in paths], axis=1)
+    axes.scatter(*ends, color="#000000", s=36, marker="s", zorder=4, label="end")
     symbol, unit = symbol_label(name), unit_label(solution.system.STATE[name].unit)
     _style_space(axes, [f"{symbol}$_{n}$ {unit}" for n in (1, 2, 3)])
     axes.set_proj_type("ortho")  # its horizon is where `faces_viewer` has it
     axes.view_init(*angles(toward))
-    axes.legend(loc="upper left", fontsize=8, frameon=False)
+    place = AT_RIGHT if others else {"loc": "upper left"}  # where no colours of time stand
+    for line in axes.legend(fontsize=8, frameon=False, **place).get_lines():
+        line.set_linewidth(2.5)  # a thin one is blended with the paper
     curves = ", with levels of the energy" if levels else ""
     above = 6.0 if toward[2] > 0 else 24.0  # seen from below, ticks stand at the top
     title = f"{symbol} on the sphere |{symbol}| = {radius:.4g}{curves}"

@@ -8,12 +8,14 @@ axes. Read next: `coadjoint.solve.plot`.
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from coadjoint.errors import CoadjointError
+from coadjoint.solve.linkages import find_lengths
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,6 +42,8 @@ ASIDE: Final = np.pi / 8
 FLAT: Final = 1e-9
 #: Length of a coordinate in units of the spec.
 _LENGTH: Final = "m"
+#: Samples at which the rate of a vector is compared with others, and by which part it may be off.
+_ASKED, _ROUNDED = 7, 1e-9
 
 
 @dataclass(frozen=True)
@@ -50,11 +54,15 @@ class Paths:
         names: Names of the axes.
         unit: Their unit.
         members: ``(members, dimensions, T)``.
+        labels: Names of the members; none where they are numbered.
+        linked: Whether each hangs on the one before by a rod, the first on the origin.
     """
 
     names: tuple[str, ...]
     unit: str
     members: Array
+    labels: tuple[str, ...] = ()
+    linked: bool = False
 
 
 def find_paths(solution: Solution) -> Paths | None:
@@ -70,7 +78,76 @@ def find_paths(solution: Solution) -> Paths | None:
     if x and y and (x.unit, x.shape) == (y.unit, y.shape) and len(x.shape) <= 1:
         values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
         return _paths(("x", "y"), x.unit, values.swapaxes(0, 1))
-    return None
+    return _find_moving(solution)
+
+
+def _find_moving(solution: Solution) -> Paths | None:
+    """Vectors whose rates are vectors that the system names: places in any unit, or rods.
+
+    One alone whose length is one is a point of a sphere, and no path.
+    """
+    rates = {name: rate for name in solution.system.STATE if (rate := _find_rate(solution, name))}
+    vectors = {name: np.asarray(solution[name]) for name in rates}
+    places = [name for name, values in vectors.items() if not _is_direction(values)]
+    if not places:
+        return _find_rods(solution, rates) if len(rates) > 1 else None
+    first = solution.system.STATE[places[0]]
+    alike = [
+        name
+        for name in places
+        if (solution.system.STATE[name].shape, solution.system.STATE[name].unit)
+        == (first.shape, first.unit)
+    ]
+    dimensions = range(1, 1 + first.shape[0])
+    names = "xyz"[: len(dimensions)] if len(alike) > 1 else [f"{alike[0]}{n}" for n in dimensions]
+    found = _paths(tuple(names), first.unit, np.stack([vectors[name] for name in alike]))
+    return found and replace(found, labels=tuple(alike) if len(alike) > 1 else ())
+
+
+def _is_direction(values: Array) -> bool:
+    """Whether a vector has length one."""
+    return bool(np.allclose((values**2).sum(axis=0), 1.0, rtol=0.0, atol=ON_SPHERE))
+
+
+def _find_rods(solution: Solution, rates: Mapping[str, str]) -> Paths:
+    """Directions as rods that hang on each other; as points of one sphere where they do not."""
+    of_state = all(rate in solution.system.STATE for rate in rates.values())
+    lengths = find_lengths(solution, list(rates.values())) if of_state else None
+    members = np.stack([np.asarray(solution[name]) for name in rates])  # (members, 3, T)
+    if lengths is not None:
+        members = np.cumsum(lengths[:, None, None] * members, axis=0)
+    return Paths(
+        names=("x", "y", "z"),
+        unit="1",
+        members=members,
+        labels=tuple(rates),
+        linked=lengths is not None,
+    )
+
+
+def _find_rate(solution: Solution, name: str) -> str:
+    """A vector of the state or the observables that is a positive multiple of the rate, or ""."""
+    system = solution.system
+    shape = system.STATE[name].shape
+    if shape not in ((2,), (3,)):
+        return ""
+    at = np.unique(np.linspace(0, len(solution) - 1, _ASKED).astype(int))
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            found = system.rhs(solution.state[:, at], solution.parameters, target="numpy")
+    except (CoadjointError, TypeError, ValueError):
+        return ""  # time or inputs
+    own = np.asarray(found)[system.STATE.rows(name)]
+    size = float(np.abs(own).max())
+    for other, quantity in {**system.STATE, **system.OBSERVABLES}.items():
+        if quantity.shape != shape or not 0 < size < np.inf:
+            continue
+        values = np.asarray(solution[other])[:, at]
+        factor = float((own * values).sum() / ((values**2).sum() or 1.0))
+        if factor > 0 and np.abs(factor * values - own).max() <= _ROUNDED * size:
+            return other
+    return ""
 
 
 def _paths(names: tuple[str, ...], unit: str, members: Array) -> Paths | None:
@@ -80,8 +157,8 @@ def _paths(names: tuple[str, ...], unit: str, members: Array) -> Paths | None:
     extents = np.ptp(members, axis=(0, 2))
     moving = [n for n, extent in enumerate(extents) if extent > FLAT * extents.max()]
     if len(names) == 3 and len(moving) == 2:
-        return Paths(tuple(names[n] for n in moving), unit, members[:, moving])
-    return Paths(names, unit, members)
+        names, members = tuple(names[n] for n in moving), members[:, moving]
+    return Paths(names=names, unit=unit, members=members)
 
 
 def find_sphere(solution: Solution) -> str:
@@ -173,7 +250,7 @@ def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
     Each is ``(3, T)``; none where the energy is not a function of the vector.
     """
     system = solution.system
-    if set(system.STATE) != {name} or "energy" not in solution.conserved:
+    if set(system.STATE) != {name} or "energy" not in system.OBSERVABLES:
         return []
     longitude = np.linspace(-np.pi, np.pi, ALONG)
     latitude = np.linspace(-np.pi / 2, np.pi / 2, ACROSS)
