@@ -153,6 +153,36 @@ def test_elimination_takes_the_largest_pivots():
         assert not np.isfinite(newton.solve(np.zeros((2, 2, 1)), np.ones((2, 1)))).any()
 
 
+def solve_one(rows, right):
+    """The same elimination of one lane, number by number, as the text in C has it."""
+    size, a, x = len(right), [list(row) for row in rows], list(right)
+    for j in range(size):
+        for i in range(j + 1, size):
+            if abs(a[i][j]) > abs(a[j][j]):
+                a[i], a[j], x[i], x[j] = a[j], a[i], x[j], x[i]
+        for i in range(j + 1, size):
+            factor = a[i][j] / a[j][j]
+            for k in range(j + 1, size):
+                a[i][k] -= factor * a[j][k]
+            x[i] -= factor * x[j]
+    for i in reversed(range(size)):
+        for k in range(i + 1, size):
+            x[i] -= a[i][k] * x[k]
+        x[i] /= a[i][i]
+    return x
+
+
+def test_elimination_has_the_bits_of_each_lane_alone():
+    """Whether rows are exchanged in all lanes, in some or in none."""
+    rng = np.random.default_rng(4)
+    for scale in (1.0, 0.2, 0.01):
+        matrix = np.eye(6)[:, :, np.newaxis] + scale * rng.normal(size=(6, 6, 9))
+        known = rng.normal(size=(6, 9))
+        expected = [solve_one(matrix[..., n].tolist(), known[:, n].tolist()) for n in range(9)]
+        found = newton.solve(matrix.copy(), known.copy())
+        assert found.tobytes() == np.array(expected).T.tobytes()
+
+
 def test_wrong_slopes_are_seen(monkeypatch):
     """With slopes of the other sign the stiff motion is not solved."""
     linearise = LiePoisson.linearise

@@ -51,7 +51,9 @@ def solve(matrix: Array, known: Array) -> Array:
     """
     size = len(known)
     for j in range(size):
-        for i in range(j + 1, size):
+        sizes = np.abs(matrix[j:, j])
+        is_ordered = not (sizes[1:] > sizes[0]).any()  # as in most steps, whose slopes are small
+        for i in range(size if is_ordered else j + 1, size):
             swap = np.abs(matrix[i, j]) > np.abs(matrix[j, j])
             if not swap.any():
                 continue
@@ -64,7 +66,7 @@ def solve(matrix: Array, known: Array) -> Array:
         matrix[j + 1 :, j + 1 :] -= factors[:, np.newaxis] * matrix[j, j + 1 :]
         known[j + 1 :] -= factors * known[j]
     for i in reversed(range(size)):
-        for k in range(i + 1, size):
-            known[i] -= matrix[i, k] * known[k]
+        for product in matrix[i, i + 1 :] * known[i + 1 :]:  # in the order of the text in C
+            known[i] -= product
         known[i] /= matrix[i, i]
     return known
