@@ -11,7 +11,7 @@ from coadjoint.crosscheck import bits, compare, ladder
 from coadjoint.crosscheck.bits import equal_bits, find_differing_bits
 from coadjoint.crosscheck.compare import ExactPoints, against_oracle, exact_points
 from coadjoint.crosscheck.ladder import crosscheck
-from coadjoint.crosscheck.subject import Subject
+from coadjoint.crosscheck.subject import Subject, list_stopping
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import BUILDS
@@ -410,3 +410,12 @@ def test_a_spoiled_text_stops_the_ladder(tmp_path):
     spoiled = replaced("kernel.py", GOOD, "Omega3 * Pi2 + Omega2 * Pi3")(texts)
     with pytest.raises(CrossCheckError, match="rung 3"):
         crosscheck(programs_of(HEAVY_TOP), spoiled, TopReference(), system, TARGETS, 100, 100)
+
+
+def test_what_a_language_stops_at_is_known_of_a_function():
+    """Divisors, roots and what they rest on; nothing of a polynomial."""
+    each = program("rhs", "q p", "k", "a = q*p; b = a + k; c = q + p", "c/b; c*p; sqrt(a)", (3,))
+    statements, outputs = list_stopping(each)
+    assert [statement.name for statement in statements] == ["a", "b", "c"]
+    assert outputs == [each.outputs[0].value, each.outputs[2].value]
+    assert list_stopping(replace(each, outputs=each.outputs[1:2])) == ([], [])

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.program import run
+from coadjoint.lower.program import evaluate, settled
 from coadjoint.render.kernels import find_chunk
 from coadjoint.render.solvers import count_unknowns
 from coadjoint.render.targets import BUILDS
@@ -128,7 +128,7 @@ def _expect(
 
 @dataclass(slots=True)
 class _Stopping:
-    """A value that notes where its language would stop; an arithmetic for `run`.
+    """A value that notes where its language would stop; an arithmetic for `evaluate`.
 
     Attributes:
         value: For each member, or of all.
@@ -159,6 +159,7 @@ def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bo
     reciprocal that is wanted.
     """
     goes_on = np.ones(batch.size, dtype=bool)
+    statements, others = subject.stopping[function]
 
     def number(value: Fraction) -> _Stopping:
         return _Stopping(np.float64(value), goes_on)
@@ -168,9 +169,14 @@ def _has_numbers(subject: Subject, function: str, batch: Batch) -> NDArray[np.bo
             goes_on[...] &= ~(of.value < 0)
         return _Stopping(getattr(np, ELEMENTARY[function].numpy_name)(of.value), goes_on)
 
-    given = {name: _Stopping(row, goes_on) for name, row in subject.values(batch).items()}
+    rows = subject.values(batch) if statements or others else {}
+    known: dict[str, Any] = {name: _Stopping(row, goes_on) for name, row in rows.items()}
     with np.errstate(all="ignore"):
-        run(subject.programs[function], given, number, apply)
+        for each in statements:
+            value = evaluate(each.value, known, number, apply)
+            known[each.name] = settled(each.name, value)
+        for node in others:
+            evaluate(node, known, number, apply)
     return goes_on
 
 

@@ -25,7 +25,19 @@ from coadjoint.derive.reference import Reference as Derived
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from coadjoint.lower.program import LEVELS, Program, run
+from coadjoint.lower.program import (
+    LEVELS,
+    Call,
+    Divide,
+    Factors,
+    Node,
+    Program,
+    Solution,
+    Statement,
+    Symbol,
+    run,
+    walk,
+)
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
 from coadjoint.solver_kinds import SOLVER, SolverKind
@@ -78,6 +90,24 @@ def work(program: Program) -> int:
     return len(program.outputs) + sum(map(sum, counts))
 
 
+def list_stopping(program: Program) -> tuple[list[Statement], list[Node]]:
+    """What a Program divides by and calls functions of: statements in order, and outputs."""
+
+    def stops(node: Node) -> bool:
+        return any(isinstance(each, Divide | Call | Factors | Solution) for each in walk(node))
+
+    def names(node: Node) -> set[str]:
+        return {each.name for each in walk(node) if isinstance(each, Symbol)}
+
+    outputs = [each.value for each in program.outputs if stops(each.value)]
+    read, kept = set[str]().union(*map(names, outputs)), list[Statement]()
+    for statement in reversed(program.statements):
+        if statement.name in read or stops(statement.value):
+            read |= names(statement.value)
+            kept.append(statement)
+    return kept[::-1], outputs
+
+
 @dataclass(frozen=True)
 class Subject:
     """One system in every form that is compared.
@@ -105,6 +135,14 @@ class Subject:
     def work(self) -> dict[str, int]:
         """How much each function computes."""
         return {name: work(program) for name, program in self.programs.items()}
+
+    @cached_property
+    def stopping(self) -> dict[str, tuple[list[Statement], list[Node]]]:
+        """Of each function the statements and outputs at which a language may stop.
+
+        Something is divided there, or a function called; what these read is among the statements.
+        """
+        return {name: list_stopping(program) for name, program in self.programs.items()}
 
     @cached_property
     def elementary(self) -> bool:
