@@ -30,7 +30,7 @@ from coadjoint.budget import VARIABLE
 from coadjoint.ending import kill
 from coadjoint.errors import ResourceError, from_record, system_error
 from coadjoint.limits import COMPILE_WALL_SECONDS, WALL_FACTOR
-from coadjoint.sandbox_child import find_processor_limit
+from coadjoint.sandbox_child import OWN, find_processor_limit
 
 #: Called with stage, number of stages done, number of stages.
 Progress = Callable[[str, int, int], None]
@@ -290,9 +290,7 @@ def _start() -> _Nursery:
             stderr=errors,
             text=True,
             start_new_session=True,
-            # One thread: a fork takes no other ones along, and each pool of a numerical library
-            # reserves memory of the child's limit.
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+            env={**os.environ, **OWN},
         )
     except BaseException:
         errors.close()
