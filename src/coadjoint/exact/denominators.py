@@ -43,6 +43,8 @@ class Factors:
         self.known: list[PolyElement] = []
         self.monomial: list[bool] = []
         self._occurring: list[frozenset[int]] = []
+        #: Of each factor that is a single generator its place, of others -1.
+        self.places: list[int] = []
         #: Whether an element that is not the polynomial 0 is zero all the same; a field says.
         self.is_hidden_zero: Callable[[Element], bool] = lambda _: False
         self._numbers: dict[PolyElement, int] = {}
@@ -108,6 +110,22 @@ class Factors:
             powers[self._number(p.monic())] = 1
         return constant, powers
 
+    def remove(self, p: PolyElement, number: int, most: int) -> tuple[int, PolyElement]:
+        """As `remove_factor`, of a known factor; most of them are single generators."""
+        place = self.places[number]
+        if place < 0:
+            return remove_factor(p, self.known[number], most)
+        count = most
+        for monomial in p:
+            count = min(count, monomial[place])
+            if count <= 0:
+                return 0, p
+        left = p.ring.zero
+        for monomial, value in p.items():
+            rest = monomial[place] - count
+            left[(*monomial[:place], rest, *monomial[place + 1 :])] = value
+        return count, left
+
     def product(self, powers: Mapping[int, int]) -> PolyElement:
         """The product of powers of known factors."""
         return reduce(mul, (self.known[n] ** e for n, e in sorted(powers.items())), self.ring.one)
@@ -123,6 +141,8 @@ class Factors:
             self._numbers[factor] = len(self.known)
             self.known.append(factor)
             self._occurring.append(_generators_in(factor))
+            place = self.ring.gens.index(factor) if factor.is_generator else -1
+            self.places.append(place)
             self.monomial.append(len(factor) == 1 and factor not in self._functions)
         return self._numbers[factor]
 

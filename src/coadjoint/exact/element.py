@@ -22,6 +22,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement
 
 from coadjoint.exact.denominators import Factors, remove_factor
+from coadjoint.exact.polynomials import multiply
 
 #: Numbers of the factors, other than single symbols, in the denominator of a quotient.
 Support = tuple[int, ...]
@@ -49,7 +50,7 @@ class Quotient:
             return self.numer
         product = factors.product(missing)
         factors.spend(len(self.numer) * len(product))
-        return self.numer * product
+        return multiply(self.numer, product)
 
     def order(self) -> tuple[Any, ...]:
         """Where it stands in a sum: by its leading monomial, the greatest first."""
@@ -87,7 +88,7 @@ class Element:
         while numer:
             kept, support = {}, []
             for number, exponent in powers.items():
-                count, numer = remove_factor(numer, self.factors.known[number], exponent)
+                count, numer = self.factors.remove(numer, number, exponent)
                 if exponent > count:
                     kept[number] = exponent - count
                     if not self.factors.monomial[number]:
@@ -165,7 +166,10 @@ class Element:
         return Element(
             self.factors,
             [
-                (a * b, {n: p.get(n, 0) + q.get(n, 0) for n in sorted(p.keys() | q.keys())})
+                (
+                    multiply(a, b),
+                    {n: p.get(n, 0) + q.get(n, 0) for n in sorted(p.keys() | q.keys())},
+                )
                 for a, p in self._pairs()
                 for b, q in right._pairs()
             ],

@@ -354,6 +354,22 @@ class Rationals:
             for monomial, coefficient in quotient.numer.terms()
         )
 
+    def first_term(self, element: Element) -> Element:
+        """The first of the `terms` of an element that is not 0."""
+        quotient, p = element.parts[0], element.parts[0].numer
+        first = self._ring.from_dict({p.LM: p.LC})
+        return Element(self._factors, [(first, quotient.powers)])
+
+    def powers_in(self, term: Element, places: Sequence[int]) -> list[int]:
+        """Exponents of some generators in an element of one term, negative below the bar.
+
+        A quotient of two terms is free of these generators only if both have the same.
+        """
+        (quotient,) = term.parts
+        (exponents,) = quotient.numer
+        below = {self._factors.places[n]: e for n, e in quotient.powers.items()}
+        return [exponents[place] - below.get(place, 0) for place in places]
+
     def count_terms(self, element: Element) -> int:
         """The number of `terms`, none of which is made."""
         return sum(len(quotient.numer) for quotient in element.parts)

@@ -125,7 +125,10 @@ def _best(
     """The candidate that leaves fewest terms, with what it leaves."""
     field, best = vocabulary.field, None
     fewest = before = _count(field, rest)
-    wanted = [field.terms(each)[:MOST_RATIOS] for each in entries(rest)]
+    wanted = [
+        [(term, vocabulary.powers_outside(term)) for term in field.terms(each)[:MOST_RATIOS]]
+        for each in entries(rest)
+    ]
     for candidate in candidates:
         for factor in _factors(vocabulary, candidate.value, wanted):
             left = subtract(rest, scale(factor, candidate.value))
@@ -155,13 +158,17 @@ def _put(scalar: Addend, vector: tree.Node) -> Addend:
 
 
 def _factors(
-    vocabulary: Vocabulary, value: Value, wanted: Sequence[Sequence[Element]]
+    vocabulary: Vocabulary, value: Value, wanted: Sequence[Sequence[tuple[Element, list[int]]]]
 ) -> list[Element]:
-    """Scalars of the spec by which a term of a candidate is a term of what remains."""
+    """Scalars of the spec by which a term of a candidate is a term of what remains.
+
+    Terms of what remains stand with the powers of what is no scalar, as `powers_outside` has them.
+    """
     for own, terms in zip(entries(value), wanted, strict=True):
         if own and terms:
-            inverse = vocabulary.field.terms(own)[0].inverse()
-            ratios = (term * inverse for term in terms)
+            first = vocabulary.field.first_term(own)
+            inverse, powers = first.inverse(), vocabulary.powers_outside(first)
+            ratios = (term * inverse for term, outside in terms if outside == powers)
             return [each for each in ratios if vocabulary.is_scalar(each)]
         if own:
             # a candidate that has an entry where nothing remains can only add terms

@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from dataclasses import field as attribute
 from fractions import Fraction
+from functools import cached_property
 from itertools import product as pairs
 from typing import Any
 
@@ -164,6 +165,16 @@ class Vocabulary:
                 tree.Binary(operator="*", left=a.node, right=b.node),
                 dense.product(a.value, b.value),
             )
+
+    def powers_outside(self, term: Element) -> list[int]:
+        """Exponents of what is no scalar, of one term: those of its ratio to another are 0."""
+        return self.field.powers_in(term, self._outside)
+
+    @cached_property
+    def _outside(self) -> list[int]:
+        """Places of the symbols that are no scalars."""
+        names = enumerate(self.field.names)
+        return [place for place, name in names if name not in self.scalars]
 
     def is_scalar(self, factor: Element) -> bool:
         """Whether a factor is made of scalars of the spec alone, one term over others."""
