@@ -62,7 +62,7 @@ from coadjoint.solver_kinds import SOLVER, SolverKind
 FAST: Final = "taylor"
 #: Methods of the exact build in one run of a compiler: fewer runs cost less, and all in one would
 #: leave the other processors idle where one system is worked on.
-TOGETHER: Final = 4
+TOGETHER: Final = 6
 #: What compilers are making, by method and target.
 Compiling = Mapping[tuple[str, str], "Future[Path]"]
 
