@@ -66,5 +66,5 @@ def test_terms_whose_ratio_has_no_generator_have_equal_powers_of_it():
             if field.names_in(one * other.inverse()) <= {"k"}:
                 assert own == others
                 free += one is not other
-    assert free == 6  # pairs of k*x, x and x/k, either way
+    assert free == 8  # of k*x, x and x/k, and of x/(y*k) and 3*x/y, either way
     assert field.first_term(x * y + Fraction(1, 2) * x) == x * y

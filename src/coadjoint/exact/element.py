@@ -21,7 +21,7 @@ from typing import Any
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement
 
-from coadjoint.exact.denominators import Factors, remove_factor
+from coadjoint.exact.denominators import Factors
 from coadjoint.exact.polynomials import multiply
 
 #: Numbers of the factors, other than single symbols, in the denominator of a quotient.
