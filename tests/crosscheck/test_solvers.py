@@ -347,6 +347,18 @@ def test_steps_of_numpy_are_exact_within_the_bound(context):
     assert check_choice(made, points(made)) == 3
 
 
+def test_series_and_steps_of_the_equations_are_found_once(monkeypatch):
+    """Targets share them, and so do both rungs."""
+    made = solvers(PENDULUM, ["taylor"])
+    begun = points(made)
+    check_steps(made, begun, 0.125)
+    for known in (made.series, made.steps):
+        assert len(known) == 3
+    monkeypatch.setattr(solver_exact, "solve", None)
+    assert check_choice(made, begun) == 3
+    assert check_steps(made, begun, 0.125)["taylor"]["numpy"].points == 3
+
+
 KINKED = """
 title = "A ball that falls from both sides to a kink, and is rubbed"
 routes = ["canonical"]
@@ -783,7 +795,7 @@ def test_no_step_beyond_the_largest_double_is_compared(monkeypatch):
     steps = iter(ExactStep([one], [end], 1) for end in (huge, one))
     monkeypatch.setattr(solver_exact, "_exact_step", lambda *_: next(steps))
     monkeypatch.setattr(solver_exact, "find_point", lambda *_: {})
-    solvers = SimpleNamespace(subject=SimpleNamespace(programs={}), is_noisy=False)
+    solvers = SimpleNamespace(subject=SimpleNamespace(programs={}), is_noisy=False, steps={})
     samples = np.array([solver_exact.START + 0.5, solver_exact.START + 1])
     found = solver_exact.list_exact_steps(solvers, "dop853", SimpleNamespace(size=2), samples)
     assert [member for member, _ in found] == [1]

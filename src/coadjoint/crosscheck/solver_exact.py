@@ -63,6 +63,9 @@ BOUND: Final = 0.75
 #: fraction of the one before. These are this part of others, so that sweeps end soon.
 SWEEPS, BOUNDING_SWEEPS, IMPLICIT_PART = 120, 8, 0.125
 
+#: A point as names with their values.
+Place = tuple[tuple[str, float], ...]
+
 
 @dataclass(frozen=True)
 class Solvers:
@@ -73,12 +76,30 @@ class Solvers:
         text: Its recurrences.
         advance: What advances members, by method and target.
         depths: How many operations follow one another in a step, by method, where that is known.
+        series: Power series of the equations by the points where they begin; targets share them.
+        steps: Exact steps by method, member, its point and what is asked for, with None for none.
     """
 
     subject: Subject
     text: SolverText
     advance: Mapping[str, Mapping[str, Advance]]
     depths: dict[str, int] = field(default_factory=dict)
+    series: dict[Place, dict[str, tuple[Decimal, ...]]] = field(default_factory=dict, init=False)
+    steps: dict[tuple[str, int, Place, float, float], ExactStep | None] = field(
+        default_factory=dict, init=False
+    )
+
+    def expand(self, point: Mapping[str, float]) -> dict[str, tuple[Decimal, ...]]:
+        """The motion from a point on as a power series of the equations, found once.
+
+        Raises:
+            OutsideDomain: The equations have no value there.
+        """
+        place = tuple(point.items())
+        if place not in self.series:
+            state, given = split(self.subject.programs["rhs"], point)
+            self.series[place] = solve(rates_of(self.subject), state, given, ORDER)
+        return self.series[place]
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -168,20 +189,34 @@ def list_exact_steps(
     after, length = (float(each) - START for each in samples)
     for member in range(batch.size):
         point = find_point(solvers, batch, member)
-        try:
-            with localcontext(CONTEXT):
-                noise = (
-                    find_noise(solvers, member, length)
-                    if solvers.is_noisy and method in NOISY
-                    else []
-                )
-                step = _exact_step(solvers, method, point, after, length, noise)
-                if "projection" in solvers.subject.programs:
-                    step = _project(solvers, point, step, after, length)
-        except (OutsideDomain, ArithmeticError):
-            continue
-        if all(math.isfinite(float(each.value)) for each in (*step.within, *step.end)):
-            yield member, step  # beyond the largest double there is nothing to compare
+        asked = (method, member, tuple(point.items()), after, length)
+        if asked not in solvers.steps:  # rung 5 may ask for those of rung 4
+            solvers.steps[asked] = _find_step(solvers, method, member, point, after, length)
+        step = solvers.steps[asked]
+        if step is not None:
+            yield member, step
+
+
+def _find_step(
+    solvers: Solvers,
+    method: str,
+    member: int,
+    point: Mapping[str, float],
+    after: float,
+    length: float,
+) -> ExactStep | None:
+    """The step of a member, or None: beyond the largest double there is nothing to compare."""
+    try:
+        with localcontext(CONTEXT):
+            is_moved = solvers.is_noisy and method in NOISY
+            noise = find_noise(solvers, member, length) if is_moved else []
+            step = _exact_step(solvers, method, point, after, length, noise)
+            if "projection" in solvers.subject.programs:
+                step = _project(solvers, point, step, after, length)
+    except (OutsideDomain, ArithmeticError):
+        return None
+    ends = all(math.isfinite(float(each.value)) for each in (*step.within, *step.end))
+    return step if ends else None
 
 
 def find_point(solvers: Solvers, batch: Batch, member: int) -> dict[str, float]:
@@ -311,7 +346,7 @@ def _exact_taylor(
 ) -> ExactStep:
     """A step of the Taylor method: values from the power series of the equations."""
     state, given = split(solvers.subject.programs["rhs"], point)
-    series = solve(rates_of(solvers.subject), state, given, ORDER)
+    series = solvers.expand(point)
     sizes = bounded_coefficients(solvers.text, state, given, ORDER)
     known = [list(map(_with_size, series[name], sizes[name])) for name in state]
     within, end = (methods.taylor(known, exact(part)) for part in (after, length))

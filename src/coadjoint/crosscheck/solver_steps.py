@@ -30,11 +30,6 @@ from coadjoint.crosscheck.oracle import (
     error_in_envelopes,
 )
 from coadjoint.crosscheck.points import Batch
-from coadjoint.crosscheck.recurrences import (
-    rates_of,
-    split,
-)
-from coadjoint.crosscheck.series import solve
 from coadjoint.crosscheck.solver_exact import (
     START,
     TOLERANCE,
@@ -235,8 +230,7 @@ def _choose(solvers: Solvers, point: Mapping[str, float]) -> tuple[float, float]
     Returns:
         The logarithm, and by how much that of a step may differ, since it is taken roughly.
     """
-    state, given = split(solvers.subject.programs["rhs"], point)
-    series = solve(rates_of(solvers.subject), state, given, ORDER)
+    series = solvers.expand(point)
     norms = [max(abs(float(row[k])) for row in series.values()) for k in range(ORDER + 1)]
     size = TOLERANCE / 64 * max(norms[0], 1.0)
     last = [k for k in (ORDER - 1, ORDER) if norms[k]]
