@@ -50,7 +50,7 @@ def made(monkeypatch):
         if folder:
             path = compile_solvers(files, folder, "swing", [method], "exact")
             advance[method]["c"] = load_solver(path, "swing", method)
-        return Solvers(system, plain.recurrences_of(SWING), advance)
+        return Solvers(subject=system, text=plain.recurrences_of(SWING), advance=advance)
 
     return make
 

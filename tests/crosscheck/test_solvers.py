@@ -329,7 +329,7 @@ def solvers(context, methods, folder=None, spoil=lambda texts: texts, build="exa
     path = compile_solvers(files, folder, context.name, methods, build) if folder else None
     for method in methods if path else ():
         advance[method]["c"] = load_solver(path, context.name, method)
-    return Solvers(system, recurrences_of(context), advance)
+    return Solvers(subject=system, text=recurrences_of(context), advance=advance)
 
 
 def points(system):

@@ -52,13 +52,13 @@ from coadjoint.derive.splittings import Splitting
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
-from coadjoint.lower.families import Loops
+from coadjoint.lower.loops import Loops
 from coadjoint.render.families import FamilyContext
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.family_steps import compare_steps, load
+from coadjoint.solve.family_steps import compare, load
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.spatial import turning_rows
 
@@ -325,7 +325,7 @@ def crosscheck_family(
             *_list_structured(system),
             *(NOISY[name] for name in ("heun", "midpoint") if family.noise),
         ):
-            compare_steps(system, choice, target, load(system, choice, target).library)
+            compare(system, choice, target, load(system, choice, target).library)
     rungs = {3: "passed", 4: "passed", 5: "passed"}
     if not set(BUILDS) <= set(chosen):
         rungs[4] = rungs[5] = f"{', '.join(chosen)}; the others {NO_COMPILER}"

@@ -27,7 +27,7 @@ from coadjoint.crosscheck.oracle import (
     call,
     exact,
 )
-from coadjoint.lower.families import SUM, Loops, Part, Products, Solve
+from coadjoint.lower.loops import SUM, Loops, Part, Products, Solve
 from coadjoint.lower.program import run
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.families import FEWEST, SUM, Loops, Part
+from coadjoint.lower.loops import FEWEST, SUM, Loops, Part
 from coadjoint.lower.program import run
 
 if TYPE_CHECKING:

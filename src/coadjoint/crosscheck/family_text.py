@@ -18,7 +18,7 @@ from itertools import product
 from coadjoint.crosscheck.family_series import check_series_text
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.errors import CrossCheckError
-from coadjoint.lower.families import SUM, Loops, Part, Read
+from coadjoint.lower.loops import SUM, Loops, Part, Read
 from coadjoint.lower.program import Node
 from coadjoint.render.families import FamilyContext
 from coadjoint.render.family_solvers import arrange_family

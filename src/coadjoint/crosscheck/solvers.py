@@ -155,7 +155,7 @@ def check_solvers(
     known = len(base.programs["rhs"].state)
     numpy = NumpySolver(module, functions, _list_strict(subject), known)
     advance = _load(subject.system.name, numpy, list_compared(programs), compiling, kind)
-    solvers = Solvers(subject, text, advance)
+    solvers = Solvers(subject=subject, text=text, advance=advance)
     batch = draw_points(subject, TRIES, time=START)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
     size = choose_size(solvers, batch)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from coadjoint.lower.families import Loops
+from coadjoint.lower.loops import Loops
 
 
 def find_bands(loops: Loops) -> dict[str, Any] | None:

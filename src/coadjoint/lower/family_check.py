@@ -19,7 +19,7 @@ from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Action, Family, MatrixMotion, Rises, Symbol, Tree
-from coadjoint.lower.families import GIVEN, PRODUCTS, SUM, Loops, Part, Read
+from coadjoint.lower.loops import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 from coadjoint.methods import ACTION
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from coadjoint.lower.families import Loops, Part, Read
 from coadjoint.lower.jets import Jets, make_jets
+from coadjoint.lower.loops import Loops, Part, Read
 from coadjoint.lower.program import Level, Node, Program, Statement, Symbol, walk
 
 

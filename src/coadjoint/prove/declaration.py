@@ -35,8 +35,8 @@ from coadjoint.derive.setting import Declared
 from coadjoint.derive.truncated import tell_motion
 from coadjoint.exact import Element, element_text
 from coadjoint.families import Connection, Family, PrincipalSymbol
-from coadjoint.lower.families import Loops
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
+from coadjoint.lower.loops import Loops
 from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program
 from coadjoint.methods import JudgedMethod

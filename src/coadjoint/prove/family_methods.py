@@ -23,9 +23,9 @@ from coadjoint.derive.splittings import Splitting
 from coadjoint.exact import Element
 from coadjoint.families import Family
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
-from coadjoint.lower.families import Loops
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kinks import hold_sides
+from coadjoint.lower.loops import Loops
 from coadjoint.lower.program import Program
 from coadjoint.methods import (
     BACKWARD,

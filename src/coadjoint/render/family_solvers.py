@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.families import SUM, Loops, Read
 from coadjoint.lower.family_jets import PartJets, is_constant, make_family_jets
+from coadjoint.lower.loops import SUM, Loops, Read
 from coadjoint.lower.program import Call, Symbol, walk
 from coadjoint.render.recurrences import (
     Line,

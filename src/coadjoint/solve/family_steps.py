@@ -24,8 +24,9 @@ from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import ACTION, MAPPED, STRUCTURED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
-from coadjoint.solve.ensemble import MET, Ensemble, Inputs
+from coadjoint.solve.ensemble import MET, Ensemble
 from coadjoint.solve.family import SHARE, find_memory
+from coadjoint.solve.family_comparison import compare_steps, find_probed, list_left
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.methods.bands import Bands
 from coadjoint.solve.methods.sequence import Maps
@@ -55,14 +56,8 @@ FUNCTIONS: Final = {
     "heun": (),
     "midpoint": (),
 }
-#: What two runs have alike.
-COMPARED: Final = ("out", "state", "time", "step", "steps", "rejected", "status")
-#: And of methods that keep structure, as far as they have them.
-LEFT: Final = ("memory", "sweeps")
 #: Arrays of an ensemble that are handed over.
 ARRAYS: Final = ("state", "time", "step", "next", "steps", "rejected", "status", "parameters")
-#: How near states are whose functions have other roundings.
-CLOSE: Final = 1e-9
 #: Bytes of series of pairs of one trajectory beyond which ``dop853`` is faster:
 #: docs/decisions/family-kernels.md.
 KEPT_NEAR: Final = 1 << 17
@@ -337,7 +332,7 @@ class FamilyStepper(FamilyTwin):
                 setattr(given, name, array.ctypes.data)
         if run.kinks is not None and run.brief is not None:
             given.crossed, given.brief = run.kinks.ctypes.data, run.brief.ctypes.data
-        for name in (*ARRAYS, *_list_left(run)):
+        for name in (*ARRAYS, *list_left(run)):
             array = getattr(run, name)
             assert array.flags.c_contiguous, name
             setattr(given, name, array.ctypes.data)
@@ -426,11 +421,6 @@ class _Stages(DormandPrince8):
         return np.array([five]), np.array([three])
 
 
-def _list_left(run: Ensemble) -> list[str]:
-    """What the steps of a run leave."""
-    return [name for name in LEFT if getattr(run, name) is not None]
-
-
 def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
     """The steps of a family in C: what is missing or wrong is an error.
 
@@ -440,96 +430,22 @@ def load(system: FamilySystem, choice: Choice, target: str) -> FamilyStepper:
     """
 
     def verify(library: Library) -> None:
-        compare_steps(system, choice, target, library)
+        compare(system, choice, target, library)
 
     source = choice.source.at(system.levels, "exact")
     given = (system.folder, system.name, system.id, "exact", verify, source)
     return FamilyStepper(system, choice, target, load_library(*given))
 
 
-def compare_steps(system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
-    """A fresh object makes the steps of the twin, bit for bit.
-
-    States are near, 1e-9 of the largest, where series call functions beyond sqrt, or operations are
-    fused: differently for one trajectory and for many.
+def compare(system: FamilySystem, choice: Choice, target: str, library: Library) -> None:
+    """A fresh object makes the steps of the twin, for a few members.
 
     Raises:
         CrossCheckError: It does not.
     """
-    size = 8 * -(-(system.small + 5) // 8) + 1  # so that fifteen trajectories are computed together
-    sized = system.resize({system.index.name: size})
-    fresh, twin = (
-        FamilyStepper(sized, choice, target, library),
-        FamilyTwin(sized, choice, target),
-    )
-    # where roundings differ, one may decide on the length of a step
-    exact = target == "c" and (choice.name != "taylor" or not system.elementary)
-    lengths = [(3, 2.0**-7), (15, 2.0**-7)]
-    if exact and choice.name in ("dop853", "taylor"):
-        lengths += [(1, 0.0), (15, 0.0)]
-    structured = choice.is_structured
-    if structured and exact:  # other roundings have other sweeps, and other rests of sums
-        lengths += [(1, 2.0**-7), (1, 64.0)]  # the last one has no solution
-    for members, step in lengths:
-        found, expected = (_probe(sized, choice, members, step) for _ in range(2))
-        for stepper, run in ((fresh, found), (twin, expected)):
-            while stepper.advance(run, 0, members, 5):
-                pass
-        kinked = ("kinks", "brief") if system.kinks else ()
-        for name in (*COMPARED, *(_list_left(found) if exact else ()), *kinked):
-            one, other = (np.asarray(getattr(run, name)) for run in (found, expected))
-            tolerance = 0.0 if exact else CLOSE * np.abs(other[np.isfinite(other)]).max(initial=1.0)
-            if not np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True):
-                raise CrossCheckError(
-                    f"a wrong solver was compiled: {choice} of {system.name}, solver.c, differs "
-                    "from its NumPy twin. Set CC to another compiler, or run `coadjoint "
-                    "crosscheck` to see whether the files are at fault.",
-                    rung=5,
-                    system=system.name,
-                    target=target,
-                )
-
-
-def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> Ensemble:
-    """A few trajectories at the start of twelve steps, with two samples on the way."""
-    source = np.random.default_rng(0)
-    end = 12 * (step or 2.0**-7)
-    state = source.uniform(0.5, 2.0, (system.STATE.size, members))
-    if "projection" in system.functions:  # far from rotations it leads away
-        near = [
-            quantity.default or (0.0,) * len(quantity.components)
-            for quantity in system.STATE.values()
-        ]
-        state = np.concatenate(near)[:, None] + 0.01 * state
-    run = Ensemble(
-        state=state,
-        parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
-        inputs=_probe_inputs(system, source, end),
-        has_time=bool(system.TIME),
-        samples=np.array([0.0, 0.55 * end, end]),
-        out=np.zeros((system.STATE.size, members, 3)),
-        rtol=1e-9,
-        atol=1e-12,
-        size=step,
-        max_steps=60,
-        seed=1,
-        bound=2.0,
-        remembered=choice.count_memory(system.STATE.size, searches=False),
-        is_implicit=choice.is_structured,
-        has_clock=False,
-        sides=len(system.kink_names),
-    )
-    run.begin(0.0)
-    return run
-
-
-def _probe_inputs(system: FamilySystem, source: np.random.Generator, end: float) -> Inputs:
-    """Lines of inputs, of which the second begins within a step."""
-    values, slopes = (source.uniform(0.5, 2.0, (system.INPUTS.size, 2)) for _ in range(2))
-    knots = np.array([0.0, 0.3 * end])
-    if not system.INPUTS:
-        knots, values, slopes = knots[:1], values[:, :1], slopes[:, :1]
-    return Inputs(knots, values, slopes)
+    few = find_probed(system)
+    fresh, twin = FamilyStepper(few, choice, target, library), FamilyTwin(few, choice, target)
+    compare_steps(few, choice, target, fresh, twin)
 
 
 def tell_series_obstacle(system: FamilySystem, order: int, members: int, *, is_auto: bool) -> str:
