@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from coadjoint.resources import derivations_folder
 
 
@@ -37,8 +39,11 @@ def test_what_cannot_be_shown_is_told(run, folder):
 
 def test_advice_of_a_spec_of_ones_own_names_its_path(run, folder):
     """The command that a message gives runs from where the person stands."""
-    path = folder / "my_noise.toml"
-    path.write_text((derivations_folder() / "stochastic_rigid_body.toml").read_text())
+    path, text = (
+        folder / "my_lattice.toml",
+        (derivations_folder() / "toda_lattice.toml").read_text(),
+    )
+    path.write_text(re.sub(r"size = \d+", "size = 5000", text))
     refused = run("explore", path)
     assert refused.exit_code == 2
     assert f"coadjoint simulate {path}" in refused.stderr

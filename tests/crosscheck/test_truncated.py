@@ -54,7 +54,7 @@ def test_the_ladder_sees_wrong_waves(on_torus, monkeypatch, file, old, new, targ
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)
     monkeypatch.setattr(ladder, "POINTS", 2)
-    monkeypatch.setattr(ladder, "compare_steps", lambda *_: None)
+    monkeypatch.setattr(ladder, "compare", lambda *_: None)
     with pytest.raises(CrossCheckError, match=seen):
         climb(on_torus, texts, targets)
 
@@ -72,7 +72,7 @@ def test_the_ladder_sees_wrong_products(rendered, monkeypatch, file, old, new, t
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)
     monkeypatch.setattr(ladder, "POINTS", 2)
-    monkeypatch.setattr(ladder, "compare_steps", lambda *_: None)
+    monkeypatch.setattr(ladder, "compare", lambda *_: None)
     given = ("numpy", *targets) if seen == "rung 5" else targets
     with pytest.raises(CrossCheckError, match=seen if seen != "rung 5" else "rung 5|wrong kernel"):
         climb(rendered, texts, given)

@@ -90,7 +90,7 @@ def test_what_a_theorem_needs_decides():
         assert not spins[name]["rank"]
     assert masses["discrete_gradient"]["exactly"] == ["energy"]
     assert masses["average_gradient"]["exactly"] == []  # exp is no polynomial
-    assert "degree 8 or less" in masses["average_gradient"]["decides"]
+    assert "degree 10 or less" in masses["average_gradient"]["decides"]
     assert "h g.f" in judge(DRAG)["discrete_gradient"]["decides"]
 
 
@@ -184,15 +184,15 @@ def test_long_steps_need_the_energies_at_both_ends(chain, monkeypatch):
     start = np.random.default_rng(4).normal(size=12)
 
     def drift(method):
-        given = {"method": method, "step": 0.2, "samples": 11, "target": "numpy"}
+        given = {"method": method, "step": 0.25, "samples": 11, "target": "numpy"}
         found = line.simulate(start, (0, 4), **given)
         assert found.status == "OK"
         return found.drift["energy"]
 
     assert drift("discrete_gradient") < 1e-13
-    assert drift("average_gradient") > 1e-10
+    assert drift("average_gradient") > 1e-11
     monkeypatch.setattr("coadjoint.solve.methods.discrete_gradient.ROUNDINGS", np.inf)
-    assert drift("discrete_gradient") > 1e-10
+    assert drift("discrete_gradient") > 1e-11
 
 
 def test_roundings_of_many_members_decide_nothing(chain, monkeypatch):

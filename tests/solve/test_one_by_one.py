@@ -78,6 +78,9 @@ def test_each_of_a_batch_ends_as_it_does():
     assert np.isnan(run.state[:, 2, 1:]).all()
     assert not np.isnan(run.state[:, :2]).any()
     assert run.member(2).status == "NOT_SOLVED"
+    assert run.steps.tolist() == [4, 4, 0]
+    assert run.sweeps.tolist() == [run.member(n).sweeps for n in range(3)]
+    assert run.sweeps.min() > 0
     last = system.simulate(states, (0, 0.4), step=0.1, samples=1)
     np.testing.assert_array_equal(last.final["m[0]"][:2], run.state[0, :2, -1])
     assert last.course.start.state.shape == states.shape

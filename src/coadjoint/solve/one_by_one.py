@@ -111,8 +111,14 @@ def _join_courses(runs: Sequence[Solution], codes: NDArray[np.int8], request: Re
         start = Start(
             time=request.start, state=request.state.copy(), inputs=own.start.inputs, varies=False
         )
+    counted = {
+        name: np.array([getattr(run, name) for run in runs], np.uint64).reshape(batch)
+        for name in ("steps", "sweeps")
+        if getattr(own, name) is not None
+    }
     return replace(
         own,
+        **counted,
         codes=codes,
         reached=np.array([run.time[-1] for run in runs]).reshape(batch),
         last=np.stack([run.state[:, -1] for run in runs], axis=1).reshape(-1, *batch),
