@@ -498,6 +498,8 @@ def _find_polynomials(
 
 def _are_equal(found: Tree, wanted: Tree) -> bool:
     """Whether two trees have one value."""
+    if found == wanted:
+        return True
     polynomials = _find_polynomials([found, wanted], roots=True)
     if polynomials and polynomials.is_same():
         return True
