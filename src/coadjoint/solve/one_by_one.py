@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -111,7 +111,7 @@ def _join_courses(runs: Sequence[Solution], codes: NDArray[np.int8], request: Re
         start = Start(
             time=request.start, state=request.state.copy(), inputs=own.start.inputs, varies=False
         )
-    counted = {
+    counted: dict[str, Any] = {
         name: np.array([getattr(run, name) for run in runs], np.uint64).reshape(batch)
         for name in ("steps", "sweeps")
         if getattr(own, name) is not None
