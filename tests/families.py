@@ -7,10 +7,15 @@ used, so that the two ways share no step that writes sums out.
 from itertools import combinations
 from random import Random
 
+import pytest
 import sympy
 
 from coadjoint.derive import derive
 from coadjoint.derive.indexed import derive_family
+from coadjoint.errors import CrossCheckError
+from coadjoint.solve import family_steps
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 
 RING = """
@@ -736,3 +741,12 @@ def are_equal(left, right):
         if abs(a - b) > sympy.Rational(1, 10**25) * (1 + abs(a)):
             return False
     return True
+
+
+def require_wrong_steps(texts, method, old, new, **how):
+    """A change of ``solver.c`` changes some bit of a run, so that a fresh object is refused."""
+    text = texts["solver.c"]
+    assert old in text
+    refused = pytest.raises(CrossCheckError, match="differs from its NumPy twin")
+    with load_texts({**texts, "solver.c": text.replace(old, new)}) as system, refused:
+        family_steps.load(system, Choice(name=method, order=2, **how), "c")

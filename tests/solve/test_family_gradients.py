@@ -9,11 +9,19 @@ from coadjoint import pipeline
 from coadjoint.derive import action
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve import family_steps
-from coadjoint.solve.choices import Choice
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
 from coadjoint.spec.reader import read_spec_text
-from tests.families import CHAIN, CLOSED, DRAG, PEAKONS, RING, VORTICES, write_ring
+from tests.families import (
+    CHAIN,
+    CLOSED,
+    DRAG,
+    PEAKONS,
+    RING,
+    VORTICES,
+    require_wrong_steps,
+    write_ring,
+)
 from tests.specs import shipped
 
 METHODS = ("discrete_gradient", "discrete_gradient4", "average_gradient")
@@ -315,12 +323,7 @@ def test_brackets_and_gradients_of_strands_are_those_of_rings(ends, order):
 )
 def test_a_wrong_step_in_c_is_seen(texts, old, new):
     """Each of these changes some bit of a run."""
-    text = texts["solver.c"]
-    assert old in text
-    with load_texts({**texts, "solver.c": text.replace(old, new)}) as system:
-        choice = Choice(name="discrete_gradient", order=2)
-        with pytest.raises(CrossCheckError, match="differs from its NumPy twin"):
-            family_steps.load(system, choice, "c")
+    require_wrong_steps(texts, "discrete_gradient", old, new)
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from coadjoint import pipeline
-from coadjoint.errors import CrossCheckError, KernelArgumentError
+from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import MAPPED, STRUCTURED
-from coadjoint.solve import family_steps
-from coadjoint.solve.choices import Choice
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
 from coadjoint.spec.reader import read_spec_text
@@ -27,6 +25,7 @@ from tests.families import (
     RING,
     SPRINGS,
     VORTICES,
+    require_wrong_steps,
     write_chain,
     write_ring,
 )
@@ -268,12 +267,7 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
 )
 def test_a_wrong_step_in_c_is_seen(texts, old, new):
     """Each of these changes some bit of a run."""
-    text = texts["solver.c"]
-    assert old in text
-    with load_texts({**texts, "solver.c": text.replace(old, new)}) as system:
-        choice = Choice(name="spherical_midpoint", order=2)
-        with pytest.raises(CrossCheckError, match="differs from its NumPy twin"):
-            family_steps.load(system, choice, "c")
+    require_wrong_steps(texts, "spherical_midpoint", old, new)
 
 
 # -- Newton's method by bands ---------------------------------------------------------------------
@@ -337,9 +331,4 @@ def test_bands_have_the_bits_of_numpy(name, request):
 )
 def test_wrong_bands_in_c_are_seen(texts, old, new):
     """Each of these changes some bit of a run."""
-    text = texts["solver.c"]
-    assert old in text
-    with load_texts({**texts, "solver.c": text.replace(old, new)}) as system:
-        choice = Choice(name="spherical_midpoint", order=2, newton=True)
-        with pytest.raises(CrossCheckError, match="differs from its NumPy twin"):
-            family_steps.load(system, choice, "c")
+    require_wrong_steps(texts, "spherical_midpoint", old, new, newton=True)
