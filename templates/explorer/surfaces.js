@@ -49,7 +49,7 @@ class SurfaceScene extends Scene {
     const [a, b] = this.sides(), names = scene.plane?.coordinates || ["x", "y"];
     drawing.map("floor", [a, b, 1], pixels, counts, false);
     drawing.line([[-a, -b, 0], [a, -b, 0], [a, b, 0], [-a, b, 0], [-a, -b, 0]], () => [...theme.steel, 1], 2);
-    this.label(names[0], [0, -1.07 * b - 0.08, 0], "axis");
+    this.label(names[0], [0, -1.04 * b - 0.05, 0], "axis");
     this.label(names[1], [-1.07 * a - 0.08, 0, 0], "axis");
   }
   /* Where a ray meets the plane, as parts of its lengths; null outside. */
