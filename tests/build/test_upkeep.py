@@ -65,8 +65,9 @@ def test_what_is_used_stays(folder):
 
 
 def test_a_store_keeps_the_bound(folder, monkeypatch):
-    """Each new object may drive out old ones."""
+    """New objects may drive out old ones."""
     monkeypatch.setattr("coadjoint.build.cache.evict", lambda cache: evict(cache, 12 * PAGE))
+    monkeypatch.setattr("coadjoint.build.cache.UNSEEN", 0)
     for n in range(8):
         path = store(named(f"key{n}"), bytes([n]) * (4 * PAGE))
         for each in (path, path.parent / named(f"key{n}")):
@@ -148,3 +149,16 @@ def test_the_bound_is_that_of_the_limits(folder):
     """Sizes are told in MiB; a cache of some kilobytes is within."""
     assert CACHE_BYTES == 256 * 2**20
     assert find_problems(filled(folder)) == []
+
+
+def test_the_bound_is_looked_at_once_for_many_small_objects(folder, monkeypatch):
+    """By the first object of a process, and then after so many bytes."""
+    looks = []
+    monkeypatch.setattr("coadjoint.build.cache.evict", looks.append)
+    monkeypatch.setattr("coadjoint.build.cache.UNSEEN", 100)
+    monkeypatch.setattr("coadjoint.build.cache._unseen", [100])
+    counts = []
+    for n in range(6):
+        store(named(f"key{n}"), bytes([n]) * 40)
+        counts.append(len(looks))
+    assert counts == [1, 1, 1, 2, 2, 2]

@@ -25,6 +25,12 @@ from pathlib import Path
 from coadjoint.build.upkeep import FOLDERS, KERNELS, WORK, evict, find_problems
 from coadjoint.build.workplace import keep_folder, remove, sweep, work_file, work_folder
 from coadjoint.errors import OutputError
+from coadjoint.limits import CACHE_BYTES
+
+#: Bytes that a process adds before it looks at the bound again: to look at thousands of objects
+#: takes longer than to keep one.
+UNSEEN = CACHE_BYTES // 64
+_unseen = [UNSEEN]  # the first object of a process looks
 
 
 class CacheWarning(UserWarning):
@@ -223,7 +229,10 @@ def store(key: str, content: bytes) -> Path:
             "COADJOINT_CACHE to another folder.",
             path=str(folder),
         ) from error
-    evict(cache)
+    _unseen.append(len(content))
+    if sum(_unseen) > UNSEEN:
+        evict(cache)
+        _unseen.clear()
     return folder / f"{digest}.so"
 
 

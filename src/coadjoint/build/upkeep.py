@@ -1,7 +1,7 @@
 """Upkeep of the cache: its bound, and what is wrong with it.
 
 Comes in: the folder of the cache. Goes out: a folder within its bound, or a list of problems for
-people. Read next: `coadjoint.build.cache`, which calls `evict` after each new object.
+people. Read next: `coadjoint.build.cache`, which calls `evict` after new objects.
 """
 
 from __future__ import annotations

@@ -46,13 +46,14 @@ LEVELS: Final = {("kernel", "fast"): 1, (SOLVER.stem, "exact"): 0, (SOLVER.stem,
 WRITTEN_LEVELS: Final = {**LEVELS, ("kernel", "exact"): 0}
 NO_COMPILER: Final = "not run: no compiler"
 #: Points against 50 digits for a whole system: about a second of a processor for a small one.
-ORACLE_POINTS: Final = 2000
+ORACLE_POINTS: Final = 1000
 #: Operations and outputs of one function, all its points together: a large function, of which every
 #: point tries many formulas, gets fewer points, and never less than the other number.
-ORACLE_OPERATIONS: Final = 40_000
+ORACLE_OPERATIONS: Final = 20_000
 FEWEST_POINTS: Final = 50
-#: Points of bitwise comparison for each function, and how many outputs these may be together.
-BIT_POINTS: Final = 200_000
+#: Points of bitwise comparison for each function, and how many outputs these may be together. A
+#: text that has other bits has them at most points; `coadjoint crosscheck` takes more.
+BIT_POINTS: Final = 40_000
 BIT_OUTPUTS: Final = 10_000_000
 
 

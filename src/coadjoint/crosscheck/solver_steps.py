@@ -52,7 +52,8 @@ OTHERS: Final = tuple(each for each in NEWTON if each != "midpoint_newton")
 FEW: Final = 5
 #: How far a run may go that takes one step as long as it likes.
 FAR: Final = 2.0**30
-MOST_STEPS: Final = 12
+#: Steps of a run: more than those before from which a search is continued.
+MOST_STEPS: Final = 8
 #: How far the chosen step may be from the one that is asked for, in octaves: logarithms are within
 #: 0.01, a power within one part in 5000.
 OCTAVES: Final = 0.02 / (ORDER - 1) + 3e-4
@@ -265,7 +266,7 @@ def check_bits(
         name: known[name] for name in (_list_compiled(solvers) if methods is None else methods)
     }
     equal = dict.fromkeys(choices, 0)
-    samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 2.0, 2.125, 3.3])
+    samples = START + size * np.array([0.0, 0.375, 0.5, 1.25, 1.5, 2.1])
     for method, given, fixed, keeps in _runs(batch, size):
         if method not in choices:
             continue
