@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.self_check import main
+from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import self_check
 from coadjoint.solve.self_check import check_methods
 from coadjoint.systems import (
     elastic_chain,
+    euler_2d,
     euler_disk,
+    hunter_saxton,
     rigid_body,
     stochastic_rigid_body,
     suslov,
@@ -102,3 +105,16 @@ def test_members_are_drawn_inside_the_domain():
     assert found.method.name == "discrete_gradient"
     assert not found.failures
     assert found.compared == 2
+
+
+@pytest.mark.parametrize("system", [euler_2d.system, hunter_saxton.system])
+@pytest.mark.filterwarnings("ignore::coadjoint.ShockWarning")
+def test_fields_with_conditions_begin_where_these_hold(system):
+    """Of some waves alone, or with the mean 0; states of any other kind are refused."""
+    runs = self_check.Runs(system)
+    (found,) = check_methods(system)
+    assert not found.failures
+    assert found.compared >= 3
+    anywhere = runs.states + 0.01 * np.random.default_rng(1).uniform(size=runs.states.shape)
+    with pytest.raises(KernelArgumentError):
+        runs.run("midpoint", runs.step, 1, anywhere)

@@ -27,6 +27,20 @@ HAMILTONIAN = HAMILTONIAN.replace(
     '[hamiltonian]\nh = "Pi[1]^2/(2*I[1]) + Pi[2]^2/(2*I[2]) + Pi[3]^2/(2*I[3])"',
 )
 END = "Pi[3]^2/(2*I[3])"
+PENDULUM = """
+title = "A pendulum with a force"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+v = { role = "velocity", of = "q" }
+p = { role = "momentum", of = "q" }
+[parameters]
+c = { positive = true, default = 1 }
+[hamiltonian]
+h = "p^2/2 - cos(q)"
+[forces]
+v = "FORCE"
+"""
 
 
 def judge(declared):
@@ -90,7 +104,7 @@ def test_facts_are_those_of_the_book(name, expected):
         ("chaplygin_sleigh", "gauss4"),
         ("euler_disk", "discrete_gradient"),
         ("guiding_centre", "discrete_gradient"),
-        ("bloch", ""),
+        ("bloch", "discrete_gradient"),
         ("stochastic_rigid_body", ""),
     ],
 )
@@ -140,6 +154,35 @@ def test_what_discrete_gradients_keep():
     assert damped["discrete_gradient"].exactly == ("casimir1",)  # |Gamma|^2, and not Pi.Gamma
     assert "a step adds h g.f to the energy" in damped["discrete_gradient"].decides
     assert "go back in time" in damped["discrete_gradient4"].decides
+
+
+@pytest.mark.parametrize(
+    ("force", "is_refused"),
+    [
+        ("-c*v", True),
+        ("-c*v^3", True),
+        ("-c*v + sin(q)", True),
+        ("c*q^2", False),  # by the coordinate alone, whether or not it has a potential
+        ("c", False),
+    ],
+)
+def test_friction_that_is_written_as_a_force_refuses_steps_back_in_time(force, is_refused):
+    """It shrinks volumes; the balance of the energy is then what the default method keeps."""
+    _, methods = judge(spec(PENDULUM.replace("FORCE", force)))
+    for name in ("midpoint4", "midpoint6", "discrete_gradient4"):
+        assert ("go back in time" in methods[name].decides) == is_refused, name
+    assert methods["discrete_gradient"].applies
+    assert (methods["discrete_gradient"].rank == 1) == is_refused
+
+
+def test_shipped_systems_with_relaxation_refuse_steps_back_in_time():
+    """Their forces are not declared as dissipation."""
+    for name in ("bloch", "lorenz_gyrostat"):
+        _, methods = judge_shipped(name)
+        assert "go back in time" in methods["midpoint4"].decides
+        assert methods["discrete_gradient"].rank == 1
+    _, methods = judge_shipped("quadrotor")
+    assert methods["midpoint4"].applies
 
 
 # -- facts that are spoiled -----------------------------------------------------------------------

@@ -120,15 +120,17 @@ def test_what_has_none_says_why(text, reason):
 
 
 def test_friction_refuses_steps_back_in_time():
-    """Of the composition of order 4, where a dissipation function takes energy."""
+    """Of all compositions, where a dissipation function takes energy."""
     text = CHAIN.replace("[observables]", '[dissipation]\nR = "sum(i, v[i]^2)/2"\n[observables]')
     text = text.replace(
         "[variables]", '[variables]\nv = { role = "velocity", of = "q", index = "i" }'
     )
     text = text.replace('conserved = ["energy", "P"]', "")
     found = judge(text)
-    assert "go back in time" in found["discrete_gradient4"]["decides"]
-    assert found["discrete_gradient"]["cost"]
+    for name in ("midpoint4", "midpoint6", "discrete_gradient4"):
+        assert "go back in time" in found[name]["decides"]
+    assert found["discrete_gradient"]["rank"] == 1
+    assert found["midpoint"]["cost"]
 
 
 # -- runs -----------------------------------------------------------------------------------------

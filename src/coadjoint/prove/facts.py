@@ -320,10 +320,27 @@ class Facts:
         """Whether a metriplectic bracket is declared."""
         return self.spec.relaxation is not None and self.spec.relaxation.S is not None
 
-    @property
+    @cached_property
     def is_dissipative(self) -> bool:
-        """Whether friction or a symmetric bracket is declared, by which energy is lost."""
-        return self.spec.dissipation is not None or self.spec.relaxation is not None
+        """Whether energy is taken: by friction, a symmetric bracket or forces that change volumes.
+
+        Friction that is written as a force shrinks volumes, and a force by coordinates or an input
+        alone leaves them. Where forces are not told apart from the rates, these are asked.
+        """
+        if self.spec.dissipation is not None or self.spec.relaxation is not None:
+            return True
+        if not self.spec.forces:
+            return False
+        close, field, forces = self.equations.close, self.field, self.equations.exact.forces
+        if not forces:
+            return volume_statement(self.motion) not in self._proved
+        pairs = zip(forces, self.state, strict=True)
+        return not field.is_zero(field.sum(field.derivative(close(f), x) for f, x in pairs if f))
+
+    @property
+    def has_balance(self) -> bool:
+        """Whether friction and forces change the energy, whose balance is what a step may keep."""
+        return self.is_dissipative and self.spec.relaxation is None and self.energy is not None
 
     @cached_property
     def grows(self) -> bool:

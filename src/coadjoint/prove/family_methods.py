@@ -28,14 +28,12 @@ from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.loops import Loops
 from coadjoint.lower.program import Program
 from coadjoint.methods import (
-    BACKWARD,
     BY_ENERGY,
     MAPPED,
     STRUCTURED,
     JudgedMethod,
     Sphere,
     StructuredMethod,
-    list_backward,
 )
 from coadjoint.prove.certificate import Certificate
 from coadjoint.prove.facts import Facts, Kept
@@ -48,6 +46,7 @@ from coadjoint.prove.methods import (
     judge_spheres,
     keeps,
     prefer,
+    refuse_backward,
 )
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
@@ -315,8 +314,7 @@ def judge_family(
     by_energy = [name for name, x in STRUCTURED.items() if x.file in BY_ENERGY]
     if facts.lacks_action:
         refusals |= dict.fromkeys(by_energy, facts.lacks_action)
-    elif facts.is_dissipative:
-        refusals |= dict.fromkeys(list_backward().intersection(by_energy), BACKWARD)
+    refusals |= refuse_backward(facts, refusals)
     if facts.is_noisy:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
     elif in_plane is not None:
@@ -327,7 +325,7 @@ def judge_family(
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
     # a sweep of the midpoint is one loop, and one of a discrete gradient has eight
-    preferred = [name for name in prefer(facts) if name not in by_energy]
+    preferred = [n for n in prefer(facts) if facts.has_balance or n not in by_energy]
     judged = judge(facts, refusals, {}, rules, preferred)
     if in_plane is not None:
         judged = tuple(_judge_plane(each, in_plane) for each in judged)

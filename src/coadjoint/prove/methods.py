@@ -8,7 +8,7 @@ Read next: `coadjoint.prove.facts`, where the facts are decided.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
@@ -87,9 +87,7 @@ def judge_methods(
     offered = {each.name for each in describe_structured(solved)["structured"]["methods"]}
     refusals = dict(maps.refusals)
     refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
-    refusals |= (
-        dict.fromkeys(list_backward() - refusals.keys(), BACKWARD) if facts.is_dissipative else {}
-    )
+    refusals |= refuse_backward(facts, refusals)
     known = {program.name: program for program in maps.programs}
     return facts, judge(facts, refusals, known)
 
@@ -118,7 +116,14 @@ def judge(
         else _judge(every, facts, method, maps)
         for name, method in {**STRUCTURED, **MAPPED}.items()
     }
-    return _rank(prefer(facts) if preferred is None else preferred, judged)
+    balanced = {"discrete_gradient"} if facts.has_balance and not facts.is_moved else set[str]()
+    return _rank(prefer(facts) if preferred is None else preferred, judged, balanced)
+
+
+def refuse_backward(facts: Facts, refusals: Mapping[str, str]) -> dict[str, str]:
+    """The same of methods that are not refused yet and go back in time, where energy is lost."""
+    backward = list_backward() - refusals.keys() if facts.is_dissipative else ()
+    return dict.fromkeys(backward, BACKWARD)
 
 
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
@@ -379,10 +384,15 @@ def keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
 # -- the order of preference ----------------------------------------------------------------------
 
 
-def _rank(preferred: Sequence[str], judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
-    """The methods with their ranks: those that apply and keep something, as they are preferred."""
-    wanted = [judged[name] for name in preferred if name in judged]
-    fit = [each.name for each in wanted if each.applies and (each.exactly or each.is_poisson)]
+def _rank(
+    preferred: Sequence[str], judged: Mapping[str, JudgedMethod], balanced: Collection[str]
+) -> tuple[JudgedMethod, ...]:
+    """The methods with their ranks: those that apply and keep something, as they are preferred.
+
+    What friction and forces do to the energy is kept by the methods that are balanced.
+    """
+    wanted = [judged[name] for name in preferred if name in judged and judged[name].applies]
+    fit = [x.name for x in wanted if x.exactly or x.is_poisson or x.name in balanced]
     return tuple(
         replace(each, rank=fit.index(name) + 1) if name in fit else each
         for name, each in judged.items()
@@ -399,6 +409,8 @@ def prefer(facts: Facts) -> tuple[str, ...]:
 
 def _prefer_first(facts: Facts) -> Sequence[str]:
     """What is preferred to the methods of Gauss."""
+    if facts.has_balance:
+        return ["discrete_gradient"]
     if facts.is_constrained:
         is_quadratic = any(x.name == "energy" and x.is_kept_within_steps for x in facts.integrals)
         return [] if is_quadratic else ["discrete_gradient"]

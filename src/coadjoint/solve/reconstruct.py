@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coadjoint.declared import Quantity
+    from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -43,7 +44,7 @@ def find_start(system: System, state: Array, asked: Any) -> Array:
     batch = state.shape[1:]
     if not is_asked(asked):
         return np.empty((0, *batch))
-    _check_asked(system, asked)
+    check_asked(system, asked)
     given = dict(asked) if isinstance(asked, Mapping) else {}
     wanted = {
         name: value
@@ -67,8 +68,8 @@ def find_start(system: System, state: Array, asked: Any) -> Array:
     return first
 
 
-def _check_asked(system: System, asked: Any) -> None:
-    """Something is reconstructed, and what was asked for is of the right kind.
+def check_asked(system: System, asked: Any) -> Quantities:
+    """What is reconstructed, where there is something and what was asked for is of the right kind.
 
     Raises:
         KernelArgumentError: It is not.
@@ -86,6 +87,7 @@ def _check_asked(system: System, asked: Any) -> None:
             f"{', '.join(system.RECONSTRUCTED)} begins, by name.",
             found=str(asked)[:80],
         )
+    return system.RECONSTRUCTED
 
 
 def _check_shapes(

@@ -20,6 +20,7 @@ from coadjoint.build.compiler import BUILDS
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import JudgedMethod
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.spectral import list_mean_zero
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
@@ -39,6 +40,9 @@ PROJECTED: Final = 5
 HELD: Final = 1e-9
 #: Steps that the state would need to change by its own size, about.
 STEPS: Final = 20
+#: How often the step is halved before no motion is said to be followed: of fields the shortest
+#: waves bound it, and not the motion.
+SHORTER: Final = 5
 #: Steps of the longest of the three runs that tell the order, by what part of these those of
 #: further runs are, and steps of the run that tells drifts.
 HALVED: Final = 8
@@ -131,10 +135,14 @@ class Runs:
         speeds = np.abs(rates).max(axis=0) / np.abs(states).max(axis=0)
         fast = float(np.nanmax(np.where(np.isfinite(speeds), speeds, 0.0), initial=0.0))
         self.step = 2.0 ** round(math.log2(1.0 / (STEPS * fast))) if fast > 0 else 0.125
-        ends = self.run("rk4", self.step, HALVED, states)
-        self.states = states[:, np.isfinite(ends).all(axis=0)]
-        if not self.states.size:
-            raise self._fail()
+        first = "midpoint" if system.obstacle else "rk4"  # where Python leads the steps
+        for _ in range(SHORTER):
+            ends = self.run(first, self.step, HALVED, states)
+            self.states = states[:, np.isfinite(ends).all(axis=0)]
+            if self.states.size:
+                return
+            self.step /= 2.0
+        raise self._fail()
 
     def _fail(self) -> KernelArgumentError:
         """There is nothing to run."""
@@ -148,9 +156,13 @@ class Runs:
     def _draw(self, parts: list[Array]) -> Array:
         """States near the default, in the domain and on the constraints that are kept.
 
-        Each quantity is moved by parts of its own size: a place far off moves no attitude.
+        Each quantity is moved by parts of its own size: a place far off moves no attitude. Fields
+        of some waves alone, or with the mean 0, are multiplied by numbers.
         """
         source, default = np.random.default_rng(1), np.concatenate(parts)
+        if self.system.obstacle or self._has_means():
+            factors = [1.0 + s * source.uniform(-1, 1, DRAWN) for s in SPREADS]
+            return np.outer(default, np.concatenate(factors))[:, :MEMBERS]
         most = float(np.abs(default).max()) or 1.0
         sizes = [np.full(each.size, np.abs(each).max() or most) for each in parts]
         size = np.concatenate(sizes)[:, np.newaxis]
@@ -164,6 +176,10 @@ class Runs:
         if self.system.DOMAIN:
             inside &= (np.asarray(self.system.domain(states, **self.at)) > 0).all(axis=0)
         return states[:, inside][:, :MEMBERS]
+
+    def _has_means(self) -> bool:
+        """Whether the mean of some field has to be 0."""
+        return isinstance(self.system, FamilySystem) and bool(list_mean_zero(self.system))
 
     def project(self, states: Array) -> Array:
         """States moved onto the constraints that are kept."""

@@ -30,7 +30,7 @@ from coadjoint.solve.kernels import check_target
 from coadjoint.solve.lookout import Ending, Lookout, explain_ending
 from coadjoint.solve.noisy import check_no_noise, check_samples, choose_noisy, has_noise
 from coadjoint.solve.occurrences import Events
-from coadjoint.solve.reconstruct import find_start, is_asked
+from coadjoint.solve.reconstruct import check_asked, find_start, is_asked
 from coadjoint.solve.request import (
     ATOL,
     IMPLICIT,
@@ -100,7 +100,7 @@ def simulate(
 ) -> Solution:
     """Integrate; arguments as in `System.simulate`."""
     initial = check_state(system, state)
-    below = system.RECONSTRUCTED.size if is_asked(reconstruct) else 0
+    below = check_asked(system, reconstruct).size if is_asked(reconstruct) else 0
     start, times = list_times(t, samples, initial.size + initial[0].size * below)
     tolerances = rtol is not None or atol is not None
     rtol, atol = RTOL if rtol is None else rtol, ATOL if atol is None else atol

@@ -299,11 +299,15 @@ def check_means(system: FamilySystem, state: Array) -> None:
     Raises:
         KernelArgumentError: It is not.
     """
+    for u, m in list_mean_zero(system):
+        fields = state.reshape(len(system.own_state), system.size, -1)
+        require_mean_zero(system, u, m, fields[system.own_state.index(m)])
+
+
+def list_mean_zero(system: FamilySystem) -> list[tuple[str, str]]:
+    """Fields u and momenta m = A u whose mean is 0, since A takes constants to 0."""
     solved = {} if system.spectral is None else system.spectral.solved
-    for u, (m, factors) in solved.items():
-        if 0 not in factors:
-            fields = state.reshape(len(system.own_state), system.size, -1)
-            require_mean_zero(system, u, m, fields[system.own_state.index(m)])
+    return [(u, m) for u, (m, factors) in solved.items() if 0 not in factors]
 
 
 def require_mean_zero(system: System, u: str, m: str, field: Array) -> None:
