@@ -26,6 +26,7 @@ from coadjoint.derive.action import add_action
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
+from coadjoint.derive.setting import once
 from coadjoint.derive.totals import TotalsReader
 from coadjoint.derive.truncated import derive_truncated
 from coadjoint.errors import DerivationError
@@ -36,6 +37,7 @@ from coadjoint.spec.model import Variable
 from coadjoint.spec.spatial import turning_rows
 
 
+@once
 def derive_family(equations: Equations) -> Family:
     """The equations of the generic member.
 
