@@ -93,6 +93,7 @@ class Connection:
         size: Rows of its matrix.
         entries: Those that are not 0, by row and column: texts in fields and parameters.
         has_ends: Whether it goes from one end of a line to the other, and not around a circle.
+        velocity: Of a strand likewise the entries of psi^-1 dpsi/dt, or of (dpsi/dt) psi^-1.
     """
 
     def __init__(
@@ -103,9 +104,11 @@ class Connection:
         size: int,
         entries: Mapping[tuple[int, int], str],
         has_ends: bool = False,
+        velocity: Mapping[tuple[int, int], str] = MappingProxyType({}),
     ) -> None:
         self.name, self.side, self.length = name, side, length
         self.size, self.entries, self.has_ends = size, entries, has_ends
+        self.velocity = velocity
 
 
 class PrincipalSymbol:

@@ -14,6 +14,7 @@ from coadjoint.algebra.matrices import take_image
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError, KernelArgumentError
 from coadjoint.prove.declaration import find_connections
+from coadjoint.solve import strands
 from coadjoint.solve.strands import transport
 from coadjoint.spec import read_spec_text
 from tests.specs import emitted, shipped
@@ -156,6 +157,70 @@ def test_the_trace_of_the_holonomy_is_conserved_to_the_order_of_differences():
     assert min(wrong) > 0.1
 
 
+def slope_in_time(frames, spacing):
+    """Derivatives of order 6 at inner samples, by central differences."""
+    weights = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+    count = frames.shape[-1]
+    return (
+        sum(
+            w * (frames[..., 3 + k : count - 3 + k] - frames[..., 3 - k : count - 3 - k])
+            for k, w in weights.items()
+        )
+        / spacing
+    )
+
+
+@pytest.mark.parametrize("name", ["spin_chain", "two_time_body"])
+def test_all_points_move_by_their_velocities(name):
+    """g^T dg/dt is Omega at each point, though the first one alone was followed in time."""
+    own, samples = system(name, 64), 81
+    given = {"method": "dop853", "rtol": 1e-11, "atol": 1e-12, "target": "numpy"}
+    motion = own.simulate(start(64), (0.0, 4.0), samples=samples, **given)
+    known = dict(zip(own.PARAMETERS.components, motion.parameters, strict=True))
+    inertia, B = (np.array([known.get(f"{x}{n}", 0.0) for n in (1, 2, 3)]) for x in "IB")
+    Omega = (motion["Pi"] - B[:, None, None] * motion["Xi"]) / inertia[:, None, None]
+    frames = motion.frames(moving=True)
+    np.testing.assert_array_equal(frames[..., 0], motion.frames()[..., 0])
+    for point in (0, 20, 64):
+        g = frames[:, :, point]
+        found = np.einsum("jit,jkt->ikt", g[..., 3:-3], slope_in_time(g, 4.0 / (samples - 1)))
+        expected = hat(Omega[:, point % 64, 3:-3])
+        np.testing.assert_allclose(found, expected, atol=2e-5)
+        assert np.abs(found - hat(Omega[:, 32, 3:-3])).max() > 0.05
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_first_point_is_followed_with_order_six(side):
+    """dg/dt = g Omega on the left, Omega g on the right, by SciPy, at uneven times."""
+
+    def turn(t):
+        return hat(np.array([np.sin(t), 0.5 * np.cos(2 * t), 0.3 + 0 * t]))
+
+    def slope(t, g):
+        g = g.reshape(3, 3)
+        return (g @ turn(t) if side == "left" else turn(t) @ g).ravel()
+
+    errors = []
+    for count in (21, 41):
+        times = np.linspace(0, 2, count) ** 1.2
+        known = solve_ivp(slope, (0, times[-1]), np.eye(3).ravel(), rtol=1e-12, atol=1e-13)
+        found = strands._follow(turn(times), times, side)
+        assert found.shape == (3, 3, count)
+        errors.append(np.abs(found[..., -1] - known.y[:, -1].reshape(3, 3)).max())
+        other = strands._follow(turn(times), times, {"left": "right", "right": "left"}[side])
+        assert np.abs(other[..., -1] - known.y[:, -1].reshape(3, 3)).max() > 0.1
+    assert errors[1] < 1e-7
+    assert np.log2(errors[0] / errors[1]) > 5
+
+
+def test_a_single_sample_leaves_nothing_to_follow():
+    """And the message asks for more."""
+    motion = system("spin_chain", 16).simulate(start(16), (0.0, 0.1), samples=1, target="numpy")
+    assert motion.frames().shape[-1] == 1
+    with pytest.raises(KernelArgumentError, match="Ask simulate for more samples"):
+        motion.frames(moving=True)
+
+
 def test_frames_of_a_batch_are_those_of_its_members():
     """``(n, n, N + 1, *batch, T)``, with a length of each."""
     own = system("two_time_body", 16)
@@ -236,7 +301,9 @@ def test_a_chain_with_ends_has_connections_of_its_strain_alone():
     open_space = replace(chain.spec.space, ends="fixed")
     assert open_space.has_ends
     spec = replace(chain.spec, space=open_space)
-    (found,) = find_connections(SimpleNamespace(setting=chain.setting, spec=spec))
+    (found,) = find_connections(
+        SimpleNamespace(setting=chain.setting, spec=spec, exact=chain.exact, close=chain.close)
+    )
     assert (found.name, found.has_ends) == ("Xi", True)
     around = find_connections(chain)
     assert [each.has_ends for each in around] == [False] * 3

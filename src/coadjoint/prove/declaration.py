@@ -8,7 +8,7 @@ Read next: `coadjoint.render.kernels`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -33,7 +33,7 @@ from coadjoint.derive.pairs import find_matrix_at
 from coadjoint.derive.records import Emitted
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.truncated import tell_motion
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element, Field, element_text
 from coadjoint.families import Connection, Family, PrincipalSymbol
 from coadjoint.lower.family_kinks import name_kinks, name_pair_kinks
 from coadjoint.lower.loops import Loops
@@ -276,14 +276,10 @@ def find_connections(first: Equations) -> tuple[Connection, ...]:
     numbers = (x for each in matrices for x in each.values())
     if strains and matrices and all(isinstance(x, int | Fraction) for x in numbers):
         (strain,) = strains
-        sums: dict[tuple[int, int], list[Element]] = {}
-        for name, matrix in zip(strain.components, matrices, strict=True):
-            for place, value in matrix.items():
-                sums.setdefault(place, []).append(field[name] * value)
-        entries = {place: element_text(field, field.sum(own)) for place, own in sums.items()}
-        rows = size(matrices)
-        own = (strain.name, spec.invariance, space.length, rows, entries)
-        found.append(Connection(*own, has_ends=space.has_ends))
+        entries = _tell_matrix(field, matrices, setting.elements(strain.components))
+        velocity = _tell_matrix(field, matrices, _find_velocities(first))
+        own = (strain.name, spec.invariance, space.length, size(matrices), entries)
+        found.append(Connection(*own, has_ends=space.has_ends, velocity=velocity))
     if spec.lax is not None and not space.has_ends:
         for value in spec.lax.values:
             parts = find_matrix_at(setting, value)
@@ -291,6 +287,27 @@ def find_connections(first: Equations) -> tuple[Connection, ...]:
             rows = spec.lax.L.shape[0]
             found.append(Connection(f"L({value})", "left", space.length, rows, entries))
     return tuple(found)
+
+
+def _find_velocities(first: Equations) -> tuple[Element, ...]:
+    """The velocities of a strand by its momenta and strains; none where these do not tell them."""
+    setting, energy = first.setting, first.exact.energy
+    if energy is None:
+        return ()
+    found = setting.field.gradient(first.close(energy), setting.momenta)
+    known = {*setting.state, *setting.parameters}
+    return () if any(setting.field.reach(each) - known for each in found) else tuple(found)
+
+
+def _tell_matrix(
+    field: Field, matrices: Sequence[Mapping[tuple[int, int], Any]], parts: Sequence[Element]
+) -> dict[tuple[int, int], str]:
+    """A sum of the matrices of an algebra, by row and column as text; empty without parts."""
+    sums: dict[tuple[int, int], list[Element]] = {}
+    for part, matrix in zip(parts, matrices, strict=bool(parts)):
+        for place, value in matrix.items():
+            sums.setdefault(place, []).append(part * value)
+    return {place: element_text(field, field.sum(own)) for place, own in sums.items()}
 
 
 def _name_process(name: str) -> Quantity:

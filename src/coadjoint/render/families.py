@@ -346,9 +346,13 @@ def _tell_spheres(context: FamilyContext) -> str:
 def _tell_connection(connection: Connection) -> list[str]:
     """A connection, as a generated package declares it."""
     names = map(quote, (connection.name, connection.side, connection.length))
-    entries = (f"{place}: {quote(text)}" for place, text in connection.entries.items())
+    tables = [
+        "{" + ", ".join(f"{place}: {quote(text)}" for place, text in entries.items()) + "}"
+        for entries in (connection.entries, connection.velocity)
+    ]
     ends = ["True"] * connection.has_ends
-    return [*names, str(connection.size), "{" + ", ".join(entries) + "}", *ends]
+    velocity = [f"velocity={tables[1]}"] if connection.velocity else []
+    return [*names, str(connection.size), tables[0], *ends, *velocity]
 
 
 def _tell_texts(record: Spectral | PrincipalSymbol | Torus | None) -> dict[str, Any]:

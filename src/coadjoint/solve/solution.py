@@ -354,18 +354,23 @@ class Solution:
             return dict(zip(names, last, strict=True))
         return dict(zip(names, self.state[:, -1].tolist(), strict=True))
 
-    def frames(self) -> Array:
+    def frames(self, *, moving: bool = False) -> Array:
         """The group elements along a strand, ``(n, n, N + 1, *batch, T)``, from 1 at s = 0 on.
 
         The last one is the holonomy, whose trace is conserved up to the order of the differences.
         Between ends there are N of them, and the holonomy is conserved where they are clamped.
 
+        Args:
+            moving: Whether the element at s = 0 is 1 at the first sample alone and moves by the
+                velocity there: g(s, t), as of a rod in space. It is followed from sample to sample,
+                with an error of the sixth power of their distance.
+
         Raises:
-            KernelArgumentError: The system is no strand.
+            KernelArgumentError: The system is no strand, or has no velocities to move by.
         """
         from coadjoint.solve.strands import find_frames
 
-        return find_frames(self)
+        return find_frames(self, moving=moving)
 
     def traces(self) -> dict[str, Array]:
         """The traces of holonomies around a circle of fields, ``(*batch, T)`` each, by their names.

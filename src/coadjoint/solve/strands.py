@@ -7,6 +7,11 @@ length L this is the holonomy M. Zero curvature makes :math:`\partial_t M = [M, 
 the trace of each power of M is an integral: exactly of the fields, and of N points up to the order
 of their differences.
 
+The first point itself moves by :math:`g^{-1} \partial_t g = \Omega`, or by
+:math:`(\partial_t g) g^{-1}`, from 1 at the first sample on: by the same steps over time, with the
+polynomial through the six nearest samples, so that its error falls with the sixth power of their
+distance. Then :math:`g(s, t) = g(0, t) \psi(s, t)`, or :math:`\psi(s, t)\, g(0, t)`.
+
 Between two points of a circle the field is that of its Fourier series, and on a line with ends the
 polynomial through the six nearest points. The step is Magnus's of order 6 at three points of Gauss.
 For the matrices of a group it is in the group but for rounding. Between ends M turns with both,
@@ -28,6 +33,8 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from coadjoint.families import Connection
@@ -38,12 +45,18 @@ if TYPE_CHECKING:
 
 #: Points of the polynomial that stands for a field between ends.
 NEAREST: Final = 6
+#: Samples between which the first point of a strand is followed, at the least.
+FEWEST: Final = 2
 #: Gauss's points in a step of length 1.
 NODES: Final = (0.5 - 15**0.5 / 10, 0.5, 0.5 + 15**0.5 / 10)
 
 
-def find_frames(solution: Solution) -> Array:
+def find_frames(solution: Solution, *, moving: bool = False) -> Array:
     """The group elements at all points of a strand by that at its first point.
+
+    Args:
+        solution: Of a strand.
+        moving: Whether the first point moves from 1 at the first sample on, and with it the others.
 
     Returns:
         ``(n, n, N + 1, *batch, T)``: at s = 0, L/N, ..., L of a circle, and
@@ -62,7 +75,33 @@ def find_frames(solution: Solution) -> Array:
             found=system.name,
             expected="a strand",
         )
-    return _find_transports(solution, strands[0])
+    (strand,) = strands
+    along = _find_transports(solution, strand)
+    if not moving:
+        return along
+    if not strand.velocity:
+        raise KernelArgumentError(
+            f"velocities of {system.name} are no functions of its momenta and strains; expected "
+            "moving=False.",
+            found=True,
+            expected=False,
+        )
+    if len(solution) < FEWEST:
+        raise KernelArgumentError(
+            f"the solution has the number of samples {len(solution)}; expected at least {FEWEST}, "
+            "between which the first point is followed. Ask simulate for more samples.",
+            found=len(solution),
+            expected=FEWEST,
+        )
+    velocity = _evaluate(solution, strand, strand.velocity)[:, :, 0]
+    first = _follow(np.moveaxis(velocity, -1, 2), solution.time, strand.side)
+    first = np.moveaxis(first, 2, -1)[:, :, np.newaxis]
+    product = "ij...,jk...->ik..."
+    return np.asarray(
+        np.einsum(product, first, along)
+        if strand.side == "left"
+        else np.einsum(product, along, first)
+    )
 
 
 def find_traces(solution: Solution) -> dict[str, Array]:
@@ -95,23 +134,35 @@ def find_traces(solution: Solution) -> dict[str, Array]:
 
 def _find_transports(solution: Solution, connection: Connection) -> Array:
     """The transports of a connection, by the texts of its entries."""
+    matrix = _evaluate(solution, connection, connection.entries)
+    length = _name_parameters(solution)[connection.length]
+    return transport(matrix, length, connection.side, has_ends=connection.has_ends)
+
+
+def _name_parameters(solution: Solution) -> dict[str, Any]:
+    """The components of parameters, with an axis for samples where there are several members."""
+    rows = [solution.parameters[n] for n in range(solution.system.PARAMETERS.size)]
+    if solution.batch:
+        rows = [row[..., np.newaxis] if np.ndim(row) else row for row in rows]
+    return dict(zip(solution.system.PARAMETERS.components, rows, strict=True))
+
+
+def _evaluate(
+    solution: Solution, connection: Connection, entries: Mapping[tuple[int, int], str]
+) -> Array:
+    """A matrix at all points and samples, ``(n, n, N, *batch, T)``, by the texts of its entries."""
     from coadjoint.solve.formulas import Formula  # it reads specs, which few runs need
 
     system, shape = cast("FamilySystem", solution.system), (*solution.batch, len(solution))
-    rows = [solution.parameters[n] for n in range(system.PARAMETERS.size)]
-    if solution.batch:
-        rows = [row[..., np.newaxis] if np.ndim(row) else row for row in rows]
-    known: dict[str, Any] = dict(zip(system.PARAMETERS.components, rows, strict=True))
-    length = known[connection.length]
-    own = system.size
+    known, own = _name_parameters(solution), system.size
     known |= zip(system.own_state, solution.state.reshape(-1, own, *shape), strict=True)
     matrix = np.zeros((connection.size, connection.size, own, *shape))
-    for place, text in connection.entries.items():
+    for place, text in entries.items():
         formula = Formula(text, dict.fromkeys(known, ()), "an entry of a connection")
         flat = {x: np.broadcast_to(known[x], (own, *shape)).reshape(-1) for x in formula.names}
         value, _ = formula.evaluate(flat)
         matrix[place] = np.broadcast_to(value, (matrix[place].size,)).reshape(own, *shape)
-    return transport(matrix, length, connection.side, has_ends=connection.has_ends)
+    return matrix
 
 
 def transport(
@@ -135,13 +186,32 @@ def transport(
     """
     points = np.moveaxis(connection, (0, 1, 2), (-2, -1, 0))  # (N, ..., n, n)
     count = len(points) - has_ends
-    shift = _interpolate if has_ends else _shift
-    if side == "left":
-        points = np.swapaxes(points, -1, -2)  # the transpose of psi stands on the right
     h = np.asarray(length)[..., np.newaxis, np.newaxis] / count
-    steps = find_steps([h * shift(points, node) for node in NODES])
-    frames = np.empty((count + 1, *points.shape[1:]))
-    frames[0] = np.eye(points.shape[-1])
+    places = np.arange(len(points), dtype=float)
+    nodes = [_interpolate(points, places, x) if has_ends else _shift(points, x) for x in NODES]
+    return _multiply([h * node for node in nodes], side)
+
+
+def _follow(velocity: Array, times: Array, side: str) -> Array:
+    """The solution of ``dg/dt = g Omega``, or of ``Omega g`` on the right, from 1 at times.
+
+    Args:
+        velocity: Omega at these times, ``(n, n, T, ...)``.
+        times: T of them, which grow.
+        side: As of `transport`.
+    """
+    points = np.moveaxis(velocity, (0, 1, 2), (-2, -1, 0))
+    h = np.diff(times).reshape(-1, *[1] * (points.ndim - 1))
+    return _multiply([h * _interpolate(points, times, node) for node in NODES], side)
+
+
+def _multiply(nodes: list[Array], side: str) -> Array:
+    """Products of steps from 1 on, ``(n, n, steps + 1, ...)``, of what `find_steps` takes."""
+    if side == "left":
+        nodes = [np.swapaxes(x, -1, -2) for x in nodes]  # the transpose of psi is on the right
+    steps = find_steps(nodes)
+    frames = np.empty((len(steps) + 1, *steps.shape[1:]))
+    frames[0] = np.eye(steps.shape[-1])
     for n, step in enumerate(steps):
         frames[n + 1] = step @ frames[n]
     if side == "left":
@@ -169,15 +239,15 @@ def _shift(points: Array, part: float) -> Array:
     return shifted
 
 
-def _interpolate(points: Array, part: float) -> Array:
-    """A field between ends, a part of a step behind each point but the last, by polynomials."""
+def _interpolate(points: Array, places: Array, part: float) -> Array:
+    """What has values at places, a part of a step behind each but the last, by polynomials."""
     steps, width = len(points) - 1, min(NEAREST, len(points))
     first = np.clip(np.arange(steps) - width // 2 + 1, 0, len(points) - width)
-    place = np.arange(steps) + part - first
+    place = places[:-1] + part * np.diff(places)
     found = np.zeros((steps, *points.shape[1:]))
     for k in range(width):
-        others = (m for m in range(width) if m != k)
-        weight = np.prod([(place - m) / (k - m) for m in others], axis=0)
+        own, others = places[first + k], [places[first + m] for m in range(width) if m != k]
+        weight = np.prod([(place - x) / (own - x) for x in others], axis=0)
         found += np.reshape(weight, (-1, *[1] * (points.ndim - 1))) * points[first + k]
     return found
 
