@@ -87,7 +87,7 @@ def test_methods_are_listed_with_what_decides(run):
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
         ("toda_lattice", "do not apply: its solvers are loops over equal members, without it."),
         ("kdv", "do not apply: its solvers are loops over points, without it."),
-        ("bloch", '"auto" with step= takes dop853.'),
+        ("tippe_top", '"auto" with step= takes dop853.'),
     ],
 )
 def test_methods_that_do_not_apply_say_why(run, system, said):

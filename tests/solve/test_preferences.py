@@ -17,7 +17,7 @@ ORBIT, SLEIGH = [1.0, 0.0, 0.0, 0.0, 1.1, 0.2], np.full(chaplygin_sleigh.STATE.s
         (heavy_top, TOP, "splitting4"),
         (kepler, ORBIT, "splitting4"),
         (chaplygin_sleigh, SLEIGH, "gauss4"),
-        (bloch, BODY, "dop853"),
+        (bloch, BODY, "discrete_gradient"),
     ],
 )
 def test_auto_with_a_step_takes_the_default(system, start, expected):
