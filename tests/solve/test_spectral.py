@@ -138,6 +138,23 @@ def test_a_spec_is_loaded_with_them(tmp_path):
     assert loaded.size == 32
 
 
+def test_fourier_derivatives_need_no_more_points_than_a_wave():
+    """Three; differences of so few points have no equations, and are not gone back to."""
+    few = kdv.system.with_derivatives("fourier").resize({"s": 3})
+    m = np.array([0.3, -0.1, 0.2])
+    k = np.pi * np.arange(2)  # of a circle of length 2
+    slope = lambda f, n: np.fft.irfft((1j * k) ** n * np.fft.rfft(f), 3)  # noqa: E731
+    expected = -(m * slope(m, 1) + slope(m * m, 1)) - 0.000484 * slope(m, 3)
+    np.testing.assert_allclose(few.rhs(m), expected, rtol=1e-12)
+    assert pickle.loads(pickle.dumps(few)).size == 3
+    with pytest.raises(KernelArgumentError, match=r"is 2; expected .* at least 3, from which on a"):
+        few.resize({"s": 2})
+    with pytest.raises(
+        KernelArgumentError, match=r"is 3; expected .* at least 9, from which on its"
+    ):
+        few.with_derivatives("differences")
+
+
 def test_other_names_and_systems_are_refused():
     """A name that is none, and a system without fields."""
     with pytest.raises(KernelArgumentError, match="'chebyshev'; expected 'differences'"):
