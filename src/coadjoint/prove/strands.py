@@ -15,7 +15,7 @@ Read next: `coadjoint.prove.fields`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -42,14 +42,53 @@ def about_strand(first: Equations) -> Iterator[Examined]:
             "lax",
             partial(_decide_curvature, first, strain, energy),
         )
-    turn = "-" if is_left else ""
-    for each in (each for each in setting.advected if not each.strain):
+    for each in list_turning(first):
         yield (
-            f"d{each.name}/d{s} = {turn}{strain.name} {each.name} holds at all times if it does at "
-            "the beginning",
+            f"{tell_turn(first, each)} holds at all times if it does at the beginning",
             "lax",
             partial(_decide_propagation, first, strain, each, energy),
         )
+
+
+def list_turning(first: Equations) -> tuple[Variable, ...]:
+    """The advected quantities that may turn along a strand; none without a strain."""
+    advected = first.setting.advected
+    is_strand = any(each.strain for each in advected)
+    return tuple(each for each in advected if is_strand and not each.strain)
+
+
+def tell_turn(first: Equations, each: Variable) -> str:
+    """How an advected quantity turns along a strand: ``da/ds = -Xi a``."""
+    (strain,), space = (x for x in first.setting.advected if x.strain), first.spec.space
+    assert space is not None, first.spec.name
+    sign = "-" if first.spec.invariance == "left" else ""
+    return f"d{each.name}/d{space.name} = {sign}{strain.name} {each.name}"
+
+
+def turn_along(first: Equations) -> Callable[[Element], Element]:
+    """What puts ``-rho(Xi) a`` in the place of ``da/ds``, and so of all derivatives of a."""
+    setting, jets = first.setting, jets_of(first.setting)
+    field, turning = setting.field, list_turning(first)
+    (strain,) = (x for x in setting.advected if x.strain)
+    slopes = dict[str, Element]()
+    for each in turning:
+        act, a = setting.actions[each.name].act, setting.elements(each.components)
+        turned = act(setting.elements(strain.components), a)
+        slopes |= {name: -setting.sign * x for name, x in zip(each.components, turned, strict=True)}
+
+    def turn(element: Element) -> Element:
+        named = (jets.orders[x] for x in field.reach(element) & jets.orders.keys())
+        top = max((order for name, order in named if name in slopes), default=0)
+        for order in range(top, 0, -1):  # what a higher one gives has lower ones
+            values = {
+                jets.towers[name][order]: jets.total(slope, order - 1)
+                for name, slope in slopes.items()
+                if jets.towers[name][order] in field.reach(element)
+            }
+            element = field.substitute(element, values)
+        return element
+
+    return turn
 
 
 def _decide_curvature(first: Equations, strain: Variable, energy: Element) -> Decision:
