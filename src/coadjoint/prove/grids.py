@@ -177,7 +177,8 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
             continue  # what the field changes has no order
         found = Discovery("the variation of its rate over the points is not 0", "on the grid")
         yield (
-            f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N{along and f',{along}'}",
+            f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N"
+            f"{',' * bool(along)}{along}",
             "conserved",
             partial(give, found),
         )
