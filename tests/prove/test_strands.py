@@ -1,17 +1,20 @@
 """Claims about strands: the holonomy, and advected quantities along a strand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
+from coadjoint.algebra.matrices import take_image
 from coadjoint.derive import derive
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.prove import Verdict, fluxes, prove
 from coadjoint.prove.certificate import failure_text
 from coadjoint.prove.fluxes import decide_law
 from coadjoint.prove.strands import about_strand
+from coadjoint.spec import read_spec_text
 from tests.bodies.lattices import TOPS, strand
-from tests.specs import emitted
+from tests.specs import emitted, shipped
 
 #: A heavy top at each point, from the left, and what makes it one from the right.
 RIGHT = ('invariance = "left"', 'invariance = "right"')
@@ -23,7 +26,7 @@ def test_the_holonomy_of_a_strand_keeps_its_trace(name, monkeypatch):
     """Left and right invariant; with the other sign of the bracket the curvature is not zero."""
     first = emitted(name)
     ((statement, kind, decide),) = about_strand(first)
-    side = "S psi" if name == "sp2_strand" else "psi Xi"
+    side = "N S psi" if name == "sp2_strand" else "psi Xi"
     assert statement == (
         f"the trace of the holonomy of dpsi/ds = {side} around the circle is conserved"
     )
@@ -34,6 +37,26 @@ def test_the_holonomy_of_a_strand_keeps_its_trace(name, monkeypatch):
     sign = first.setting.sign
     monkeypatch.setattr(type(first.setting), "sign", property(lambda _: -sign))
     assert decide().verdict is Verdict.REFUTED
+
+
+def test_the_matrix_of_a_bracket_is_that_between_the_factors():
+    """A number in its place is written out; brackets alone have the adjoint action."""
+    text = shipped("sp2_strand").path.read_text(encoding="utf-8")
+    old = 'N = { shape = [1], form = "antisymmetric"'
+    assert old in text
+    twice = text.replace("X*N*Y - Y*N*X", "2*X*N*Y - 2*Y*N*X")
+    ((statement, _, decide),) = about_strand(derive(read_spec_text(twice, "twice.toml")))
+    assert "dpsi/ds = [[0, 2*N12], [-2*N12, 0]] S psi around" in statement
+    assert decide().verdict is Verdict.PROVED
+    bare = emitted("spin_chain")
+    algebra = take_image(bare.setting.algebra, matrices=())
+    spoiled = SimpleNamespace(
+        spec=bare.spec,
+        exact=bare.exact,
+        setting=SimpleNamespace(algebra=algebra, advected=bare.setting.advected),
+    )
+    ((statement, _, _),) = about_strand(spoiled)
+    assert "dpsi/ds = psi ad(Xi) around" in statement
 
 
 def tops(*changes):

@@ -19,9 +19,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
+from coadjoint.algebra.matrices import SparseMatrix, product, size
 from coadjoint.derive import Equations
 from coadjoint.derive.fields.jets import jets_of
-from coadjoint.exact import Element
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.sections.state import Variable
@@ -36,7 +38,8 @@ def about_strand(first: Equations) -> Iterator[Examined]:
     (strain,), s = strains, space.name
     is_left = first.spec.invariance == "left"
     if not space.has_ends:
-        side = f"psi {strain.name}" if is_left else f"{strain.name} psi"
+        turned = tell_matrix(first, strain)
+        side = f"psi {turned}" if is_left else f"{turned} psi"
         yield (
             f"the trace of the holonomy of dpsi/d{s} = {side} around the circle is conserved",
             "lax",
@@ -48,6 +51,33 @@ def about_strand(first: Equations) -> Iterator[Examined]:
             "lax",
             partial(_decide_propagation, first, strain, each, energy),
         )
+
+
+def list_matrices(setting: Setting) -> list[SparseMatrix]:
+    """Matrices of a basis whose bracket is the commutator, entries in the field; empty if unknown.
+
+    Where the bracket is ``X N Y - Y N X`` the products N X have this one.
+    """
+    algebra = setting.algebra
+    if algebra.middle:
+        return [product(algebra.middle, each) for each in algebra.elements]
+    return [] if algebra.elements else [*algebra.matrices]
+
+
+def tell_matrix(first: Equations, strain: Variable) -> str:
+    """By what a strain moves psi: its matrix, N times that, or its adjoint action."""
+    setting, algebra = first.setting, first.setting.algebra
+    if not list_matrices(setting):
+        return f"ad({strain.name})"
+    if not algebra.middle:
+        return strain.name
+    field, places = setting.field, range(size(algebra.elements))
+    entries = [[algebra.middle.get((i, j), 0) + field.zero for j in places] for i in places]
+    rows = tuple(map(tuple, entries))
+    named = (each.name for each in first.spec.parameters if setting.values[each.name] == rows)
+    texts = (", ".join(element_text(field, x) for x in row) for row in rows)
+    middle = next(named, f"[[{'], ['.join(texts)}]]")
+    return f"{middle} {strain.name}"
 
 
 def list_turning(first: Equations) -> tuple[Variable, ...]:
