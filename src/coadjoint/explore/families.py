@@ -42,6 +42,8 @@ def describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> d
     state = list_quantities(context.state, spec)
     for each in state:
         each["default"] = _spread(each, context, size)
+        if spec.space is not None and context.index.size and each["default"] is None:
+            each["default"] = [0.0] * (size * len(each["components"]))
     return {
         **describe(spec, rendered, context.unit_of_time),
         "tables": {

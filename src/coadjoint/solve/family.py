@@ -128,7 +128,7 @@ class FamilySystem(System):
         super().__init__(
             name,
             file,
-            Quantities(*(self._repeat(each, size) for each in state.values())),
+            Quantities(*(self._begin_with(each, size) for each in state.values())),
             Quantities(*shared.values(), *(self._repeat(each, size) for each in indexed.values())),
             observables,
             {
@@ -282,6 +282,7 @@ class FamilySystem(System):
         if self.index.of_rows:
             return "rows"
         is_field = (self.symbol, self.spectral, self.profiles) != (None, None, None)
+        is_field |= self.torus is not None
         return "points" if is_field else "members"
 
     def _copy(self, index: Index, **changed: Any) -> Self:
@@ -329,6 +330,14 @@ class FamilySystem(System):
             default = self._begin(quantity.name)
         shape = (*quantity.shape, size)
         return replace(quantity, shape=shape, components=components, default=default)
+
+    def _begin_with(self, quantity: Quantity, size: int) -> Quantity:
+        """The same of the state: a field begins at 0 where nothing else is said."""
+        repeated = self._repeat(quantity, size)
+        known = self._defaults.keys() | (self.profiles.formulas.keys() if self.profiles else ())
+        if self.counted != "points" or repeated.default is not None or quantity.name in known:
+            return repeated
+        return replace(repeated, default=(0.0,) * len(repeated.components))
 
     def _begin(self, field: str) -> tuple[float, ...] | None:
         """A field at the beginning, component after component.
