@@ -24,6 +24,9 @@ from typing import Any, Final
 
 #: Parts of a sum over members, and members that are computed together where there are sums.
 LANES: Final = 8
+#: The fewest points of a circle on which a wave moves, and the fewest along each coordinate of a
+#: plane of which a wave is kept.
+LEAST_AROUND, LEAST_IN_PLANE = 3, 4
 #: A SymPy symbol, and a SymPy expression; SymPy itself is not loaded here.
 Symbol = Any
 Tree = Any

@@ -80,8 +80,8 @@ def load(
     note_use(folder)
     system = load_folder(folder / source.stem)
     chosen = {} if own else sizes
-    system = system.resize(chosen) if chosen or lacks_size(system) else system
-    return system.with_derivatives(derivatives)
+    system = system.with_derivatives(derivatives)  # which may need fewer points
+    return system.resize(chosen) if chosen or lacks_size(system) else system
 
 
 def _keep_lattice(strand: Path, sizes: Mapping[str, int], seconds: float | None) -> Path:

@@ -7,12 +7,18 @@ import numpy as np
 import pytest
 import sympy
 
+from coadjoint.derive import derive
+from coadjoint.derive.fields import profiles
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, list_rows, narrow
 from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil, width_of
+from coadjoint.derive.fields.torus import make_torus
 from coadjoint.derive.reference import Reference
+from coadjoint.errors import KernelArgumentError, ResourceError
 from coadjoint.exact import Field
+from coadjoint.prove import prove
+from coadjoint.spec import read_spec_text
 from tests.families import family_of
 from tests.fields import (
     breaking_wave,
@@ -243,3 +249,46 @@ def test_the_velocity_of_a_ring_solves_its_equation(order):
         )
         assert field.is_zero(field.sum(terms) - field[ring.setting.state[i]])
     assert len(equation.factors) == 1 + order // 2
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "message"),
+    [
+        ("kdv", "size = 256", "size = 4", r"of s of kdv is 4; expected .* at least 9, from which"),
+        ("euler_2d", "size = 32", "size = 3", r"of x of euler_2d is 3; expected .* at least 4"),
+    ],
+)
+def test_too_few_points_of_a_spec_are_refused(name, old, new, message):
+    """As those that are chosen, with the file; the least number is accepted."""
+    text = shipped(name).path.read_text(encoding="utf-8")
+    spec = read_spec_text(text.replace(old, new), f"{name}.toml")
+    make = make_torus if spec.in_plane else make_grid
+    with pytest.raises(KernelArgumentError, match=rf"^{name}\.toml: the size {message}") as found:
+        make(derive(spec))
+    assert found.value.exit_status == 2
+    enough = text.replace(old, f"size = {found.value.expected}")
+    assert make(derive(read_spec_text(enough, f"{name}.toml"))).family.totals
+
+
+def test_points_of_a_spec_beyond_the_memory_are_refused_where_it_is_read():
+    """Of this machine, and of what works on a spec; the advice is to choose them later."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    for size, message in (
+        (10**12, "10{12} rows at the size of s that is chosen, which take about 1000000.0 GB"),
+        (2 * 10**6, r"2000000 rows at .* half of the 2\.1 GB in which a spec .* Declare a smaller"),
+    ):
+        with pytest.raises(ResourceError, match=message):
+            read_spec_text(text.replace("size = 256", f"size = {size}"), "kdv.toml")
+    plane = shipped("euler_2d").path.read_text(encoding="utf-8")
+    with pytest.raises(ResourceError, match=r"10{12} rows at the size of x and y"):
+        read_spec_text(plane.replace("size = 32", f"size = {10**6}"), "euler_2d.toml")
+
+
+def test_a_grid_does_not_look_at_each_point(monkeypatch):
+    """Profiles are formulas: those of many points are asked for by nobody."""
+    monkeypatch.setattr(
+        profiles, "evaluate_profile", lambda *_: pytest.fail("a point is looked at")
+    )
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    spec = read_spec_text(text.replace("size = 256", "size = 100000"), "kdv.toml")
+    assert prove(spec).require().claims

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from coadjoint.derive import derive
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import jets_of
@@ -215,6 +216,15 @@ def test_what_differences_keep_is_said_of_each_density():
     assert kept == ["the energy", "the energy", "M"]  # by differences, and by Fourier derivatives
     assert any(s.startswith("J is conserved up to O(h^6)") for s in found)
     assert any("Jacobi identity of the bracket fails" in s for s in found)
+
+
+def test_of_what_the_field_changes_no_order_is_said():
+    """J with the other sign of c is refuted, and is not kept up to O(h^6) by points."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    wrong = text.replace("m^3/2 - c*m_s^2/2", "m^3/2 + c*m_s^2/2")
+    found = statements(make_grid(derive(read_spec_text(wrong, "kdv.toml"))))
+    assert not [s for s in found if s.startswith("J ")]
+    assert [s for s in found if s.startswith("M is conserved")]
 
 
 def test_the_bracket_of_a_magnet_stays_one_on_a_grid():

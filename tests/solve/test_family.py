@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from coadjoint import load, pipeline
+from coadjoint import load, pipeline, sizes
 from coadjoint.cli.program import main
 from coadjoint.errors import CrossCheckError, KernelArgumentError, ResourceError
-from coadjoint.solve import family as families
 from coadjoint.solve import family_steps
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.drift import tell_drift
@@ -184,7 +183,7 @@ def test_too_few_members_are_refused(vortices):
 
 def test_memory_is_looked_at_before_work(ring, monkeypatch):
     """Millions of members on a small machine are refused with both numbers of bytes."""
-    monkeypatch.setattr(families, "find_memory", lambda: 2e9)
+    monkeypatch.setattr(sizes, "find_memory", lambda: 2e9)
     with pytest.raises(ResourceError, match=r"4\.0 GB.*2\.0 GB"):
         ring.resize({"i": 1_000_000})
 

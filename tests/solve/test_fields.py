@@ -2,12 +2,17 @@
 
 import re
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_circulant
 
+from coadjoint.cli.simulate import default_state
 from coadjoint.errors import CoadjointError, KernelArgumentError, ResourceError, ShockWarning
+from coadjoint.families import Profiles
+from coadjoint.solve.quantities import Quantities
+from coadjoint.solve.request import check_state
 from coadjoint.systems import (
     burgers,
     camassa_holm,
@@ -87,6 +92,24 @@ def test_a_run_without_a_state_begins_at_the_profile():
     for count, system in ((256, kdv.system), (32, kdv.system.resize({"s": 32}))):
         expected = np.cos(2 * np.pi * np.arange(count) / count) / 3
         np.testing.assert_allclose(system.STATE["m"].default, expected, atol=1e-15)
+
+
+def test_a_field_of_which_nothing_is_said_begins_at_zero():
+    """For Python and on the command line, where others begin at profiles; a default is kept."""
+    old = spin_chain.system.resize({"s": 32})
+    kept = {"Pi": old.profiles.formulas["Pi"]}
+    for profiles in (Profiles(old.profiles.lengths, kept), None):
+        system = old._copy(old.index, profiles=profiles)
+        assert system.counted == "points"
+        start = np.reshape(check_state(system, None), (6, 32))
+        assert not start[3:].any()
+        assert start[:3].any() == (profiles is not None)
+        assert default_state(system.STATE) == start.ravel().tolist()
+    state, *others = old._declared
+    told = Quantities(state["Pi"], replace(state["Xi"], default=(0.5, 0.0, 1.0)))
+    old._declared = (told, *others)
+    start = np.reshape(check_state(old._copy(old.index, profiles=None), None), (6, 32))
+    np.testing.assert_array_equal(start[3:], np.outer([0.5, 0, 1], np.ones(32)))
 
 
 def test_too_few_points_for_the_differences_are_refused():

@@ -1,5 +1,6 @@
 """Fields by Fourier derivatives: exact waves, what is kept, holonomies, and what is refused."""
 
+import importlib
 import pickle
 import warnings
 
@@ -136,6 +137,50 @@ def test_a_spec_is_loaded_with_them(tmp_path):
     loaded = coadjoint.load(path, sizes={"s": 32}, derivatives="fourier")
     assert isinstance(loaded, SpectralSystem)
     assert loaded.size == 32
+
+
+def test_fourier_derivatives_need_no_more_points_than_a_wave():
+    """Three; differences of so few points have no equations, and are not gone back to."""
+    few = kdv.system.with_derivatives("fourier").resize({"s": 3})
+    m = np.array([0.3, -0.1, 0.2])
+    k = np.pi * np.arange(2)  # of a circle of length 2
+    slope = lambda f, n: np.fft.irfft((1j * k) ** n * np.fft.rfft(f), 3)  # noqa: E731
+    expected = -(m * slope(m, 1) + slope(m * m, 1)) - 0.000484 * slope(m, 3)
+    np.testing.assert_allclose(few.rhs(m), expected, rtol=1e-12)
+    assert pickle.loads(pickle.dumps(few)).size == 3
+    with pytest.raises(KernelArgumentError, match=r"is 2; expected .* at least 3, from which on a"):
+        few.resize({"s": 2})
+    with pytest.raises(
+        KernelArgumentError, match=r"is 3; expected .* at least 9, from which on its"
+    ):
+        few.with_derivatives("differences")
+
+
+@pytest.mark.parametrize(
+    ("name", "sizes", "total"),
+    [("kdv", {"s": 12}, "J"), ("euler_2d", {"x": 8, "y": 8}, "C")],
+)
+def test_an_event_may_name_an_observable(name, sizes, total):
+    """One that points do not keep, of rough fields; it has the value in the states of the event."""
+    system = importlib.import_module(f"coadjoint.systems.{name}").system.resize(sizes)
+    system, own = system.with_derivatives("fourier"), system.OBSERVABLES.rows(total)
+    start = np.random.default_rng(3).normal(size=system.STATE.size)
+    if name == "euler_2d":  # waves up to 2 move, and the mean is 0
+        waves = np.fft.rfft2(start.reshape(8, 8))
+        waves[0, 0], waves[3:6], waves[:, 3:] = 0, 0, 0
+        start = np.fft.irfft2(waves, (8, 8)).ravel()
+    for options in (
+        {"method": "scipy:DOP853", "rtol": 1e-9},
+        {"method": "midpoint", "step": 1 / 64},
+    ):
+        first = system.simulate(start, (0.0, 1.0), samples=9, **options)
+        level = float(np.mean(first.observables[own]))
+        event = f"{total} = {level!r}"
+        run = system.simulate(start, (0.0, 1.0), samples=2, events=[event], **options)
+        (found,) = run.events.values()
+        assert len(found.time) > 0
+        np.testing.assert_allclose(system.observables(found.state)[own], level, rtol=1e-7)
+        assert np.ptp(first.observables[own]) > 1e-3 * abs(level)
 
 
 def test_other_names_and_systems_are_refused():

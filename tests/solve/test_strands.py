@@ -10,7 +10,6 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from coadjoint.algebra.matrices import take_image
 from coadjoint.derive import derive
 from coadjoint.errors import DerivationError, KernelArgumentError
 from coadjoint.prove.declaration import find_connections
@@ -253,14 +252,19 @@ def test_the_chiral_model_has_an_integral_for_each_spectral_parameter(name, is_k
 
 
 def test_the_strain_is_that_of_the_spec():
-    """Field, side, length, and its matrix; sp2_strand's matrices have a parameter."""
+    """Field, side, length, and its matrix."""
     (strand,) = find_connections(emitted("se3_strand"))
     assert (strand.name, strand.side, strand.length, strand.size) == ("X", "left", "L", 4)
     assert strand.entries[1, 2] == "-X1"
     assert strand.entries[2, 1] == "X1"
     assert strand.entries[2, 3] == "X6"
     assert [each.name for each in system("two_time_body", 8).connections] == ["Xi"]
-    assert find_connections(emitted("sp2_strand")) == ()
+    (right,) = find_connections(emitted("sp2_strand"))
+    assert (right.name, right.side, right.size) == ("S", "right", 2)
+    S, N = np.array([[0.3, -0.7], [-0.7, 1.1]]), np.array([[0.0, 2.0], [-2.0, 0.0]])
+    known = {"S11": S[0, 0], "S12": 2 * S[0, 1], "S22": S[1, 1], "N12": 2.0}
+    found = [[eval(right.entries[i, j], {}, known) for j in (0, 1)] for i in (0, 1)]
+    np.testing.assert_allclose(found, N @ S)
     assert find_connections(emitted("kdv")) == ()
 
 
@@ -309,14 +313,29 @@ def test_a_chain_with_ends_has_connections_of_its_strain_alone():
     assert [each.has_ends for each in around] == [False] * 3
 
 
-def test_matrices_that_are_no_numbers_have_no_connections():
-    """Their transports would need the values of parameters."""
-    strand = emitted("se3_strand")
-    number, known = strand.setting.field.number, strand.spec.algebra
-    matrices = tuple({at: number(x) for at, x in each.items()} for each in known.matrices)
-    algebra = take_image(known, matrices=matrices)
-    spec = replace(strand.spec, algebra=algebra)
-    assert find_connections(SimpleNamespace(setting=strand.setting, spec=spec)) == ()
+def test_a_strand_on_symmetric_matrices_keeps_the_trace_of_the_product_with_n():
+    """Of ``psi' = N S psi``, N the inverse of J: g_s g^-1 with S = J g_s g^-1 (Holm 2011, C.4).
+
+    Without N the trace changes by more than a tenth, though S is what is declared.
+    """
+    strand = system("sp2_strand", 48).with_derivatives("fourier")
+    w = 2 * np.pi * np.arange(48) / 48
+    M = [np.cos(w) / 2, 0.3 * np.sin(w), 0.5 + 0 * w]
+    S = [0.3 + 0.2 * np.cos(w), np.sin(w) / 2, 0.1 - 0.2 * np.sin(2 * w)]
+    options = {"samples": 3, "method": "scipy:DOP853", "rtol": 1e-10, "atol": 1e-11}
+    motion = strand.simulate(np.concatenate(M + S), (0.0, 1.0), **options)
+    trace = motion.traces()["S"]
+    np.testing.assert_allclose(trace, trace[0], rtol=1e-8)
+    assert motion.frames().shape == (2, 2, 49, 3)
+    dets = np.linalg.det(np.moveaxis(motion.frames(), (0, 1), (-2, -1)))
+    np.testing.assert_allclose(dets, 1, atol=1e-8)
+    J, S11, S12, S22 = np.array([[0, -1], [1, 0]]), *motion.state.reshape(6, 48, 3)[3:]
+    declared = np.array([[S11, S12 / 2], [S12 / 2, S22]])
+    known = np.einsum("ij,jk...->ik...", np.linalg.inv(J), declared)
+    expected = np.trace(transport(known, 10.0, "right")[:, :, -1])
+    np.testing.assert_allclose(trace, expected, rtol=1e-12)
+    wrong = np.trace(transport(declared, 10.0, "right")[:, :, -1])
+    assert np.ptp(wrong) > 0.1
 
 
 def test_a_pole_of_the_pair_is_no_value():

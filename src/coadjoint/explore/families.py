@@ -6,8 +6,10 @@ Read next: `coadjoint.explore.surfaces`, fields on a surface.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
+from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.explore.records import describe, drop_member, list_quantities, refuse
 from coadjoint.explore.surfaces import describe_surface
 from coadjoint.notation.names import spell
@@ -36,9 +38,12 @@ def describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> d
     driven = (context.shared_noise, context.indexed_noise, context.time)
     if any((*driven, context.shared_inputs, context.indexed_inputs)):
         raise refuse(spec, "something drives it from outside", "a motion that its start decides")
+    context = replace(context, defaults={**context.defaults, **_begin(spec)})
     state = list_quantities(context.state, spec)
     for each in state:
         each["default"] = _spread(each, context, size)
+        if spec.space is not None and context.index.size and each["default"] is None:
+            each["default"] = [0.0] * (size * len(each["components"]))
     return {
         **describe(spec, rendered, context.unit_of_time),
         "tables": {
@@ -67,6 +72,12 @@ def describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> d
             or (_choose_field if spec.space else _choose_member)(spec, context)
         ),
     }
+
+
+def _begin(spec: Spec) -> dict[str, tuple[float, ...]]:
+    """Fields at the beginning, component after component; nothing without a number of points."""
+    sampled = {} if spec.space is None else sample_profiles(spec)
+    return {name: tuple(float(x) for row in rows for x in row) for name, rows in sampled.items()}
 
 
 def _spread(each: dict[str, Any], context: FamilyContext, size: int) -> list[float] | None:

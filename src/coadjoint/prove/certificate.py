@@ -36,6 +36,7 @@ class Shown(StrEnum):
     DIFFERENCE = "the difference"
     RATE_OF_RELATION = "the rate of a relation"
     EIGENVALUE = "the smallest eigenvalue"
+    VARIATION = "the variational derivative of the rate"
 
 
 @dataclass(frozen=True)
@@ -248,7 +249,8 @@ def failure_text(claim: Claim) -> str:
     place += LEAVES[1:] + ":" if claim.shown is Shown.RATE_OF_RELATION else ""
     expected = "none below 0" if claim.shown is Shown.EIGENVALUE else "0"
     fixes = _OWN_FIXES if claim.accepted is None else _FIXES
+    fix = _FIX if claim.shown is Shown.VARIATION else fixes.get(claim.kind, _FIX)
     return (
         f"refuted: {claim.statement}. {place} {claim.shown} is {claim.defect}; expected "
-        f"{expected}. {fixes.get(claim.kind, _FIX)}"
+        f"{expected}. {fix}"
     )

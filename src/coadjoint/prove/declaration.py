@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import sympy
@@ -43,6 +42,7 @@ from coadjoint.methods import JudgedMethod
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.family_methods import FamilyFacts
 from coadjoint.prove.integrals import is_conserved
+from coadjoint.prove.strands import list_matrices
 from coadjoint.render.families import FamilyContext
 from coadjoint.spec import Spec
 from coadjoint.spec.core.components import component_names
@@ -260,8 +260,8 @@ def tell_wave(first: Equations) -> tuple[str, ...]:
 def find_connections(first: Equations) -> tuple[Connection, ...]:
     """The strain of a strand, then L of a declared pair for each of its values.
 
-    Not where matrices of the algebra have parameters or are not known, and of a pair not between
-    ends, where no trace is conserved.
+    Not where matrices of the algebra are not known, and of a pair not between ends, where no trace
+    is conserved.
 
     Raises:
         DerivationError: L has a pole at a value.
@@ -272,9 +272,8 @@ def find_connections(first: Equations) -> tuple[Connection, ...]:
         return ()
     found = list[Connection]()
     strains = [each for each in spec.variables if each.strain]
-    matrices = () if spec.algebra is None else spec.algebra.matrices
-    numbers = (x for each in matrices for x in each.values())
-    if strains and matrices and all(isinstance(x, int | Fraction) for x in numbers):
+    matrices = list_matrices(setting) if strains else []
+    if matrices:
         (strain,) = strains
         entries = _tell_matrix(field, matrices, setting.elements(strain.components))
         velocity = _tell_matrix(field, matrices, _find_velocities(first))

@@ -17,28 +17,26 @@ Read next: `coadjoint.prove.claims`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations
-from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.grid import make_grid
-from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, list_rows, solved
+from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, list_rows
 from coadjoint.derive.fields.operators import Operator, apply, order_of, skew_defects
 from coadjoint.derive.fields.structure import cocycle, field_operator
 from coadjoint.derive.fields.symbol import look_at_symbol
 from coadjoint.derive.fields.torus import make_torus
-from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact import Element, Field
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.fluxes import decide_density, decide_law
 from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
 from coadjoint.prove.strands import about_strand, decide_holonomy
 from coadjoint.prove.torus import about_torus
-from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.prove.zero import Decision, Examined, decide_zero, give, mark_accepted
 
-#: Characters of a flux that a certificate shows.
-SHOWN = 400
 _COVECTORS = ("_xi", "_eta", "_zeta")
 
 
@@ -252,35 +250,10 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
     for place, claim in enumerate(spec.conserved):
         if claim.everywhere != "energy":
             parts = setting.components(claim.formula, emitted)
-            statement = f"the integral of {claim.formula.in_one_line} is conserved"
-            claimed = [(statement, "conserved", partial(decide_density, first, parts))]
+            decision, where = decide_law(first, parts)
+            statement = f"the integral of {claim.formula.in_one_line} is conserved{where}"
+            claimed = [(statement, "conserved", partial(give, decision))]
             yield from mark_accepted(spec, ("claims", "conserved", place), claimed, setting.field)
-
-
-def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
-    """Whether the rates of densities are total derivatives, with the fluxes."""
-    setting, every = equations.setting, jets_of(equations.setting)
-    rates = dict(zip(setting.state, equations.exact.rates, strict=True))
-    texts, moved = list[str](), solved(setting.spec)
-    for part in parts:
-        rate, jets = _find_rate(equations, part, rates), every
-        if moved and any(every.variation(rate).values()):  # then both fields as those of one
-            rate, jets = circle.close(setting, rate), every.only(moved)
-        decision = decide_zero([*jets.variation(rate).values()], setting.field)
-        if decision.verdict is not Verdict.PROVED:
-            method = f"{decision.method} of the variational derivative of its rate"
-            return replace(decision, method=method)
-        fluxes = jets.integrate(-rate)
-        if fluxes is None:
-            texts.append("a flux, since the Euler operator takes its rate to 0")
-            continue
-        assert setting.field.is_zero(jets.diverge(fluxes) + rate), equations.spec.name
-        text = ", ".join(element_text(setting.field, flux) for flux in fluxes)
-        text = f"({text})" if setting.spec.in_plane else text
-        count = sum(len(setting.field.terms(flux)) for flux in fluxes)
-        texts.append(f"the flux {text}" if len(text) <= SHOWN else f"a flux of {count} terms")
-    law = "d/dt + div flux = 0" if setting.spec.in_plane else "d/dt + d/ds flux = 0"
-    return Decision(verdict=Verdict.PROVED, method=f"{law} with {'; '.join(texts)}")
 
 
 def _decide_between_ends(equations: Equations) -> Decision:
@@ -298,16 +271,6 @@ def _decide_between_ends(equations: Equations) -> Decision:
         "velocities or the stresses are 0 at the ends"
     )
     return replace(decision, method=method)
-
-
-def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:
-    """The rate of a density, or one with the same integral where A u = m."""
-    setting, jets = equations.setting, jets_of(equations.setting)
-    if not solved(setting.spec):
-        return jets.rate(part, rates)
-    return setting.field.sum(
-        circle.vary(setting, part, name) * rate for name, rate in rates.items()
-    )
 
 
 def _about_pair(

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Final, TypeVar
+from typing import Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.fields.grid import Grid
@@ -23,8 +23,9 @@ from coadjoint.derive.records import Kept
 from coadjoint.exact import Element
 from coadjoint.poisson.jacobi import schouten_bracket, slopes_by
 from coadjoint.prove.certificate import Verdict
+from coadjoint.prove.fluxes import decide_law
 from coadjoint.prove.leibniz import tell_defect
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, give
 from coadjoint.spec.core.members import member_name
 
 #: Why Fourier derivatives do not obey Leibniz' rule.
@@ -169,22 +170,18 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
         if kept[each.name] is Kept.ALWAYS:
             method = "the variation of its rate over the points of an endless grid is 0"
             decision = Decision(verdict=Verdict.PROVED, method=method)
-            yield f"{each.name} is conserved, {where}", "conserved", partial(_give, decision)
+            yield f"{each.name} is conserved, {where}", "conserved", partial(give, decision)
             continue
+        law, along = decide_law(grid.equations, each.values)
+        if law.verdict is not Verdict.PROVED:
+            continue  # what the field changes has no order
         found = Discovery("the variation of its rate over the points is not 0", "on the grid")
         yield (
-            f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N",
+            f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N"
+            f"{',' * bool(along)}{along}",
             "conserved",
-            partial(_give, found),
+            partial(give, found),
         )
-
-
-Found = TypeVar("Found")
-
-
-def _give(found: Found) -> Found:
-    """What is known already."""
-    return found
 
 
 def _about_jacobi(grid: Grid, where: str) -> Iterator[Examined]:

@@ -15,13 +15,15 @@ Read next: `coadjoint.prove.fields`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
+from coadjoint.algebra.matrices import SparseMatrix, product, size
 from coadjoint.derive import Equations
 from coadjoint.derive.fields.jets import jets_of
-from coadjoint.exact import Element
+from coadjoint.derive.setting import Setting
+from coadjoint.exact import Element, element_text
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.zero import Decision, Examined, decide_zero
 from coadjoint.spec.sections.state import Variable
@@ -36,20 +38,87 @@ def about_strand(first: Equations) -> Iterator[Examined]:
     (strain,), s = strains, space.name
     is_left = first.spec.invariance == "left"
     if not space.has_ends:
-        side = f"psi {strain.name}" if is_left else f"{strain.name} psi"
+        turned = tell_matrix(first, strain)
+        side = f"psi {turned}" if is_left else f"{turned} psi"
         yield (
             f"the trace of the holonomy of dpsi/d{s} = {side} around the circle is conserved",
             "lax",
             partial(_decide_curvature, first, strain, energy),
         )
-    turn = "-" if is_left else ""
-    for each in (each for each in setting.advected if not each.strain):
+    for each in list_turning(first):
         yield (
-            f"d{each.name}/d{s} = {turn}{strain.name} {each.name} holds at all times if it does at "
-            "the beginning",
+            f"{tell_turn(first, each)} holds at all times if it does at the beginning",
             "lax",
             partial(_decide_propagation, first, strain, each, energy),
         )
+
+
+def list_matrices(setting: Setting) -> list[SparseMatrix]:
+    """Matrices of a basis whose bracket is the commutator, entries in the field; empty if unknown.
+
+    Where the bracket is ``X N Y - Y N X`` the products N X have this one.
+    """
+    algebra = setting.algebra
+    if algebra.middle:
+        return [product(algebra.middle, each) for each in algebra.elements]
+    return [] if algebra.elements else [*algebra.matrices]
+
+
+def tell_matrix(first: Equations, strain: Variable) -> str:
+    """By what a strain moves psi: its matrix, N times that, or its adjoint action."""
+    setting, algebra = first.setting, first.setting.algebra
+    if not list_matrices(setting):
+        return f"ad({strain.name})"
+    if not algebra.middle:
+        return strain.name
+    field, places = setting.field, range(size(algebra.elements))
+    entries = [[algebra.middle.get((i, j), 0) + field.zero for j in places] for i in places]
+    rows = tuple(map(tuple, entries))
+    named = (each.name for each in first.spec.parameters if setting.values[each.name] == rows)
+    texts = (", ".join(element_text(field, x) for x in row) for row in rows)
+    middle = next(named, f"[[{'], ['.join(texts)}]]")
+    return f"{middle} {strain.name}"
+
+
+def list_turning(first: Equations) -> tuple[Variable, ...]:
+    """The advected quantities that may turn along a strand; none without a strain."""
+    advected = first.setting.advected
+    is_strand = any(each.strain for each in advected)
+    return tuple(each for each in advected if is_strand and not each.strain)
+
+
+def tell_turn(first: Equations, each: Variable) -> str:
+    """How an advected quantity turns along a strand: ``da/ds = -Xi a``."""
+    (strain,), space = (x for x in first.setting.advected if x.strain), first.spec.space
+    assert space is not None, first.spec.name
+    sign = "-" if first.spec.invariance == "left" else ""
+    return f"d{each.name}/d{space.name} = {sign}{strain.name} {each.name}"
+
+
+def turn_along(first: Equations) -> Callable[[Element], Element]:
+    """What puts ``-rho(Xi) a`` in the place of ``da/ds``, and so of all derivatives of a."""
+    setting, jets = first.setting, jets_of(first.setting)
+    field, turning = setting.field, list_turning(first)
+    (strain,) = (x for x in setting.advected if x.strain)
+    slopes = dict[str, Element]()
+    for each in turning:
+        act, a = setting.actions[each.name].act, setting.elements(each.components)
+        turned = act(setting.elements(strain.components), a)
+        slopes |= {name: -setting.sign * x for name, x in zip(each.components, turned, strict=True)}
+
+    def turn(element: Element) -> Element:
+        named = (jets.orders[x] for x in field.reach(element) & jets.orders.keys())
+        top = max((order for name, order in named if name in slopes), default=0)
+        for order in range(top, 0, -1):  # what a higher one gives has lower ones
+            values = {
+                jets.towers[name][order]: jets.total(slope, order - 1)
+                for name, slope in slopes.items()
+                if jets.towers[name][order] in field.reach(element)
+            }
+            element = field.substitute(element, values)
+        return element
+
+    return turn
 
 
 def _decide_curvature(first: Equations, strain: Variable, energy: Element) -> Decision:

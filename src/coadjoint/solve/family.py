@@ -16,9 +16,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from coadjoint.declared import Quantity
-from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.errors import KernelArgumentError
 from coadjoint.families import Connection, Index, PrincipalSymbol, Profiles, Spectral, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.sizes import HOLD, check_least, check_memory
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.system import System
 
@@ -34,13 +35,8 @@ if TYPE_CHECKING:
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.family_steps import FamilyTwin
 
-#: Bytes of memory for each row of the state and of the parameters: its name and its place among
-#: them, and some arrays of a run (measured: docs/decisions/family-kernels.md).
-ROW_BYTES: Final = 1000
 #: Functions that fields by Fourier derivatives have.
 BY_WAVES: Final = ("rhs", "energy", "observables")
-#: The largest part of the memory of a machine that a System may take.
-SHARE: Final = 0.5
 #: Members with which fresh objects are compared: some blocks, and some behind the last.
 PROBED: Final = 51
 
@@ -124,7 +120,7 @@ class FamilySystem(System):
         self.steppers: dict[tuple[Choice, str], FamilyTwin] = {}
         size = self.size
         counted = state.size + indexed.size + own.size + own_noise.size
-        check_memory(name, self.index, size * counted)
+        check_memory(name, self.counted_by, size * counted)
         self.members = size
         self.NOISE = Quantities(
             *noise.values(), *(self._repeat(each, size) for each in own_noise.values())
@@ -132,7 +128,7 @@ class FamilySystem(System):
         super().__init__(
             name,
             file,
-            Quantities(*(self._repeat(each, size) for each in state.values())),
+            Quantities(*(self._begin_with(each, size) for each in state.values())),
             Quantities(*shared.values(), *(self._repeat(each, size) for each in indexed.values())),
             observables,
             {
@@ -276,11 +272,17 @@ class FamilySystem(System):
         return self._copy(replace(self.index, size=size))
 
     @property
+    def counted_by(self) -> str:
+        """The name of its index."""
+        return self.index.name
+
+    @property
     def counted(self) -> str:
         """What its index counts: ``members``, ``rows`` of matrices, or ``points`` of fields."""
         if self.index.of_rows:
             return "rows"
         is_field = (self.symbol, self.spectral, self.profiles) != (None, None, None)
+        is_field |= self.torus is not None
         return "points" if is_field else "members"
 
     def _copy(self, index: Index, **changed: Any) -> Self:
@@ -328,6 +330,14 @@ class FamilySystem(System):
             default = self._begin(quantity.name)
         shape = (*quantity.shape, size)
         return replace(quantity, shape=shape, components=components, default=default)
+
+    def _begin_with(self, quantity: Quantity, size: int) -> Quantity:
+        """The same of the state: a field begins at 0 where nothing else is said."""
+        repeated = self._repeat(quantity, size)
+        known = self._defaults.keys() | (self.profiles.formulas.keys() if self.profiles else ())
+        if self.counted != "points" or repeated.default is not None or quantity.name in known:
+            return repeated
+        return replace(repeated, default=(0.0,) * len(repeated.components))
 
     def _begin(self, field: str) -> tuple[float, ...] | None:
         """A field at the beginning, component after component.
@@ -393,7 +403,12 @@ _TABLES: Final = {
 
 
 def check_sizes(
-    name: str, index: Index, small: int, sizes: Mapping[str, int], counted: str = "members"
+    name: str,
+    index: Index,
+    small: int,
+    sizes: Mapping[str, int],
+    counted: str = "members",
+    why: str = HOLD,
 ) -> int:
     """The number of members that is asked for.
 
@@ -403,6 +418,7 @@ def check_sizes(
         small: The fewest that there may be.
         sizes: What is asked for.
         counted: What the index counts, as `FamilySystem.counted`.
+        why: What is so from the fewest on.
 
     Raises:
         KernelArgumentError: No such index, or too few members.
@@ -418,13 +434,7 @@ def check_sizes(
             expected=[index.name],
         )
     size = sizes[index.name]
-    if not isinstance(size, int) or isinstance(size, bool) or size < small:
-        raise KernelArgumentError(
-            f"the size of {index.name} of {name} is {size!r}; expected a whole number of at least "
-            f"{small}, from which on its equations hold.",
-            found=size,
-            expected=small,
-        )
+    check_least(name, index.name, size, small, why)
     if not index.allows(size):
         raise KernelArgumentError(
             f"the size of {index.name} of {name} is {size}; expected an odd number, since matrices "
@@ -433,30 +443,3 @@ def check_sizes(
             expected=(size - 1, size + 1),
         )
     return size
-
-
-def check_memory(name: str, index: Index, rows: int) -> None:
-    """So many rows fit into memory.
-
-    Raises:
-        ResourceError: They do not.
-    """
-    needed, there = rows * ROW_BYTES, find_memory()
-    if needed > there * SHARE:
-        raise ResourceError(
-            f"{name} has {rows} rows at the size of {index.name} that is chosen, which take about "
-            f"{needed / 1e9:.1f} GB; expected at most half of the {there / 1e9:.1f} GB of this "
-            f"machine. Choose a smaller size of {index.name}.",
-            found=needed,
-            expected=int(there * SHARE),
-        )
-
-
-def find_memory() -> float:
-    """The memory of this machine in bytes; no bound where it does not tell."""
-    import os
-
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, ValueError, OSError):
-        return float("inf")

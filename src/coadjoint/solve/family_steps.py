@@ -24,8 +24,8 @@ from coadjoint.lower.tableau import STAGES
 from coadjoint.methods import ACTION, MAPPED, STRUCTURED
 from coadjoint.render.targets.c.loader import FLAGS
 from coadjoint.render.targets.protocol import Call
+from coadjoint.sizes import SHARE, find_memory
 from coadjoint.solve.ensemble import MET, Ensemble
-from coadjoint.solve.family import SHARE, find_memory
 from coadjoint.solve.family_comparison import compare_steps, find_probed, list_left
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.methods.bands import Bands

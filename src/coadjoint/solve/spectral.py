@@ -25,8 +25,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError, PeriodicityWarning
+from coadjoint.families import LEAST_AROUND
 from coadjoint.render.targets.protocol import Call, Kernel
-from coadjoint.solve.family import BY_WAVES, FamilySystem
+from coadjoint.sizes import MOVES, check_least
+from coadjoint.solve.family import BY_WAVES, FamilySystem, check_sizes
 from coadjoint.solve.formulas import Formula
 from coadjoint.solve.kernels import Kernels
 from coadjoint.solve.quantities import Quantities
@@ -92,18 +94,28 @@ class SpectralSystem(FamilySystem):
         return self.spectral
 
     def resize(self, sizes: Mapping[str, int]) -> SpectralSystem:
-        """The fields at another number of points."""
-        return SpectralSystem(self.differences.resize(sizes))
+        """The fields at another number of points; a circle may have fewer than differences need."""
+        old = self.differences
+        size = check_sizes(self.name, self.index, LEAST_AROUND, sizes, self.counted, MOVES)
+        return SpectralSystem(old._copy(replace(self.index, size=size)))
 
     @cached_property
     def _kernels(self) -> Kernels:
         return _SpectralKernels(self)
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
-        return SpectralSystem, (self.differences,)
+        _, (find, given, sizes) = self.differences.__reduce__()
+        return _find_resized, (find, given, sizes)
 
     def __repr__(self) -> str:
         return f"{super().__repr__()[:-1]}; Fourier derivatives>"
+
+
+def _find_resized(
+    find: Callable[..., Any], given: tuple[Any, ...], sizes: Mapping[str, int]
+) -> System:
+    """What `SpectralSystem.__reduce__` says."""
+    return SpectralSystem(find(*given)).resize(sizes)
 
 
 def _judge(method: JudgedMethod) -> JudgedMethod:
@@ -282,6 +294,8 @@ def use_derivatives(system: System, derivatives: str) -> System:
         )
     own = system.differences if isinstance(system, SpectralSystem) else system
     if derivatives == "differences":
+        if isinstance(own, FamilySystem) and own is not system and own.index.size is not None:
+            check_least(own.name, own.index.name, own.size, own.small)
         return own
     if not isinstance(own, FamilySystem) or own.spectral is None:
         raise KernelArgumentError(

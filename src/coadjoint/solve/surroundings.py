@@ -18,6 +18,7 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.driving import Function as InputFunction
 from coadjoint.solve.driving import Previous, Signal
 from coadjoint.solve.enclosures import Enclosure, as_enclosure
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.taken import Enclosed
 from coadjoint.solve.terms import Kind, Term, list_components
 
@@ -92,7 +93,9 @@ class Surroundings:
         """Whether no observable that a formula names is computed by loops over a table."""
         observed = self.system.OBSERVABLES
         names = {*observed, *observed.components}
-        return "jacobian_vector" not in self.system.functions or not names & formula.names
+        is_looped = isinstance(self.system, FamilySystem)
+        is_looped |= "jacobian_vector" in self.system.functions
+        return not (is_looped and names & formula.names)
 
     def name_all(self) -> Columns:
         """A term for all that a formula may read."""

@@ -18,9 +18,11 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import product
 from math import prod
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from coadjoint.errors import KernelArgumentError
+from coadjoint.families import LEAST_IN_PLANE
+from coadjoint.sizes import MOVES, check_least
 from coadjoint.solve.family import BY_WAVES, FamilySystem
 
 if TYPE_CHECKING:
@@ -28,9 +30,6 @@ if TYPE_CHECKING:
     from coadjoint.families import Torus
     from coadjoint.solve.kernels import Kernels
     from coadjoint.solve.system import System
-
-#: The fewest points along a coordinate: with them one wave moves.
-LEAST: Final = 4
 
 
 class TorusSystem(FamilySystem):
@@ -51,11 +50,16 @@ class TorusSystem(FamilySystem):
 
     def __init__(self, *declared: Any, torus: Torus, **given: Any) -> None:
         self.torus, self.around = torus, torus
-        self.counts = tuple(size or LEAST for size in torus.sizes)
-        self._points = FamilySystem(*declared, **(given | {"profiles": None}))
+        self.counts = tuple(size or LEAST_IN_PLANE for size in torus.sizes)
         super().__init__(*declared, **given)
+        self._points = FamilySystem(*declared, **(given | {"profiles": None}))
         self.PARAMETERS = self._declared[1]
         self.functions = {name: self.functions[name] for name in BY_WAVES}
+
+    @property
+    def counted_by(self) -> str:
+        """The names of both coordinates."""
+        return " and ".join(self.around.coordinates)
 
     @property
     def points(self) -> FamilySystem:
@@ -82,13 +86,7 @@ class TorusSystem(FamilySystem):
                 expected=list(names),
             )
         for name, size in own.items():
-            if not isinstance(size, int) or isinstance(size, bool) or size < LEAST:
-                raise KernelArgumentError(
-                    f"the size of {name} of {self.name} is {size!r}; expected a whole number of at "
-                    f"least {LEAST}, from which on a wave moves.",
-                    found=size,
-                    expected=LEAST,
-                )
+            check_least(self.name, name, size, LEAST_IN_PLANE, MOVES)
         old = self.around
         torus = type(old)(
             old.coordinates, old.lengths, tuple(own.values()), old.derivatives, old.solved

@@ -34,6 +34,7 @@ from coadjoint.derive.records import Kept
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
 from coadjoint.families import Family, Spectral
+from coadjoint.sizes import check_least
 from coadjoint.spec.model import Windows
 
 
@@ -78,8 +79,15 @@ class Grid:
 
 @once
 def make_grid(equations: Equations) -> Grid:
-    """The motion of fields at the points of a grid."""
-    point = GenericPoint(equations)
+    """The motion of fields at the points of a grid.
+
+    Raises:
+        KernelArgumentError: The spec declares too few points for the differences.
+    """
+    point, spec = GenericPoint(equations), equations.spec
+    if point.space.size is not None:
+        where = str(spec.path)
+        check_least(spec.name, point.space.name, point.space.size, point.least, where=where)
     rings = Rings(point)
     kept = {each.name: each.kept for each in equations.exact.emitted}
     kept |= {

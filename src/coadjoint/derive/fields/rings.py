@@ -18,7 +18,6 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.ends import find_place, find_row, find_weight
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import Calculus, Lattice
-from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil
 from coadjoint.derive.records import Exact, Kept
 from coadjoint.derive.setting import Setting
@@ -145,7 +144,7 @@ class Rings:
             variables=tuple(v.name for v in self.spec.state),
             shared=tuple(p.name for p in self.spec.parameters),
             indexed=(),
-            defaults=sample_profiles(self.spec),
+            defaults={},
             repeating=(),
             reach=self.point.reach,
             alone=(0, 0),

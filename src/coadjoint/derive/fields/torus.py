@@ -29,13 +29,13 @@ from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import Jets, jets_of, solved
-from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.rings import make_bare, write_point
 from coadjoint.derive.records import Exact, Kept
 from coadjoint.derive.setting import fault, once
 from coadjoint.derive.symbols import choose_names
 from coadjoint.exact import Element, element_text
-from coadjoint.families import Family, Index, Sum, Torus, Total
+from coadjoint.families import LEAST_IN_PLANE, Family, Index, Sum, Torus, Total
+from coadjoint.sizes import MOVES, check_least
 from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Parameter, Windows
 
@@ -70,8 +70,13 @@ def make_torus(equations: Equations) -> TorusGrid:
 
     Raises:
         DerivationError: The Lagrangian has no derivatives of the stream function.
+        KernelArgumentError: The spec declares too few points.
     """
-    made = _Making(equations)
+    made, spec = _Making(equations), equations.spec
+    for each in made.both:
+        if each.size is not None:
+            where = str(spec.path)
+            check_least(spec.name, each.name, each.size, LEAST_IN_PLANE, MOVES, where=where)
     return TorusGrid(
         equations=equations,
         exact=made.exact,
@@ -237,7 +242,7 @@ class _Making:
             variables=tuple(v.name for v in self.spec.state),
             shared=tuple(p.name for p in self.spec.parameters),
             indexed=tuple(self.derivatives),
-            defaults=sample_profiles(self.spec),
+            defaults={},
             repeating=(),
             reach=0,
             alone=(0, 0),

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import prod
+from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from coadjoint.families import Index
+from coadjoint.sizes import check_declared_memory
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, list_names
 from coadjoint.spec.core.formulas import Formula, read_fitting
@@ -188,6 +191,7 @@ def read_space(reading: Reading, parts: Mapping[str, SpacePart]) -> Space:
     _check_ends(reading, name, part)
     for each, own in parts.items():
         _check_length(reading, each, own)
+    _check_sizes(reading, parts)
     order = max(each.derivatives for each in parts.values())
     jets = tuple(_list_jets(reading, order, *parts))
     across = _make(*more[0], order, ()) if more else None
@@ -302,6 +306,17 @@ def _check_ends(reading: Reading, name: str, part: SpacePart) -> None:
     if file.claims.casimirs:
         problem, expected = f"there are {part.ends} ends, and Casimirs are claimed", "none"
         raise source.fault(("claims", "casimirs"), problem, "casimirs", expected, "Remove them.")
+
+
+def _check_sizes(reading: Reading, parts: Mapping[str, SpacePart]) -> None:
+    """So many points fit into memory.
+
+    Raises:
+        ResourceError: They do not.
+    """
+    points = prod(part.size or 1 for part in parts.values())
+    rows = points * sum(len(each.components) for each in state_of(VARIABLES.of(reading)))
+    check_declared_memory(Path(reading.source.path).stem, " and ".join(parts), rows)
 
 
 def _check_length(reading: Reading, name: str, part: SpacePart) -> None:
