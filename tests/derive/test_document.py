@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from tests.specs import shipped
@@ -39,3 +41,45 @@ def test_the_forces_of_a_chain_have_places_below():
     step = sections("n_link_chain")["Accelerations, solved for in the kernel"]
     assert [line.text.split(" = ")[0] for line in step.lines][:2] == ["(M dv/dt)_1", "(M dv/dt)_2"]
     assert all(r"\dot v" in line.latex and "<msub>" in line.mathml for line in step.lines)
+
+
+def read_bracket(section):
+    """Names at the left of rows, those above columns, and entries by both of them."""
+    (_, *above), *rows = section.table
+    left, columns = [row[0].text for row in rows], [each.text for each in above]
+    return left, columns, {
+        (a, b): cell.text for a, row in zip(left, rows, strict=True)
+        for b, cell in zip(columns, row[1:], strict=True)
+    }  # fmt: skip
+
+
+def is_of_velocities(names, velocities):
+    """Whether a bracket is told of velocities, whose own one has the inverse of the mass in it."""
+    return not velocities.isdisjoint(names)
+
+
+@pytest.mark.parametrize(
+    ("system", "velocities", "pair", "value"),
+    [
+        ("n_link_chain", {f"omega_{n}" for n in range(1, 5)}, ("theta_1", "M_omega_1"), "1"),
+        ("appell_machine", {"omega", "vphi"}, ("z", "M_vphi"), "-a"),
+        ("chaplygin_sleigh", {"v", "omega"}, ("M_v", "M_omega"), "omega*m*a + u*m"),
+    ],
+)
+def test_brackets_of_velocities_are_those_of_their_momenta(system, velocities, pair, value):
+    """``{theta, M_omega} = 1``: the heads name momenta, as the claims about the bracket do."""
+    section = sections(system)["Bracket"]
+    left, above, entries = read_bracket(section)
+    assert left == above
+    assert entries[pair] == value
+    assert not is_of_velocities(left, velocities)
+    assert "M_v = dl" in section.law
+    named = [name.removeprefix("M_") for name in left]
+    assert is_of_velocities(named, velocities)
+
+
+def test_brackets_of_momenta_name_them():
+    """Momenta and positions of a state are what they are called."""
+    left, _, _ = read_bracket(sections("heavy_top")["Bracket"])
+    assert left == [f"{name}{n}" for name in ("Pi", "Gamma") for n in (1, 2, 3)]
+    assert "M_v" not in sections("heavy_top")["Bracket"].law

@@ -180,7 +180,15 @@ def _bracket(equations: Equations) -> Iterator[Section]:
     names = equations.variables
     if tensor is None or len(names) > LARGEST_BRACKET or equations.spec.family is not None:
         return
-    heads = tuple(whole_line(symbol(name)) for name in names)
+    allowed = equations.distribution
+    # of velocities the bracket is that of their momenta
+    momenta = {} if allowed is None else {name: f"M_{name}" for name in allowed.independent}
+    told = ""
+    if allowed is not None:
+        told = "; M_v = dl/dv for a velocity v"
+        if allowed.equations:
+            told = "; M_v = dl_c/dv for a velocity v, l_c being l on the constraints"
+    heads = tuple(whole_line(symbol(momenta.get(name, name))) for name in names)
     rows = [(Line("", "", "", ""), *heads)]
     for head, row in zip(heads, tensor, strict=True):
         rows.append((head, *(formula(field, entry) for entry in row)))
@@ -188,7 +196,7 @@ def _bracket(equations: Equations) -> Iterator[Section]:
         return
     yield Section(
         title="Bracket",
-        law="{x_i, x_j}, x_i at the left of a row, x_j above a column",
+        law=f"{{x_i, x_j}}, x_i at the left of a row, x_j above a column{told}",
         law_latex="",
         lines=(),
         table=tuple(rows),
