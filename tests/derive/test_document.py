@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from collections import defaultdict
+from collections.abc import Iterable
+
 import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
+from coadjoint.notation.names import name
+from coadjoint.resources import systems_folder
 from tests.specs import shipped
 
 
@@ -83,3 +89,58 @@ def test_brackets_of_momenta_name_them():
     left, _, _ = read_bracket(sections("heavy_top")["Bracket"])
     assert left == [f"{name}{n}" for name in ("Pi", "Gamma") for n in (1, 2, 3)]
     assert "M_v" not in sections("heavy_top")["Bracket"].law
+
+
+def find_equal_in_print(names: Iterable[str]) -> set[tuple[str, ...]]:
+    """Names that some format writes alike."""
+    found = set[tuple[str, ...]]()
+    for form in ("latex", "mathml", "typst"):
+        alike = defaultdict[str, list[str]](list)
+        for each in sorted(set(names)):
+            alike[getattr(name(each), form)].append(each)
+        found |= {tuple(each) for each in alike.values() if len(each) > 1}
+    return found
+
+
+def list_names(system):
+    """Names of components, of what is emitted, and of intermediates in the generated kernel."""
+    of = shipped(system)
+    declared = [*of.variables, *of.parameters, *of.inputs, *of.reconstruction]
+    names = {part for each in declared for part in (each.name, *each.components)}
+    names |= {each.name for each in (*of.observables, *of.definitions, *of.symmetries)}
+    names |= {f"casimir{n}" for n, _ in enumerate(of.casimirs, 1)}
+    text = (systems_folder() / system / "kernel_python.py").read_text(encoding="utf-8")
+    rates = set(re.findall(r"\bd\w+_dt\b", text))
+    return names | rates, set(re.findall(r"(?<!\w)_[A-Za-z]\w*\b(?!\()", text))
+
+
+def test_no_two_names_of_a_system_are_equal_in_print():
+    """In no format: what a kernel computes on its way has letters that no spec can name."""
+    systems = sorted(each.parent.name for each in systems_folder().glob("*/certificate.json"))
+    assert len(systems) > 100
+    with_intermediates = 0
+    for system in systems:
+        names, intermediates = list_names(system)
+        with_intermediates += bool(intermediates)
+        assert not find_equal_in_print(names | intermediates), system
+    assert with_intermediates > 50
+
+
+def test_names_that_are_equal_in_print_are_found():
+    """Two names of one letter; intermediates without their mark would be parameters."""
+    names, intermediates = list_names("suslov_so5")
+    assert {each.removeprefix("_") for each in intermediates} & names >= {"k1", "k2", "k3"}
+    assert find_equal_in_print({"eps1", "epsilon1"}) == {("eps1", "epsilon1")}
+    assert find_equal_in_print({"p_phi", "pphi", "p"}) == {("p_phi", "pphi")}
+
+
+def test_iterates_are_told_from_positions():
+    """By letters, and by the words that say what they are, in each format."""
+    step = sections("darwin_charges")["Velocities"]
+    assert "_x1, _x2 are found by Newton's iteration of 32 steps from rest" in step.law
+    assert not step.law_latex
+    line = next(line for line in step.lines if line.text.startswith("_y1"))
+    assert r"\tilde{x}_1" in line.latex
+    assert " x_1" not in line.latex
+    assert "tilde(x)_(1)" in line.typst
+    assert line.mathml.count("<mo>~</mo>") == 2

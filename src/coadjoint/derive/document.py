@@ -21,6 +21,7 @@ from coadjoint.derive.setting import Declared
 from coadjoint.derive.theorems import find_theorem
 from coadjoint.exact import element_text
 from coadjoint.notation.names import unit
+from coadjoint.notation.tex import is_formula
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.model import Definition, Reconstructed
@@ -289,7 +290,7 @@ def _section(equations: Equations, step: Step, names: Names | None = None) -> Se
     return Section(
         title=step.title,
         law=step.text,
-        law_latex=step.latex,
+        law_latex=step.latex if is_formula(step.latex, step.text) else "",
         lines=lines,
         words=words,
         theorem=step.theorem.text,
