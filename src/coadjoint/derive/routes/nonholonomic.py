@@ -143,6 +143,7 @@ def _steps(
     kinematics = motion.kinematics.definitions
     row, row_latex = "B^T M B eta'", r"B^T M B \dot\eta"
     row_typst = "B^T M B dot(eta)"
+    pull, pull_latex = (" + A^T lambda", r" + A^T \lambda") if of.kept else ("", "")
     followed = rates_followed(setting, of)
     return (
         write_step(
@@ -191,17 +192,21 @@ def _steps(
         ),
         write_step(
             "Equations of motion, solved for the accelerations in the kernel",
-            f"{row} = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
+            f"{row} = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z'){pull}",
             rf"{row_latex} = B^T (\mathrm{{ad}}^*_\xi p + (\partial l/\partial a) \diamond a + f"
-            r" - M c - \partial_z p \, \dot z)",
-            ((component(row, row_latex, row_typst, n), x) for n, x in enumerate(known, 1)),
+            rf" - M c - \partial_z p \, \dot z){pull_latex}",
+            (
+                (component(row, row_latex, row_typst, n), x)
+                for n, x in enumerate(motion.pull(known), 1)
+            ),
             by="nonholonomic",
         ),
+        motion.show_kept(),
         write_step(
             "Accelerations of the other velocities, and reactions",
             "p' - F = A^T lambda",
             r"\dot p - F = A^T \lambda",
-            reactions,
+            (line for line in reactions if line[0] not in motion.pressing),
             by="constraints",
         ),
         write_step(
