@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable
+from dataclasses import replace
 
 import pytest
 
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
+from coadjoint.derive.lines import formula_line
 from coadjoint.notation.names import name
 from coadjoint.resources import systems_folder
 from tests.specs import shipped
@@ -144,3 +146,26 @@ def test_iterates_are_told_from_positions():
     assert " x_1" not in line.latex
     assert "tilde(x)_(1)" in line.typst
     assert line.mathml.count("<mo>~</mo>") == 2
+
+
+def list_idle(section):
+    """Lines that say of something that it is itself, in print."""
+    sides = (line.latex.split(" &= ") for line in section.lines)
+    return [left for left, *right in sides if right == [left]]
+
+
+@pytest.mark.parametrize("system", ["n_link_chain", "double_spherical_pendulum", "suslov"])
+def test_no_line_says_that_something_is_itself(system):
+    """A rate that the kernel solves for is none of the lines of the last step."""
+    assert not [line for each in sections(system).values() for line in list_idle(each)]
+
+
+def test_the_last_step_of_a_chain_refers_to_its_solve():
+    """It has the rates of the angles, and no ``domega_1/dt = domega_1_dt``."""
+    step = sections("n_link_chain")["Euler-Lagrange equations"]
+    lefts = [line.text.split(" = ")[0] for line in step.lines]
+    assert lefts == [f"dtheta_{n}/dt" for n in range(1, 5)]
+    assert step.words == (("the other rates", "as the kernel solves for them"),)
+    field = derive(shipped("n_link_chain")).setting.field
+    idle = formula_line(field, name("omega_1", dot=True), field["domega_1_dt"])
+    assert list_idle(replace(step, lines=(*step.lines, idle)))  # as it was printed

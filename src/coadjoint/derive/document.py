@@ -20,6 +20,7 @@ from coadjoint.derive.records import Emitted, Step, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.theorems import find_theorem
 from coadjoint.exact import element_text
+from coadjoint.notation.elements import write_element
 from coadjoint.notation.names import unit
 from coadjoint.notation.tex import is_formula
 from coadjoint.spec import Spec
@@ -281,17 +282,20 @@ def _section(equations: Equations, step: Step, names: Names | None = None) -> Se
         step, words = fold_step(equations, step)
         given = {"l": spec.lagrangian, "h": spec.hamiltonian}
         declared = {name: each.sums for name, each in given.items() if each and each.sums}
-    lines = tuple(
-        equal(left, names.write(declared[left.text]))
-        if names is not None and left.text in declared
-        else formula_line(field, left, right)
-        for left, right in step.lines
-    )
+    lines = list[Line]()
+    for left, right in step.lines:
+        written = write_element(field, right)
+        if written.latex == left.latex:  # a rate that the kernel solves for, by its name
+            words += (("the other rates", "as the kernel solves for them"),) * (not words)
+        elif names is not None and left.text in declared:
+            lines.append(equal(left, names.write(declared[left.text])))
+        else:
+            lines.append(equal(left, written))
     return Section(
         title=step.title,
         law=step.text,
         law_latex=step.latex if is_formula(step.latex, step.text) else "",
-        lines=lines,
+        lines=tuple(lines),
         words=words,
         theorem=step.theorem.text,
     )
