@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from xml.etree import ElementTree as ET
 
 import pytest
 import sympy
 
 from coadjoint.derive.lines import equal
-from coadjoint.notation.elements import write_sympy
+from coadjoint.exact import Field
+from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import member, name, unit
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.trees import write_tree
@@ -197,11 +199,31 @@ def test_a_name_of_several_words_is_not_cut():
         ("4*x*y/2", r"2\,x\,y"),
         ("-3*x/20", r"-\frac{3}{20}\,x"),
         ("x*y/2", r"\frac{1}{2}\,x\,y"),
+        ("(3*x)*(y*z/2)", r"\frac{3}{2}\,x\,y\,z"),
+        ("x*(2*y)*z/2", r"x\,y\,z"),
+        ("x/(4*(4*atan(1)))", r"\frac{x}{4\,\pi}"),
     ],
 )
 def test_numbers_of_a_product_are_one(text, latex):
     """No two numbers stand side by side."""
     assert add([write_tree(read_expression(text), {})]).latex == latex
+
+
+def test_numbers_of_an_element_are_one():
+    """Three halves, and not a half and three, which a reader adds."""
+    field = Field(["m", "x"])
+    half = field.number(Fraction(3, 2))
+    written = write_element(field, half * field["m"] * field["x"] ** 2)
+    assert written.latex == r"\frac{3}{2}\,m\,{x}^{2}"
+    assert written.text == "3/2*m*x^2"
+    assert is_mixed(r"\frac{1}{2}\,3\,m\,{x}^{2}")  # as it was printed
+    assert not is_mixed(written.latex)
+    assert not any(map(is_mixed, (multiply([number(3), literal("x"), number(2)]).latex,)))
+
+
+def is_mixed(latex: str) -> bool:
+    """Whether two numbers stand side by side, with no sign between them."""
+    return bool(re.search(r"(\d|\\frac\{\d+\}\{\d+\})\\,(\d|\\frac\{\d)", latex))
 
 
 def test_a_long_left_side_stands_above_the_right_one():
