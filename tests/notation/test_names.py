@@ -53,6 +53,8 @@ from coadjoint.spec.core.expressions import read_expression
         ("u_ss", r"\partial_s^2 u"),
         ("Xi1_s", r"\partial_s \Xi_1"),
         ("p_phi", r"p_{\phi}"),
+        ("psi_x_x", r"\psi_{xx}"),
+        ("w_x_y", "w_{xy}"),
         ("Omega_momentum2", r"\Omega_{\mathrm{momentum},2}"),
         ("eps1", r"\epsilon_1"),
         ("energy", r"\mathrm{energy}"),

@@ -227,7 +227,14 @@ def _split_word(base: str) -> tuple[str, list[str]]:
 
 
 def _write_below(words: str) -> Written:
-    """What a word below a letter is, which may be a velocity or momentum of an angle itself."""
+    """What a word below a letter is, which may be a velocity or momentum of an angle itself.
+
+    Letters alone, as of derivatives, stand beside each other: ``psi_x_x``.
+    """
+    if re.fullmatch("[A-Za-z](_[A-Za-z])+", words):
+        letters = words.split("_")
+        shown = row(*(f"<mi>{each}</mi>" for each in letters))
+        return literal(words, "".join(letters), shown, " ".join(letters))
     base, own = _split_word(words)
     symbol = _letter(base, bold=False)
     if symbol is None:
