@@ -86,8 +86,14 @@ def test_methods_are_listed_with_what_decides(run):
     [
         ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
-        ("toda_lattice", "do not apply: its solvers are loops over equal members, without it."),
-        ("kdv", "do not apply: its solvers are loops over points, without it."),
+        (
+            "toda_lattice",
+            "do not apply: this system is solved by loops over equal members, which",
+        ),
+        (
+            "kdv",
+            "do not apply: this system is solved by loops over points, which this method lacks.",
+        ),
         ("bloch", '"auto" with step= takes dop853.'),
     ],
 )

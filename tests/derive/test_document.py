@@ -33,7 +33,14 @@ def test_what_is_emitted_has_a_meaning():
     assert top["plane_reaction"] == "force of the constraint plane"
     assert top["Omega_momentum"] == "momentum of the velocity Omega"
     waves = meanings("three_wave")
-    assert waves["J"] == "momentum map of the symmetry of this name"
+    assert waves["J"].startswith("phases of the waves")
+    assert meanings("kepler")["L"] == "angular momentum r x v"
+    (turning,) = shipped("kepler").symmetries
+    bare = replace(shipped("kepler"), symmetries=(replace(turning, doc=""),))
+    rows = {row[1]: row[2] for row in document(derive(bare)).sections[1].rows}
+    assert rows["L"] == "momentum map of the action of so(3)"
+    assert meanings("body_of_revolution")["L_axis"].startswith("about the axis through the point")
+    assert meanings("rigid_body_attitude")["Pi_spatial"] == "Pi as seen from space"
     assert waves["integral1"] == "coefficient of a trace of a power of the Lax matrix"
 
 

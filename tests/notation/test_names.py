@@ -67,6 +67,18 @@ def test_names_in_latex(text, latex):
     ET.fromstring(f"<math>{name(text).mathml}</math>")
 
 
+def test_the_rate_of_a_word_has_no_dot():
+    """Above the middle of a word a dot is lost, or taken for one of its letters."""
+    assert name("dmass_dt").latex == r"\frac{d}{dt} \mathrm{mass}"
+    assert name("vn2", dot=True).latex == r"\frac{d}{dt} \mathrm{vn}_2"
+    assert name("vn2", dot=True).text == "dvn2/dt"
+    assert name("dm_dt").latex == r"\dot{m}"
+    for each in (name("dlength_dt"), member("angle", "i", dot=True)):
+        assert "<mover>" not in each.mathml
+        assert "dot" not in each.latex + each.typst
+    assert "<mover>" in name("dPi1_dt").mathml
+
+
 def test_members_have_their_place_below():
     """The place comes first, then the component; the text is that of formulas."""
     assert member("r2", "i+1", dot=True).latex == r"\dot{r}_{i + 1,2}"

@@ -51,6 +51,7 @@ def show(text, names=None):
         ("is 1.1e-05 of it", r"is $1.1 \times {10}^{-5}$ of it"),
         ("less than 1e-12 at 24", "less than ${10}^{-12}$ at 24"),
         ("where x = -3.5e+3", r"where $x = -3.5 \times {10}^{3}$"),
+        ("is 7*7 of 1/2*3", r"is $7 \times 7$ of $\left(\frac{1}{2}\right) \times 3$"),
         ("= sqrt(A^2 - 1)", r"$= \sqrt{{A}^{2} - 1}$"),
     ],
 )

@@ -138,6 +138,8 @@ def _list_symbols(
             )
         )
     docs = {each.name: each.doc for each in spec.observables}
+    docs |= {each.name: each.doc for each in spec.sections}
+    docs |= {each.name: each.doc for each in spec.symmetries}
     for own in emitted:
         if own.name not in known:
             doc = docs.get(own.name) or _tell_emitted(own.name, spec)
@@ -166,9 +168,14 @@ def _tell_emitted(name: str, spec: Spec) -> str:
         return f"force of the constraint {lead}"
     if end == "momentum" and lead:
         return f"momentum of the velocity {lead}"
-    if any(each.name == name for each in spec.symmetries):
-        return "momentum map of the symmetry of this name"
-    return _EMITTED.get(name.rstrip("0123456789"), "emitted with the motion")
+    if end == "spatial" and lead:
+        return f"{lead} as seen from space"
+    if end == "gram" and lead:
+        return f"products of the columns of {lead}, which are orthogonal and of unit length"
+    for each in spec.symmetries:
+        if each.name == name:
+            return f"momentum map of the action of {each.algebra.name}"
+    return _EMITTED.get(name.rstrip("0123456789"), "observable, whose formula stands below")
 
 
 def _role(quantity: object) -> str:
@@ -243,7 +250,7 @@ def _chart(chart: Equations) -> Iterator[Section]:
     lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
     where = tuple((each.text, "throughout") for each in own.relations)
     yield Section(
-        title=f"Chart {own.name}",
+        title=f'Chart "{own.name}"',
         law="x = x(y)",
         law_latex="x = x(y)",
         lines=lines,

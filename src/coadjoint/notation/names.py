@@ -9,6 +9,7 @@ Read next: `coadjoint.notation.trees`.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from html import unescape
@@ -16,6 +17,7 @@ from typing import Final
 
 from markupsafe import escape
 
+from coadjoint.notation.functions import write_rate
 from coadjoint.notation.written import (
     SUM,
     Written,
@@ -99,7 +101,7 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     shown = f"d{text}/dt" if dot else text
     if text.startswith("_"):
         symbol, below = _split_name(text.removeprefix("_"), bold=bold)
-        return replace(attach(_mark_intermediate(symbol), below=below, dot=dot), text=shown)
+        return _attach(_mark_intermediate(symbol), below, shown, dot=dot)
     rate = _RATE.fullmatch(text)
     if rate:
         return replace(name(rate["of"], bold=bold, dot=True), text=shown)
@@ -114,7 +116,14 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     if text[:1] == "d" and _is_symbol(text[1:]) and not _is_symbol(text):
         return replace(differential(name(text[1:], bold=bold)), text=shown)
     symbol, below = _split_name(text, bold=bold)
-    return replace(attach(symbol, below=below, dot=dot), text=shown)
+    return _attach(symbol, below, shown, dot=dot)
+
+
+def _attach(symbol: Written, below: Sequence[Written], text: str, *, dot: bool) -> Written:
+    """A symbol with what stands below it, and its dot; the rate of a word has d/dt before it."""
+    is_word = "mathvariant" in symbol.mathml
+    made = attach(symbol, below=below, dot=dot and not is_word)
+    return replace(write_rate(made) if dot and is_word else made, text=text)
 
 
 def _mark_intermediate(symbol: Written) -> Written:
@@ -161,9 +170,8 @@ def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Wri
     shown = f"{of}[{place}]"
     along = _find_along(of)
     symbol, below = _split_name(along["of"] if along else of, bold=bold)
-    made = attach(symbol, below=[own, *below], dot=dot)
-    made = differentiate_along(made, len(along["s"])) if along else made
-    return replace(made, text=f"d{shown}/dt" if dot else shown)
+    made = _attach(symbol, [own, *below], f"d{shown}/dt" if dot else shown, dot=dot)
+    return replace(differentiate_along(made, len(along["s"])), text=made.text) if along else made
 
 
 def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:

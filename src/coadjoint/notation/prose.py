@@ -68,6 +68,7 @@ _CLOSING: Final = {"(": ")", "[": "]", "{": "}", "<": ">", "|": "|"}
 _ACTING: Final = ("tr", "det", "div", "grad", "curl")
 #: Letters of the alphabet, or what looks like a symbol, that are words of a sentence.
 _WORDS: Final = ("a", "de", "do", "by", "By", "my", "My")
+_NUMBER: Final = re.compile(r"\d+([./]\d+)?", re.ASCII)
 _OPERATION: Final = re.compile(r"(\d+) ([-*/+])(?=[,;]|$)")
 _OPERATIONS: Final = {
     "*": (r"\times", "×", "times"),
@@ -530,7 +531,7 @@ def _multiply(left: Written, sign: str, right: Written) -> Written:
     """Two factors with a sign between them, which may be a blank."""
     if sign in _BETWEEN:
         return between(left, _BETWEEN[sign], right)
-    if sign == "*" and right.text.startswith("10^") and left.mathml.startswith("<mn>"):
+    if sign == "*" and _NUMBER.match(right.text) and _NUMBER.fullmatch(left.text):
         return between(left, CROSS, right)  # two numbers side by side would be one
     if sign != "/":
         return multiply([left, right])

@@ -279,8 +279,9 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
         text = f"({text})" if setting.spec.in_plane else text
         count = sum(len(setting.field.terms(flux)) for flux in fluxes)
         texts.append(f"the flux {text}" if len(text) <= SHOWN else f"a flux of {count} terms")
-    law = "d/dt + div flux = 0" if setting.spec.in_plane else "d/dt + d/ds flux = 0"
-    return Decision(verdict=Verdict.PROVED, method=f"{law} with {'; '.join(texts)}")
+    slope = "div" if setting.spec.in_plane else "d/ds"
+    law = f"its rate + {slope} flux = 0"
+    return Decision(verdict=Verdict.PROVED, method=f"{law}, with {'; '.join(texts)}")
 
 
 def _decide_between_ends(equations: Equations) -> Decision:
@@ -294,8 +295,8 @@ def _decide_between_ends(equations: Equations) -> Decision:
     rates = dict(zip(setting.state, equations.exact.rates, strict=True))
     decision = decide_zero([jets.rate(energy, rates) + jets.total(flux)], field)
     method = (
-        f"{decision.method}: d/dt + d/ds flux = 0 with the flux -dh/dmu . dh/dXi, in which the "
-        "velocities or the stresses are 0 at the ends"
+        f"{decision.method}: its rate + d/ds flux = 0, with the flux -dh/dmu . dh/dXi, in "
+        "which the velocities or the stresses are 0 at the ends"
     )
     return replace(decision, method=method)
 

@@ -76,7 +76,7 @@ def _steps(
     """The derivation as a person would write it down."""
     pull, pull_latex = "", ""
     if motion.distribution.kept:
-        pull, pull_latex = " + (A^T lambda)_k", r" + (A^T \lambda)_k"
+        pull, pull_latex = " + (A^T lambda)_k", r" + (A^\top \lambda)_k"
     return (
         write_step(
             "Constrained Lagrangian",
