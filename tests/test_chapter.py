@@ -62,6 +62,17 @@ def test_numbers_of_methods_are_told_in_few_digits():
     assert "0.0977644349517698" in claim["method"]
 
 
+def test_an_observable_that_is_a_word_is_told_to_be_a_quantity():
+    """A driver is not conserved, but the quantity of this name; symbols and "the energy" stay."""
+    claim = {"kind": "conserved", "verdict": "proved", "method": "normal form"}
+    given = ["driver is conserved", "the energy is conserved", "J is conserved", "dot(m, m) is one"]
+    claims = [claim | {"statement": each} for each in given]
+    shown = by_kind(complete(RECORD, {"claims": claims}, None))
+    told = [text.split(": ")[1].rstrip(".") for _, text in shown["proofs"]["words"]]
+    assert told == ["the quantity driver is conserved", *given[1:]]
+    assert [row[0] for row in shown["verdicts"]["rows"][1:]] == told
+
+
 def test_what_stands_behind_a_route_is_no_name_of_it():
     """The routes are listed, and what is said of both comes once."""
     claim = {"kind": "legendre", "verdict": "proved", "method": "normal form"}

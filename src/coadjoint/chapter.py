@@ -49,6 +49,8 @@ _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Po
 #: Claims from which on a method that they share is told once, and not with each.
 REPEATED: Final = 3
 _ON_ROUTE: Final = " on the route "
+#: Before the name of an observable that is a word: a driver is conserved only as a quantity.
+_WORD: Final = re.compile(r"^(?=[a-z]{2,}\w* is conserved\b)")
 
 
 def complete(
@@ -93,7 +95,10 @@ def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         words.append(("" if n else "Found", f"{each['statement']} ({how})"))
     yield section("What was proved", "proofs", law=f"{len(claims)} claims: {total}", words=words)
     rows = [("claim", "verdict", "method")]
-    rows += [(e["statement"], e["verdict"], shorten_numbers(e["method"])) for e in claims]
+    rows += [
+        (_WORD.sub("the quantity ", e["statement"]), e["verdict"], shorten_numbers(e["method"]))
+        for e in claims
+    ]
     yield section("Table of verdicts", "verdicts", rows=rows)
 
 
@@ -109,6 +114,7 @@ def _sentences(claims: Iterable[Mapping[str, Any]], usual: str) -> Iterator[tupl
     for claim in claims:
         statement, route, behind = _split_route(claim["statement"])
         about = _ABOUT.get(claim.get("kind", ""), claim.get("kind", "claims").capitalize())
+        statement = _WORD.sub("the quantity ", statement)
         key = (statement, behind, claim["verdict"], claim["method"])
         subjects.setdefault(about, {}).setdefault(key, []).extend([route] if route else [])
     for about, entries in subjects.items():

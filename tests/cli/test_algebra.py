@@ -109,7 +109,7 @@ def test_latex_is_a_complete_file(run):
     text = run("algebra", "sl(2,R)", "--format", "latex").stdout
     assert text.rstrip().endswith(r"\end{document}")
     assert r"H & \cdot & 2\,X & -2\,Y \\" in text
-    assert r"C_1 &= {H}^{2} + 4\,X\,Y" in text
+    assert r"\mathcal{C}_1 &= {H}^{2} + 4\,X\,Y" in text
     assert text.count("{") == text.count("}")
     began = re.findall(r"\\begin\{([a-z*]+)\}", text)
     assert "array" in began

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -85,8 +86,14 @@ def test_methods_are_listed_with_what_decides(run):
     [
         ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
-        ("toda_lattice", "do not apply: its solvers are loops over equal members, without it."),
-        ("kdv", "do not apply: its solvers are loops over points, without it."),
+        (
+            "toda_lattice",
+            "do not apply: this system is solved by loops over equal members, which",
+        ),
+        (
+            "kdv",
+            "do not apply: this system is solved by loops over points, which this method lacks.",
+        ),
         ("tippe_top", '"auto" with step= takes dop853.'),
     ],
 )
@@ -99,3 +106,28 @@ def test_a_derivation_is_printed_as_json(run):
     """The fields of the document."""
     record = json.loads(run("show", "rigid_body", "--json").stdout)
     assert record["title"] == "Free rigid body"
+
+
+def find_sizes(page):
+    """The numbers of links of which the claims of a chapter are."""
+    return set(re.findall(r"for n =\s+(\d+)", page))
+
+
+def test_the_claims_of_another_size_are_of_that_size(run):
+    """What is proved of four links stands in no chapter of two, nor does the cost of their code."""
+    four, two = (
+        run("show", "n_link_chain").stdout,
+        run("show", "n_link_chain", "--size", "i=2").stdout,
+    )
+    assert find_sizes(four) == {"4"}  # in the chapter of two it was this, too
+    assert find_sizes(two) == {"2"}
+    assert "Cost of the kernel" in four
+    assert "Cost of the kernel" not in two
+    assert "theta_3" not in two
+
+
+def test_claims_for_every_size_stand_in_each_chapter(run):
+    """Of equal members the kernels are the same for all sizes, and so is what is proved."""
+    shown = run("show", "heisenberg_lattice", "--size", "i=8").stdout
+    assert "M is conserved, for every N >= 1" in " ".join(shown.split())
+    assert "Cost of the kernel" in shown

@@ -1,5 +1,6 @@
 """Equations of motion as sections: complete without the steps of a derivation."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -48,3 +49,98 @@ def test_the_number_of_members_stands_where_the_steps_are(name, steps):
     assert not any("follow" in part.law for part in sections if part.kind in ("motion", "members"))
     principle = next(part for part in sections if part.kind == "principle")
     assert steps in dict(principle.words)["steps"]
+
+
+_NAME = re.compile(r"(?<![\w.])_?[A-Za-z]\w*")
+_FUNCTIONS = {"diag", "sqrt", "x", "sin", "cos", "T"}
+
+
+def find_untold(spec, lines):
+    """Names on which rates of some lines rest, that are of no state and stand in no other line."""
+    quantities = (*spec.state, *spec.parameters, *spec.inputs)
+    known = {part for q in quantities for part in (q.name, *q.components)} | _FUNCTIONS
+    used, told = set[str](), set[str]()
+    for line in lines:
+        left, _, right = line.text.partition(" = ")
+        names = set(_NAME.findall(re.sub(r"\bd(\w+)/d(\w+)", r"\1 \2", right)))
+        if re.fullmatch(r"d\w+/dt", left):
+            used |= names
+        elif left.startswith("_"):
+            told.add(left)
+            used |= names
+        else:
+            told |= names | set(_NAME.findall(left))
+    for variable in spec.variables:  # a whole tells its components, and they tell it
+        parts = {*variable.components}
+        told |= parts if variable.name in told else {variable.name} if parts <= told else set()
+    return used - told - known
+
+
+def is_rate(line):
+    """Whether a line is a rate."""
+    return re.match(r"d\w+/dt = ", line.text) is not None
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "guiding_centre",
+        "guiding_centre_twisted",
+        "landau_lifshitz_gilbert",
+        "relativistic_particle",
+        "heavy_top",
+        "galilei",
+        "sl2_r2",
+    ],
+)
+def test_the_first_box_says_what_its_names_are(name):
+    """By vectors and in components: velocities and intermediates stand in a line of their own."""
+    equations = derive(shipped(name))
+    (motion,) = motion_sections(equations)
+    assert motion.vectors
+    for lines in (motion.vectors, motion.lines):
+        assert not find_untold(equations.spec, lines)
+        bare = list(filter(is_rate, lines))
+        assert len(bare) < len(lines)
+        assert find_untold(equations.spec, bare)  # as the box was
+
+
+def test_velocities_that_an_iteration_finds_are_told_by_their_momenta():
+    """Landau and Lifshitz (65.7): p1 = m1 v1 + m1 v1^3/(2 c^2) + k v2/(c^2 r), x1 - x2 = r."""
+    equations = derive(shipped("darwin_charges"))
+    (motion,) = motion_sections(equations)
+    told = [line.text for line in motion.lines if not is_rate(line)]
+    assert told[0] == "p1 = 1/2*v1^3*m1/c^2 + v1*m1 + v2*k/(c^2*(x1 - x2))"
+    assert not find_untold(equations.spec, motion.lines)
+
+
+def test_a_velocity_that_fills_a_page_is_told_by_the_bracket():
+    """V = {X, h} where it is one; of another energy it is not."""
+    equations = derive(shipped("guiding_centre"))
+    (motion,) = motion_sections(equations)
+    assert [line.text for line in motion.vectors][2:] == ["V = {X, h}", "a = {u, h}"]
+    other = replace(equations.exact, energy=2 * equations.exact.energy)
+    (spoiled,) = motion_sections(replace(equations, exact=other))
+    assert [line.text for line in spoiled.vectors] == ["dX/dt = V", "du/dt = a"]
+
+
+def test_slopes_of_energies_are_found_exactly():
+    """Omega = dh/dm of a moment; of another energy the line is not there."""
+    equations = derive(shipped("landau_lifshitz_gilbert"))
+    (motion,) = motion_sections(equations)
+    assert "omega = dh/dm" in [line.text for line in motion.vectors]
+    other = replace(equations.exact, energy=2 * equations.exact.energy)
+    (spoiled,) = motion_sections(replace(equations, exact=other))
+    assert "omega = dh/dm" not in [line.text for line in spoiled.vectors]
+
+
+def test_scalars_stand_with_vectors_and_before_them():
+    """Holm (2011), section 6.6, on Bargmann's group: mass times velocity, and tau = E/c."""
+    (motion,) = motion_sections(derive(shipped("bargmann")))
+    assert [line.text for line in motion.vectors][1:] == [
+        "dK/dt = -E P/c - M diag(B)^(-1) P + K x (diag(I)^(-1) J)",
+        "dP/dt = M diag(A)^(-1) K + P x (diag(I)^(-1) J)",
+        "dE/dt = K1*P1/A1 + K2*P2/A2 + K3*P3/A3",
+        "dM/dt = 0",
+    ]
+    assert motion.law.startswith("by vectors, each line found equal")

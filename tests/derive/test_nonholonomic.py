@@ -4,11 +4,16 @@ Each expected value is what Newton's law and the constraint give on paper; every
 against it, and a sign or a term left out of it is seen.
 """
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.errors import DerivationError, LimitError
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
+from tests.specs import shipped
 
 PRINCIPLE = "nonholonomic-hamilton-pontryagin"
 ROUTES = ("nonholonomic", "hamel", PRINCIPLE)
@@ -343,3 +348,67 @@ def test_a_component_that_is_given_and_one_that_is_kept_move_alike():
     for name, rate in turning(kept).items():
         found = kept.field.substitute(kept.value(kept.field[name]), {"Omega12": kept.field.zero})
         assert kept.field.is_zero(found - rate), name
+
+
+def check_printed_solve(equations):
+    """The lines of the solve are its linear equations, with the multipliers that it finds.
+
+    ``M eta' - (k + A^T lambda)`` of each line, with ``lambda = -u``, is a row of the solve.
+    """
+    of, field, close = equations.distribution, equations.setting.field, equations.close
+    step = next(s for s in equations.steps if "for the accelerations in the kernel" in s.title)
+    entries = dict(next(s.lines for s in equations.steps if s.title == "Reduced mass matrix"))
+    by_name = {left.text: value for left, value in entries.items()}
+    rates = [field[f"d{name}_dt"] for name in of.independent]
+    reactions = {e.reaction: -field[f"_u{n + 1}"] for n, (e, _) in enumerate(of.kept)}
+    rows = dict[int, object]()
+    for solve in equations.exact.solves:
+        for place, row, side in zip(solve.block, solve.matrix, solve.known, strict=True):
+            terms = zip(row, solve.names, strict=True)
+            rows[place] = field.sum(a * field[name] for a, name in terms) - side
+    for i, (_, value) in enumerate(step.lines):
+        places = [f"M_{min(i, j) + 1}{max(i, j) + 1}" for j in range(len(rates))]
+        inertia = field.sum(
+            by_name[p] * x for p, x in zip(places, rates, strict=True) if p in by_name
+        )
+        printed = inertia - field.substitute(value, reactions)
+        assert field.is_zero(close(printed - rows[i])), (i, str(printed))
+    return len(reactions)
+
+
+@pytest.mark.parametrize("route", ["nonholonomic", "hamel"])
+@pytest.mark.parametrize(
+    "system", ["knife_edge_cvt", "double_spherical_pendulum", "suslov", "snakeboard", "veselova"]
+)
+def test_printed_equations_have_the_multipliers(system, route):
+    """Of constraints that are kept; without ``A^T lambda`` no line would be true."""
+    equations = derive(shipped(system), route)
+    assert check_printed_solve(equations) > 0
+    titles = [step.title for step in equations.steps]
+    assert "Constraints, differentiated" in titles
+    place = next(n for n, t in enumerate(titles) if "for the accelerations in the kernel" in t)
+    step, of = equations.steps[place], equations.distribution
+    none = dict.fromkeys((e.reaction for e, _ in of.kept), equations.setting.field.zero)
+    bare = [(left, equations.setting.field.substitute(x, none)) for left, x in step.lines]
+    steps = (*equations.steps[:place], replace(step, lines=tuple(bare)))
+    with pytest.raises(AssertionError):
+        check_printed_solve(replace(equations, steps=(*steps, *equations.steps[place + 1 :])))
+
+
+def test_suslovs_equations_are_those_of_the_book():
+    """I Omega' = I Omega x Omega + lambda a and a . Omega' = 0, solved here by hand."""
+    equations = derive(shipped("suslov"))
+    step = next(s for s in equations.steps if "for the accelerations in the kernel" in s.title)
+    inertia = np.array([[3.0, 0.2, -0.4], [0.2, 2.0, 0.3], [-0.4, 0.3, 1.5]])
+    axis, omega = np.array([0.6, -0.8, 0.5]), np.array([0.3, 0.7, 0.76])
+    assert abs(axis @ omega) < 1e-12
+    turning = np.cross(inertia @ omega, omega)
+    whole = np.block([[inertia, -axis[:, None]], [axis[None], np.zeros((1, 1))]])
+    *rate, force = np.linalg.solve(whole, [*turning, 0.0])
+    known = {f"I{i + 1}{j + 1}": inertia[i, j] for i in range(3) for j in range(i, 3)}
+    known |= {f"a{i + 1}": axis[i] for i in range(3)}
+    known |= {f"Omega{i + 1}": omega[i] for i in range(3)} | {"wheels_reaction": force}
+    to_sympy = equations.setting.field.to_sympy
+    printed = [float(to_sympy(value).subs(known)) for _, value in step.lines]
+    np.testing.assert_allclose(printed, inertia @ np.array(rate), rtol=1e-12)
+    assert not np.allclose(printed, turning)  # as it was printed

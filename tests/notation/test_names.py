@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from xml.etree import ElementTree as ET
 
 import pytest
 import sympy
 
 from coadjoint.derive.lines import equal
-from coadjoint.notation.elements import write_sympy
+from coadjoint.exact import Field
+from coadjoint.notation.elements import write_element, write_sympy
 from coadjoint.notation.names import member, name, unit
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.trees import write_tree
@@ -41,13 +43,18 @@ from coadjoint.spec.core.expressions import read_expression
         ("Jx2", "J_{x,2}"),
         ("vxi_momentum", r"v_{\xi,\mathrm{momentum}}"),
         ("M_vx", "M_{v_x}"),
-        ("casimir2", "C_2"),
+        ("casimir2", r"\mathcal{C}_2"),
+        ("_k1", r"\tilde{k}_1"),
+        ("_w2_1", r"\tilde{w}_{2,1}"),
+        ("_sol1", r"\widetilde{\mathrm{sol}}_1"),
         ("M12", "M_{12}"),
         ("M_1_10", "M_{1,10}"),
         ("r_0_1", "r_{0,1}"),
         ("u_ss", r"\partial_s^2 u"),
         ("Xi1_s", r"\partial_s \Xi_1"),
         ("p_phi", r"p_{\phi}"),
+        ("psi_x_x", r"\psi_{xx}"),
+        ("w_x_y", "w_{xy}"),
         ("Omega_momentum2", r"\Omega_{\mathrm{momentum},2}"),
         ("eps1", r"\epsilon_1"),
         ("energy", r"\mathrm{energy}"),
@@ -58,6 +65,18 @@ def test_names_in_latex(text, latex):
     assert name(text).latex == latex
     assert name(text).text in (text, "dPi1/dt")
     ET.fromstring(f"<math>{name(text).mathml}</math>")
+
+
+def test_the_rate_of_a_word_has_no_dot():
+    """Above the middle of a word a dot is lost, or taken for one of its letters."""
+    assert name("dmass_dt").latex == r"\frac{d}{dt} \mathrm{mass}"
+    assert name("vn2", dot=True).latex == r"\frac{d}{dt} \mathrm{vn}_2"
+    assert name("vn2", dot=True).text == "dvn2/dt"
+    assert name("dm_dt").latex == r"\dot{m}"
+    for each in (name("dlength_dt"), member("angle", "i", dot=True)):
+        assert "<mover>" not in each.mathml
+        assert "dot" not in each.latex + each.typst
+    assert "<mover>" in name("dPi1_dt").mathml
 
 
 def test_members_have_their_place_below():
@@ -194,11 +213,31 @@ def test_a_name_of_several_words_is_not_cut():
         ("4*x*y/2", r"2\,x\,y"),
         ("-3*x/20", r"-\frac{3}{20}\,x"),
         ("x*y/2", r"\frac{1}{2}\,x\,y"),
+        ("(3*x)*(y*z/2)", r"\frac{3}{2}\,x\,y\,z"),
+        ("x*(2*y)*z/2", r"x\,y\,z"),
+        ("x/(4*(4*atan(1)))", r"\frac{x}{4\,\pi}"),
     ],
 )
 def test_numbers_of_a_product_are_one(text, latex):
     """No two numbers stand side by side."""
     assert add([write_tree(read_expression(text), {})]).latex == latex
+
+
+def test_numbers_of_an_element_are_one():
+    """Three halves, and not a half and three, which a reader adds."""
+    field = Field(["m", "x"])
+    half = field.number(Fraction(3, 2))
+    written = write_element(field, half * field["m"] * field["x"] ** 2)
+    assert written.latex == r"\frac{3}{2}\,m\,{x}^{2}"
+    assert written.text == "3/2*m*x^2"
+    assert is_mixed(r"\frac{1}{2}\,3\,m\,{x}^{2}")  # as it was printed
+    assert not is_mixed(written.latex)
+    assert not any(map(is_mixed, (multiply([number(3), literal("x"), number(2)]).latex,)))
+
+
+def is_mixed(latex: str) -> bool:
+    """Whether two numbers stand side by side, with no sign between them."""
+    return bool(re.search(r"(\d|\\frac\{\d+\}\{\d+\})\\,(\d|\\frac\{\d)", latex))
 
 
 def test_a_long_left_side_stands_above_the_right_one():

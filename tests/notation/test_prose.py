@@ -48,6 +48,10 @@ def show(text, names=None):
         ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),
         ("b . curl b", r"$b \cdot \left(\operatorname{curl}\,b\right)$"),
         ("over hbar", r"over $\hbar$"),
+        ("is 1.1e-05 of it", r"is $1.1 \times {10}^{-5}$ of it"),
+        ("less than 1e-12 at 24", "less than ${10}^{-12}$ at 24"),
+        ("where x = -3.5e+3", r"where $x = -3.5 \times {10}^{3}$"),
+        ("is 7*7 of 1/2*3", r"is $7 \times 7$ of $\left(\frac{1}{2}\right) \times 3$"),
         ("= sqrt(A^2 - 1)", r"$= \sqrt{{A}^{2} - 1}$"),
     ],
 )
@@ -72,6 +76,13 @@ def test_a_formula_is_found_in_a_sentence(text, shown):
 def test_words_stay_words(text):
     """Names of routes, plurals, articles, numbers and names of code are no formulas."""
     assert read_prose(text) == [text]
+
+
+def test_a_number_with_a_power_of_ten_is_no_product_with_e():
+    """Read as a product it would have another value."""
+    for text in ("1.1e-05", "1e-12", "2.4e-08"):
+        assert "e" not in re.sub(r"\\\w+", "", show(f"is {text} of it").split("$")[1])
+    assert "e" in show("is 1.1*e - 5 of it").split("$")[1]  # as these numbers were printed
 
 
 def test_nothing_of_a_text_is_lost_and_every_piece_is_whole():

@@ -296,7 +296,7 @@ def test_observables_are_shown():
 def test_declared_charts_are_shown():
     """The map, what is zero in the chart, and its motion, in every format."""
     shown = sections(PLANE, ("MOTION", f'where = ["r*L - L*r"]{RATES}'))
-    lines, words = shown["Chart polar"]
+    lines, words = shown['Chart "polar"']
     assert lines == [
         "x1 = r*cos(phi)",
         "x2 = r*sin(phi)",
@@ -309,7 +309,7 @@ def test_declared_charts_are_shown():
     assert spoiled["Motion in the chart"][0][0] == "dr/dt = 2*pr/m"
     whole = asdict(document(derive(spec(PLANE, ("MOTION", RATES)))))
     for form in FORMATS:
-        assert "Chart polar" in render_document(whole, form)
+        assert ESCAPED[form]('Chart "polar"') in render_document(whole, form)
 
 
 def long_rates(vectors):

@@ -81,17 +81,19 @@ def make_chapter(
     """The record of a chapter: the derivation, its proofs and, on a page, a picture.
 
     Claims of a shipped system stand in its folder; those of a spec are proved for the formats that
-    show them.
+    show them, and those of another size in every one, unless they are the same for all sizes.
     """
     from coadjoint.bounded import derive_bounded, prove_bounded
     from coadjoint.chapter import complete
     from coadjoint.files import read_certificate
+    from coadjoint.regenerate import is_written_out
 
     path = spec_path(system)
     record = derive_bounded(path, route, sizes=sizes, seconds=seconds)
-    folder = None if is_path(system) else systems_folder() / path.stem
+    is_resized = bool(sizes) and is_written_out(path, sizes, seconds)
+    folder = None if is_path(system) or is_resized else systems_folder() / path.stem
     certificate = {} if folder is None else read_certificate(folder / "certificate.json")
-    if "claims" not in certificate and form != "text":
+    if "claims" not in certificate and (form != "text" or is_resized):
         certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
     record = complete(record, certificate, folder)
     if form == "html":

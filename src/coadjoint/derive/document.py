@@ -20,7 +20,9 @@ from coadjoint.derive.records import Emitted, Step, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.theorems import find_theorem
 from coadjoint.exact import element_text
+from coadjoint.notation.elements import write_element
 from coadjoint.notation.names import unit
+from coadjoint.notation.tex import is_formula
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.model import Definition, Reconstructed
@@ -136,6 +138,8 @@ def _list_symbols(
             )
         )
     docs = {each.name: each.doc for each in spec.observables}
+    docs |= {each.name: each.doc for each in spec.sections}
+    docs |= {each.name: each.doc for each in spec.symmetries}
     for own in emitted:
         if own.name not in known:
             doc = docs.get(own.name) or _tell_emitted(own.name, spec)
@@ -164,9 +168,14 @@ def _tell_emitted(name: str, spec: Spec) -> str:
         return f"force of the constraint {lead}"
     if end == "momentum" and lead:
         return f"momentum of the velocity {lead}"
-    if any(each.name == name for each in spec.symmetries):
-        return "momentum map of the symmetry of this name"
-    return _EMITTED.get(name.rstrip("0123456789"), "emitted with the motion")
+    if end == "spatial" and lead:
+        return f"{lead} as seen from space"
+    if end == "gram" and lead:
+        return f"products of the columns of {lead}, which are orthogonal and of unit length"
+    for each in spec.symmetries:
+        if each.name == name:
+            return f"momentum map of the action of {each.algebra.name}"
+    return _EMITTED.get(name.rstrip("0123456789"), "observable, whose formula stands below")
 
 
 def _role(quantity: object) -> str:
@@ -180,7 +189,15 @@ def _bracket(equations: Equations) -> Iterator[Section]:
     names = equations.variables
     if tensor is None or len(names) > LARGEST_BRACKET or equations.spec.family is not None:
         return
-    heads = tuple(whole_line(symbol(name)) for name in names)
+    allowed = equations.distribution
+    # of velocities the bracket is that of their momenta
+    momenta = {} if allowed is None else {name: f"M_{name}" for name in allowed.independent}
+    told = ""
+    if allowed is not None:
+        told = "; M_v = dl/dv for a velocity v"
+        if allowed.equations:
+            told = "; M_v = dl_c/dv for a velocity v, l_c being l on the constraints"
+    heads = tuple(whole_line(symbol(momenta.get(name, name))) for name in names)
     rows = [(Line("", "", "", ""), *heads)]
     for head, row in zip(heads, tensor, strict=True):
         rows.append((head, *(formula(field, entry) for entry in row)))
@@ -188,7 +205,7 @@ def _bracket(equations: Equations) -> Iterator[Section]:
         return
     yield Section(
         title="Bracket",
-        law="{x_i, x_j}, x_i at the left of a row, x_j above a column",
+        law=f"{{x_i, x_j}}, x_i at the left of a row, x_j above a column{told}",
         law_latex="",
         lines=(),
         table=tuple(rows),
@@ -233,7 +250,7 @@ def _chart(chart: Equations) -> Iterator[Section]:
     lines = tuple(formula_line(field, symbol(name), value) for name, value in pairs)
     where = tuple((each.text, "throughout") for each in own.relations)
     yield Section(
-        title=f"Chart {own.name}",
+        title=f'Chart "{own.name}"',
         law="x = x(y)",
         law_latex="x = x(y)",
         lines=lines,
@@ -272,17 +289,20 @@ def _section(equations: Equations, step: Step, names: Names | None = None) -> Se
         step, words = fold_step(equations, step)
         given = {"l": spec.lagrangian, "h": spec.hamiltonian}
         declared = {name: each.sums for name, each in given.items() if each and each.sums}
-    lines = tuple(
-        equal(left, names.write(declared[left.text]))
-        if names is not None and left.text in declared
-        else formula_line(field, left, right)
-        for left, right in step.lines
-    )
+    lines = list[Line]()
+    for left, right in step.lines:
+        written = write_element(field, right)
+        if written.latex == left.latex:  # a rate that the kernel solves for, by its name
+            words += (("the other rates", "as the kernel solves for them"),) * (not words)
+        elif names is not None and left.text in declared:
+            lines.append(equal(left, names.write(declared[left.text])))
+        else:
+            lines.append(equal(left, written))
     return Section(
         title=step.title,
         law=step.text,
-        law_latex=step.latex,
-        lines=lines,
+        law_latex=step.latex if is_formula(step.latex, step.text) else "",
+        lines=tuple(lines),
         words=words,
         theorem=step.theorem.text,
     )

@@ -17,6 +17,7 @@ from coadjoint.derive.generic import show_members
 from coadjoint.derive.lines import Line, Section, equal, formula_line
 from coadjoint.derive.mechanics.noise import write_moves
 from coadjoint.derive.mechanics.solver import Solve
+from coadjoint.derive.motion_names import complete_vectors, write_names
 from coadjoint.derive.records import is_of_kernel, rate, symbol
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vectors.vocabulary import value_shape
@@ -98,12 +99,17 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         rates = {n: value for n, value in pairs if not _is_solved(field, value)}
         lines = [_write_motion(equations, name, value) for name, value in rates.items()]
         left = [value for n, value in pairs if n not in rates]
+        owners = {n: v.name for v in equations.spec.variables for n in v.components}
         if vectors:
-            owners = {n: v.name for v in equations.spec.variables for n in v.components}
             left = [v for n, v in pairs if n not in rates and owners.get(n) in missing]
         solved = list(_write_solved(equations, left)) if left else None
         law = _say_where(vectors, missing, solved)
         lines += solved or []
+        if equations.chart is None and not equations.spec.space:
+            lines += write_names(equations, list(rates.values()))
+            if form is not None and vectors:
+                bare = {n: (rates[n], _write_motion(equations, n, rates[n])) for n in rates}
+                vectors += complete_vectors(equations, form, bare)
         if equations.spec.noise:
             law += "; the noise is in the sense of Stratonovich"
     return Section(

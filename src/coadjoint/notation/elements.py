@@ -17,6 +17,7 @@ from coadjoint.exact.rationals import Monomial
 from coadjoint.notation.functions import CALLS
 from coadjoint.notation.names import name
 from coadjoint.notation.written import (
+    PI,
     Written,
     add,
     call,
@@ -27,8 +28,6 @@ from coadjoint.notation.written import (
     number,
     power,
 )
-
-PI = literal("pi", r"\pi", "<mi>π</mi>", "pi")
 
 
 def write_element(field: Field, element: Element) -> Written:

@@ -1,12 +1,15 @@
 r"""Names as a book writes them: ``Pi1`` is :math:`\Pi_1`, ``dPi1_dt`` is :math:`\dot\Pi_1`.
 
 Comes in: a name of a spec or of a kernel. Goes out: a `Written`. Names of whole vectors are bold.
+Intermediates of a kernel, which begin with an underscore, have a tilde, and Casimirs are
+calligraphic: no name of a spec is printed as one of these.
 Read next: `coadjoint.notation.trees`.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from html import unescape
@@ -14,6 +17,7 @@ from typing import Final
 
 from markupsafe import escape
 
+from coadjoint.notation.functions import write_rate
 from coadjoint.notation.written import (
     SUM,
     Written,
@@ -69,7 +73,9 @@ GREEK: Final = {
         ]
     )
 }
-_SHORT: Final = {"eps": "epsilon", "lam": "lambda", "casimir": "C"}
+_SHORT: Final = {"eps": "epsilon", "lam": "lambda"}
+#: Letters that no spec can name, as LaTeX, Unicode and Typst have them, and as plain text has them.
+_OWN: Final = {"casimir": (r"\mathcal{C}", "\U0001d49e", "cal(C)", "C")}
 _RATE = re.compile(r"d(?P<of>.+)_dt")
 #: A name and the numbers of a member, a row or a component behind it.
 _PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
@@ -89,24 +95,46 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     '\\Gamma_{11}^{1}'
     >>> name("M_1_10").latex, name("rolling_reaction2").latex, name("M_vpsi").latex
     ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
+    >>> name("_k1").latex
+    '\\tilde{k}_1'
     """
     shown = f"d{text}/dt" if dot else text
-    plain = text.removeprefix("_")
-    rate = _RATE.fullmatch(plain)
+    if text.startswith("_"):
+        symbol, below = _split_name(text.removeprefix("_"), bold=bold)
+        return _attach(_mark_intermediate(symbol), below, shown, dot=dot)
+    rate = _RATE.fullmatch(text)
     if rate:
         return replace(name(rate["of"], bold=bold, dot=True), text=shown)
-    mixed = _MIXED.fullmatch(plain)
+    mixed = _MIXED.fullmatch(text)
     if mixed:
         made = name(f"{mixed['of']}_{mixed['below']}", bold=bold)
         return replace(attach(made, above=number(int(mixed["above"]))), text=shown)
-    along = _find_along(plain)
+    along = _find_along(text)
     if along:
         of = name(along["of"], bold=bold)
         return replace(differentiate_along(of, len(along["s"])), text=shown)
-    if plain[:1] == "d" and _is_symbol(plain[1:]) and not _is_symbol(plain):
-        return replace(differential(name(plain[1:], bold=bold)), text=shown)
-    symbol, below = _split_name(plain, bold=bold)
-    return replace(attach(symbol, below=below, dot=dot), text=shown)
+    if text[:1] == "d" and _is_symbol(text[1:]) and not _is_symbol(text):
+        return replace(differential(name(text[1:], bold=bold)), text=shown)
+    symbol, below = _split_name(text, bold=bold)
+    return _attach(symbol, below, shown, dot=dot)
+
+
+def _attach(symbol: Written, below: Sequence[Written], text: str, *, dot: bool) -> Written:
+    """A symbol with what stands below it, and its dot; the rate of a word has d/dt before it."""
+    is_word = "mathvariant" in symbol.mathml
+    made = attach(symbol, below=below, dot=dot and not is_word)
+    return replace(write_rate(made) if dot and is_word else made, text=text)
+
+
+def _mark_intermediate(symbol: Written) -> Written:
+    """The letter or word of an intermediate: another quantity than that without the mark."""
+    tilde = "tilde" if symbol.mathml.startswith("<mi>") else "widetilde"
+    return literal(
+        symbol.text,
+        rf"\{tilde}{{{symbol.latex}}}",
+        f'<mover accent="true">{symbol.mathml}<mo>~</mo></mover>',
+        f"tilde({symbol.typst})",
+    )
 
 
 def differential(of: Written) -> Written:
@@ -128,6 +156,8 @@ def spell(text: str) -> tuple[str, str]:
     """
     symbol, below = _split_name(text.removeprefix("_"), bold=False)
     plain = [unescape(re.sub("<[^>]+>", "", each.mathml)) for each in (symbol, *below)]
+    for _, letter, _, shown in _OWN.values():
+        plain[0] = plain[0].replace(letter, shown)  # which fonts of pictures lack
     return plain[0].replace("\xa0", " "), ",".join(plain[1:]).replace("\xa0", " ")
 
 
@@ -140,9 +170,8 @@ def member(of: str, place: str, *, dot: bool = False, bold: bool = False) -> Wri
     shown = f"{of}[{place}]"
     along = _find_along(of)
     symbol, below = _split_name(along["of"] if along else of, bold=bold)
-    made = attach(symbol, below=[own, *below], dot=dot)
-    made = differentiate_along(made, len(along["s"])) if along else made
-    return replace(made, text=f"d{shown}/dt" if dot else shown)
+    made = _attach(symbol, [own, *below], f"d{shown}/dt" if dot else shown, dot=dot)
+    return replace(differentiate_along(made, len(along["s"])), text=made.text) if along else made
 
 
 def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:
@@ -206,7 +235,14 @@ def _split_word(base: str) -> tuple[str, list[str]]:
 
 
 def _write_below(words: str) -> Written:
-    """What a word below a letter is, which may be a velocity or momentum of an angle itself."""
+    """What a word below a letter is, which may be a velocity or momentum of an angle itself.
+
+    Letters alone, as of derivatives, stand beside each other: ``psi_x_x``.
+    """
+    if re.fullmatch("[A-Za-z](_[A-Za-z])+", words):
+        letters = words.split("_")
+        shown = row(*(f"<mi>{each}</mi>" for each in letters))
+        return literal(words, "".join(letters), shown, " ".join(letters))
     base, own = _split_word(words)
     symbol = _letter(base, bold=False)
     if symbol is None:
@@ -217,13 +253,15 @@ def _write_below(words: str) -> Written:
 def _letter(base: str, *, bold: bool) -> Written | None:
     """A letter, Latin or Greek; None for a word."""
     base = _SHORT.get(base, base)
-    if base in GREEK:
+    typst = _TYPST_GREEK.get(base, base)
+    if base in _OWN:
+        latex, letter, typst, _ = _OWN[base]
+    elif base in GREEK:
         latex, letter = GREEK[base]
     elif len(base) == 1:
         latex = letter = base
     else:
         return None
-    typst = _TYPST_GREEK.get(base, base)
     if not bold:
         return literal(base, latex, f"<mi>{letter}</mi>", typst)
     return literal(

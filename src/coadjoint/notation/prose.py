@@ -45,7 +45,7 @@ _TOKEN: Final = re.compile(
     r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
-    r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?)"
+    r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?(?:e(?P<ten>[-+]?\d{1,3})\b)?)"
     r"|(?P<sign>(?<= )\(s\)(?= )|->|<=|>=|~=|==|!=|<>|\*\*|[-+*/^=<>(){}\[\]|,.])|(?P<other>\S)",
     re.ASCII,
 )
@@ -68,6 +68,7 @@ _CLOSING: Final = {"(": ")", "[": "]", "{": "}", "<": ">", "|": "|"}
 _ACTING: Final = ("tr", "det", "div", "grad", "curl")
 #: Letters of the alphabet, or what looks like a symbol, that are words of a sentence.
 _WORDS: Final = ("a", "de", "do", "by", "By", "my", "My")
+_NUMBER: Final = re.compile(r"\d+([./]\d+)?", re.ASCII)
 _OPERATION: Final = re.compile(r"(\d+) ([-*/+])(?=[,;]|$)")
 _OPERATIONS: Final = {
     "*": (r"\times", "×", "times"),
@@ -182,7 +183,7 @@ class _Reader:
             token = tokens[0]
             lead = token[0] == "A" and self.text[: token.start()].rstrip()[-1:] in ("", ".", ":")
             is_name = token["name"] and (_is_symbol(token[0]) or self._is_known(token[0]))
-            return bool(token["rate"]) or bool(is_name and not lead)
+            return bool(token["rate"] or token["ten"]) or bool(is_name and not lead)
         if len(tokens) == 4 and self._is_plural(first):
             return False
         plain = tokens[0][0] in ("(", "[") and self._find_closing(first) == self.at - 1
@@ -355,6 +356,11 @@ class _Reader:
     def _plain_atom(self) -> Written:
         token = self.tokens[self.at]
         self.at += 1
+        if token["ten"]:
+            mantissa, _, _ = token[0].partition("e")
+            tens = power(number(10), number(int(token["ten"])))
+            whole = literal(mantissa, mathml=f"<mn>{mantissa}</mn>")
+            return tens if mantissa == "1" else between(whole, CROSS, tens)
         if token["number"]:
             if token[0].isdigit() and len(token[0]) < DIGITS:
                 return number(int(token[0]))
@@ -525,7 +531,7 @@ def _multiply(left: Written, sign: str, right: Written) -> Written:
     """Two factors with a sign between them, which may be a blank."""
     if sign in _BETWEEN:
         return between(left, _BETWEEN[sign], right)
-    if sign == "*" and right.text.startswith("10^") and left.mathml.startswith("<mn>"):
+    if sign == "*" and _NUMBER.match(right.text) and _NUMBER.fullmatch(left.text):
         return between(left, CROSS, right)  # two numbers side by side would be one
     if sign != "/":
         return multiply([left, right])

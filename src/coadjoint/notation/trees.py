@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Final
 
 from coadjoint.notation.functions import CALLS, write_noise, write_rate, write_sum
 from coadjoint.notation.names import differential, differentiate_along, name, partial
 from coadjoint.notation.written import (
     ATOM,
+    PI,
     Written,
     add,
     attach,
@@ -63,7 +65,7 @@ def write_tree(
         if text in known:
             return known[text]
         if text == "pi" and text not in shapes:
-            return literal("pi", r"\pi", "<mi>π</mi>", "pi")
+            return PI
         return name(text, bold=len(shapes.get(text, ())) == 1)
 
     def value(part: tree.Node, below: list[Written]) -> Written:
@@ -100,6 +102,8 @@ def write_tree(
                 return _divide(part, *below)
             case tree.Sum(indices=indices, sign=sign):
                 return write_sum(indices, below, sign)
+            case tree.Call(function="atan", arguments=(tree.Number(value=1),)):
+                return multiply([number(Fraction(1, 4)), PI])
             case tree.Call(function="diag"):
                 return call("diag", below)
             case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
@@ -158,9 +162,5 @@ def _place(member: tree.Member) -> Written:
 def _divide(node: tree.Binary, top: Written, bottom: Written) -> Written:
     """A fraction; a plain number below stands before what it divides."""
     if isinstance(node.right, tree.Number) and not isinstance(node.left, tree.Number | tree.Name):
-        first, *others = top.factors or (top,)
-        if others and first.text.isdigit():  # 3 x/20, and not 1/20 3 x
-            whole = multiply([number(int(first.text) / node.right.value), *others])
-            return replace(whole, sign=whole.sign * top.sign)
         return multiply([number(1 / node.right.value), top])
     return divide(top, bottom)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import prod
 from typing import Final
 
 from markupsafe import escape
@@ -26,6 +27,8 @@ ATOM: Final = 4
 STILL, CLOSE = ' stretchy="false"', ' lspace="0.08em"'
 #: Elements that are higher than a line; a power is nearly as high as its base.
 _TALL: Final = re.compile("<m(frac|table|under|munderover)")
+#: The text of a number, which has no sign.
+_NUMBER: Final = re.compile(r"\d+(/\d+)?", re.ASCII)
 #: Characters of text that a line of a page may be long, about.
 WIDTH: Final = 80
 #: Characters of a left side beyond which the right one stands below it.
@@ -69,6 +72,9 @@ def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Wr
         mathml=mathml or f"<mi>{escape(text)}</mi>",
         typst=typst or text,
     )
+
+
+PI: Final = literal("pi", r"\pi", "<mi>π</mi>", "pi")
 
 
 def row(*elements: str) -> str:
@@ -205,12 +211,19 @@ def negate(part: Written) -> Written:
 
 
 def multiply(parts: Sequence[Written], *, joint: str = " ") -> Written:
-    """A product without a sign between factors; numbers before it are left out if they are 1."""
+    """A product without a sign between factors.
+
+    Its numbers are one, before the others, which is left out if it is 1: a fraction and a whole
+    number side by side would be read as their sum.
+    """
     sign = 1
     for part in parts:
         sign *= part.sign
     plain = [each for p in parts for each in (p.factors or (replace(p, sign=1),))]
-    plain = [part for part in plain if part.text != "1"] or [number(1)]
+    numbers = [Fraction(part.text) for part in plain if _NUMBER.fullmatch(part.text)]
+    plain = [part for part in plain if not _NUMBER.fullmatch(part.text)]
+    if (whole := prod(numbers, start=Fraction(1))) != 1 or not plain:
+        plain.insert(0, number(whole))
     if len(plain) == 1:
         return replace(plain[0], sign=sign)
     *before, last = plain

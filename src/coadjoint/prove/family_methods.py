@@ -56,7 +56,7 @@ from coadjoint.spec.model import Windows
 LOOPED: Final = ("midpoint", "spherical_midpoint", "sequence", *BY_ENERGY)
 #: The two flows of a splitting: positions move with the momenta at rest, and the other way round.
 FLOWS: Final = ("flow1", "flow2")
-_NONE: Final = "its solvers are loops over {}, without it"
+_NONE: Final = "this system is solved by loops over {}, which this method lacks"
 _SPHERES: Final = (
     "it expects members that are vectors of three components, each with the bracket of so(3) or a "
     "multiple of it"

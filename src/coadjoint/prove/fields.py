@@ -267,8 +267,8 @@ def _decide_between_ends(equations: Equations) -> Decision:
     rates = dict(zip(setting.state, equations.exact.rates, strict=True))
     decision = decide_zero([jets.rate(energy, rates) + jets.total(flux)], field)
     method = (
-        f"{decision.method}: d/dt + d/ds flux = 0 with the flux -dh/dmu . dh/dXi, in which the "
-        "velocities or the stresses are 0 at the ends"
+        f"{decision.method}: its rate + d/ds flux = 0, with the flux -dh/dmu . dh/dXi, in "
+        "which the velocities or the stresses are 0 at the ends"
     )
     return replace(decision, method=method)
 

@@ -48,7 +48,7 @@ def decide_law(equations: Equations, parts: Sequence[Element]) -> tuple[Decision
             return decision, ""
         texts.append(_tell_flux(equations, [flux]))
     told = [tell_turn(equations, each) for each in turning]
-    method = f"d/dt + d/ds flux = 0 with {'; '.join(texts)}, where derivatives of "
+    method = f"its rate + d/ds flux = 0, with {'; '.join(texts)}, where derivatives of "
     method += f"{' and '.join(each.name for each in turning)} are left out by this"
     return Decision(verdict=Verdict.PROVED, method=method), f" where {' and '.join(told)}"
 
@@ -72,8 +72,9 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
             continue
         assert setting.field.is_zero(jets.diverge(fluxes) + rate), equations.spec.name
         texts.append(_tell_flux(equations, fluxes))
-    law = "d/dt + div flux = 0" if setting.spec.in_plane else "d/dt + d/ds flux = 0"
-    return Decision(verdict=Verdict.PROVED, method=f"{law} with {'; '.join(texts)}")
+    slope = "div" if setting.spec.in_plane else "d/ds"
+    law = f"its rate + {slope} flux = 0"
+    return Decision(verdict=Verdict.PROVED, method=f"{law}, with {'; '.join(texts)}")
 
 
 def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:

@@ -121,6 +121,9 @@ def test_components_of_a_motion_with_noise_have_it():
         "dPi1 = (Pi2*Omega3 - Pi3*Omega2) dt - sigma2 Pi3 o dW2 + sigma3 Pi2 o dW3",
         "dPi2 = (-Pi1*Omega3 + Pi3*Omega1) dt + sigma1 Pi3 o dW1 - sigma3 Pi1 o dW3",
         "dPi3 = (Pi1*Omega2 - Pi2*Omega1) dt - sigma1 Pi2 o dW1 + sigma2 Pi1 o dW2",
+        "Omega1 = Pi1/I1",
+        "Omega2 = Pi2/I2",
+        "Omega3 = Pi3/I3",
     ]
 
 

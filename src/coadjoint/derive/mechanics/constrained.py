@@ -43,6 +43,7 @@ from coadjoint.exact import Element
 from coadjoint.exact.ranks import certain_minors, generic_rank
 from coadjoint.exact.roots import simplify_roots
 from coadjoint.limits import OPERATIONS
+from coadjoint.notation.elements import write_element
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,29 @@ class ConstrainedMotion:
             carried = [self.kinematics.rate(a) * x for a, x in zip(row, eta, strict=True)]
             known.append(-field.sum([*carried, self.kinematics.rate(rest)]))
         return tuple(matrix), tuple(known)
+
+    def pull(self, known: Sequence[Element]) -> Row:
+        """``k + A^T lambda``, with the reactions of the constraints that are kept."""
+        field, (rows, _) = self.frame.setting.field, self.of_kept()
+        reactions = self.frame.setting.elements(self.pressing)
+        return tuple(
+            force + field.sum(row[i] * x for row, x in zip(rows, reactions, strict=True))
+            for i, force in enumerate(known)
+        )
+
+    def show_kept(self) -> Step:
+        """The step that differentiates the constraints that are kept; without them no line."""
+        field, (rows, known) = self.frame.setting.field, self.of_kept()
+        sides = (
+            field.sum(a * x for a, x in zip(row, self.accelerations, strict=True)) for row in rows
+        )
+        return write_step(
+            "Constraints, differentiated",
+            "A eta' = b' - A' eta",
+            r"A \dot\eta = \dot b - \dot A \eta",
+            zip((write_element(field, side) for side in sides), known, strict=True),
+            by="constraints",
+        )
 
     def solves(self, mass: Matrix, known: Sequence[Element]) -> tuple[Solve, ...]:
         """The linear equations of accelerations and multipliers, block by block.

@@ -84,6 +84,7 @@ def show_momenta(setting: Setting, title: str = "Momenta") -> Step:
 
 def show_velocities(setting: Setting) -> Step:
     """The step that solves for the velocities."""
-    lines = legendre(setting).definitions
-    law = f"xi solved from mu = dl/dxi{legendre(setting).iterations}"
-    return write_step("Legendre transform", law, r"\xi = \xi(\mu, a)", lines, by="legendre")
+    lines, how = legendre(setting).definitions, legendre(setting).iterations
+    law = f"xi solved from mu = dl/dxi{how}"
+    latex = "" if how else r"\xi = \xi(\mu, a)"
+    return write_step("Legendre transform", law, latex, lines, by="legendre")

@@ -38,8 +38,8 @@ from coadjoint.spec.sections.poisson import pairing_weights
 #: What may be added, as LaTeX.
 LATEX = {
     "f - dR/dxi": r"f - \partial R / \partial \xi",
-    "P G P dh": r"P G P\,\partial h",
-    "G dS": r"G\,\partial S",
+    "P G P dh": r"P G P\,dh",
+    "G dS": r"G\,dS",
 }
 
 

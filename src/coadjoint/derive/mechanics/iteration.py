@@ -205,8 +205,9 @@ def _weigh(values: Sequence[Any], diagonal: Sequence[Any]) -> Any:
 def tell_iterations(iterations: Sequence[Newton]) -> str:
     """What follows a statement that velocities are solved for; "" without iterations."""
     names = [name for each in iterations for name in each.names]
-    what = f"{', '.join(names)} by Newton's iteration of {STEPS} steps from rest"
-    return f", {what}" if names else ""
+    is_are = "are" if len(names) > 1 else "is"
+    what = f"{', '.join(names)} {is_are} found by Newton's iteration of {STEPS} steps from rest"
+    return f"; {what}, and here is the step after it" if names else ""
 
 
 def _total(values: Any) -> Any:

@@ -125,7 +125,7 @@ def show_extremals(setting: Setting) -> tuple[Step, ...]:
         write_step(
             "Legendre transform within them: normal extremals",
             "h = <mu, xi> - l, with <mu - dl/dxi, B> = 0",
-            r"h = \langle \mu, \xi \rangle - l, \qquad B^T (\mu - \partial l / \partial \xi) = 0",
+            r"h = \langle \mu, \xi \rangle - l, \quad B^\top (\mu - \partial l / \partial \xi) = 0",
             [*known.definitions, ("h", known.energy)],
             by="legendre",
         ),

@@ -180,10 +180,9 @@ def _steps(
         ),
     ]
     if transform is not None:
-        law = f"v solved from p = dl/dv{transform.iterations}"
-        steps.append(
-            write_step("Velocities", law, "v = v(q, p)", transform.definitions, by="legendre")
-        )
+        law, latex = f"v solved from p = dl/dv{transform.iterations}", "v = v(q, p)"
+        latex = "" if transform.iterations else latex
+        steps.append(write_step("Velocities", law, latex, transform.definitions, by="legendre"))
     elif show_geometry and is_natural(known):
         steps += _geometry(known)
     latex = r"E = v \cdot \partial l / \partial v - l"

@@ -74,6 +74,9 @@ def _steps(
     motion: ConstrainedMotion, constrained: Element, momenta: Row, mass: Matrix, known: Row
 ) -> tuple[Step, ...]:
     """The derivation as a person would write it down."""
+    pull, pull_latex = "", ""
+    if motion.distribution.kept:
+        pull, pull_latex = " + (A^T lambda)_k", r" + (A^\top \lambda)_k"
     return (
         write_step(
             "Constrained Lagrangian",
@@ -92,13 +95,14 @@ def _steps(
         show_mass(mass, "d2l_c/deta2", r"\partial^2 l_c / \partial \eta^2"),
         write_step(
             "Hamel's equations, solved for the accelerations in the kernel",
-            "d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f",
+            f"d/dt dl_c/deta_k = D_k l_c + <p, [xi, D_k]> + B_k f{pull}",
             r"\frac{d}{dt}\frac{\partial l_c}{\partial \eta^k} = D_k l_c + \langle p, [\xi, D_k] "
-            r"\rangle + B_k f",
+            rf"\rangle + B_k f{pull_latex}",
             (
                 (component("M eta'", r"M \dot\eta", "M dot(eta)", n), value)
-                for n, value in enumerate(known, 1)
+                for n, value in enumerate(motion.pull(known), 1)
             ),
             by="hamel",
         ),
+        motion.show_kept(),
     )

@@ -181,14 +181,14 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     turned = sign_text(setting.sign, "tr(M^T (xi e - e xi)) + tr((dl/da)^T delta a)")
     turned_latex = sign_text(
         setting.sign,
-        r"\mathrm{tr}(M^T (\xi e - e \xi)) "
-        r"+ \mathrm{tr}((\partial l/\partial a)^T \delta a)",
+        r"\mathrm{tr}(M^\top (\xi e - e \xi)) "
+        r"+ \mathrm{tr}((\partial l/\partial a)^\top \delta a)",
     )
     return (
         write_step(
             "Momentum matrix in the span of the algebra",
             "tr(M^T e) = dl/dxi along each matrix e of the basis",
-            r"\mathrm{tr}(M^T e) = \langle \partial l / \partial \xi, e \rangle",
+            r"\mathrm{tr}(M^\top e) = \langle \partial l / \partial \xi, e \rangle",
             write_slopes("l", setting.velocities, legendre(setting).momenta),
             by="matrix-euler-poincare",
         ),
@@ -197,7 +197,7 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
             "Matrix Euler-Poincare equations and advection",
             f"d tr(M^T e)/dt = {turned}, with delta a and {sign}da/dt by products of -e and -xi "
             "with a",
-            rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^T e) = {turned_latex}",
+            rf"\tfrac{{d}}{{dt}} \mathrm{{tr}}(M^\top e) = {turned_latex}",
             write_rates(setting.state, rates),
             by="matrix-euler-poincare",
         ),

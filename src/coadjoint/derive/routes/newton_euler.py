@@ -237,7 +237,8 @@ def _steps(
         write_step(
             "Moments of the mass points",
             "m = sum m,  c = sum m X,  S = sum m X X^T = (tr I/2) - I",
-            r"m = \sum m, \quad c = \sum m X, \quad S = \sum m X X^T = \tfrac12 \mathrm{tr} I - I",
+            r"m = \sum m, \quad c = \sum m X, \quad S = \sum m X X^\top "
+            r"= \tfrac12 \mathrm{tr} I - I",
             lines,
             by="angular-velocity",
         ),

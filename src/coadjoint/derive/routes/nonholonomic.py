@@ -141,8 +141,9 @@ def _steps(
     """The derivation as a person would write it down."""
     setting, of, velocities = motion.frame.setting, motion.distribution, motion.frame.velocities
     kinematics = motion.kinematics.definitions
-    row, row_latex = "B^T M B eta'", r"B^T M B \dot\eta"
+    row, row_latex = "B^T M B eta'", r"B^\top M B \dot\eta"
     row_typst = "B^T M B dot(eta)"
+    pull, pull_latex = (" + A^T lambda", r" + A^\top \lambda") if of.kept else ("", "")
     followed = rates_followed(setting, of)
     return (
         write_step(
@@ -180,7 +181,7 @@ def _steps(
             (line for line in kinematics if line[0] not in of.solved),
             by="nonholonomic",
         ),
-        show_mass(reduced, "B^T M B", "B^T M B"),
+        show_mass(reduced, "B^T M B", r"B^\top M B"),
         write_step(
             "Forces along the velocities that constraints give",
             "k = ad*_xi p + dl/da <> a + f - M c - dp/dz z'",
@@ -191,17 +192,21 @@ def _steps(
         ),
         write_step(
             "Equations of motion, solved for the accelerations in the kernel",
-            f"{row} = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z')",
-            rf"{row_latex} = B^T (\mathrm{{ad}}^*_\xi p + (\partial l/\partial a) \diamond a + f"
-            r" - M c - \partial_z p \, \dot z)",
-            ((component(row, row_latex, row_typst, n), x) for n, x in enumerate(known, 1)),
+            f"{row} = B^T (ad*_xi p + dl/da <> a + f - M c - dp/dz z'){pull}",
+            rf"{row_latex} = B^\top (\mathrm{{ad}}^*_\xi p + (\partial l/\partial a) \diamond a + f"
+            rf" - M c - \partial_z p \, \dot z){pull_latex}",
+            (
+                (component(row, row_latex, row_typst, n), x)
+                for n, x in enumerate(motion.pull(known), 1)
+            ),
             by="nonholonomic",
         ),
+        motion.show_kept(),
         write_step(
             "Accelerations of the other velocities, and reactions",
             "p' - F = A^T lambda",
-            r"\dot p - F = A^T \lambda",
-            reactions,
+            r"\dot p - F = A^\top \lambda",
+            (line for line in reactions if line[0] not in motion.pressing),
             by="constraints",
         ),
         write_step(

@@ -208,7 +208,7 @@ def _steps(
         write_step(
             "Variation of the motion within the constraints",
             "dmu/dt - F - f - A^T lambda = 0",
-            r"\dot\mu - F - f - A^T \lambda = 0",
+            r"\dot\mu - F - f - A^\top \lambda = 0",
             ((f"E_{name}", value) for name, value in momentum.items()),
             by="nonholonomic-hamilton-pontryagin",
         ),

@@ -55,7 +55,8 @@ class Vocabulary:
         field: Where the values live.
         targets: The whole quantities of the state, each with the value of its rate.
         words: Vectors and matrices, the simplest first.
-        scalars: Names that may stand before a vector: parameters, and inputs, without components.
+        scalars: Names that may stand before a vector: parameters, inputs and parts of the state,
+            without components.
         named: Further names and what they stand for.
         shapes: Shapes of whole quantities.
         values: The value of each name that a printed tree may hold.
@@ -417,6 +418,7 @@ class _Maker:
 
     def _scalar_names(self) -> frozenset[str]:
         scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
+        scalars |= {v.name for v in self.spec.state if not v.value_shape}
         if not self.closed:
             scalars |= {each.reaction for each in self.spec.constraints if not each.shape}
         return frozenset(scalars)
