@@ -250,7 +250,8 @@ class _Search:
         if not partitions:
             raise NoFlowError(f"its energy has more than {MOST} parts that do not commute")
         try:
-            with self.field.budget(WORK), localcontext(prec=DIGITS, traps=[]):
+            with self.field.budget(WORK), localcontext(prec=DIGITS) as digits:
+                digits.clear_traps()  # NaN is an answer
                 brackets = self._find_brackets()
         except BudgetSpent:
             return partitions[0], {}
