@@ -1,5 +1,6 @@
 """Texts of families: what is printed of a part reads back, and a wrong text is seen."""
 
+import numpy as np
 import pytest
 
 from coadjoint import pipeline
@@ -173,6 +174,22 @@ def test_the_ladder_sees_wrong_tiles(rendered, old, new):
     texts["kernel.c"] = texts["kernel.c"].replace(old, new)
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 5"):
         ladder._compare_targets(system, "rhs", 2, ("numpy", "c"), calls=False)
+
+
+def test_where_a_language_stops_the_other_rows_are_not_compared():
+    """Python gives no row of a trajectory of which one has no value; all others have equal bits."""
+    one = np.array([[1.0, 2.0], [np.nan, 3.0]])
+
+    def differ(other, *, stops=True):
+        return ladder.find_differences(one, np.array(other), exact=True, stops=stops).any()
+
+    stopped = [[np.nan, 2.0], [np.nan, 3.0]]
+    assert not differ(stopped)
+    assert not differ(one)
+    assert differ(stopped, stops=False)
+    assert differ([[np.nan, np.nextafter(2.0, 3.0)], [np.nan, 3.0]])
+    assert differ([[np.nan, np.nan], [np.nan, np.nan]])  # the second one has all its values
+    assert differ([[np.nextafter(1.0, 2.0), 2.0], [np.nan, 3.0]])
 
 
 def test_the_ladder_sees_other_bits(rendered):

@@ -7,14 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coadjoint import pipeline
 from coadjoint.crosscheck import bits, compare, ladder
 from coadjoint.crosscheck.bits import equal_bits, find_differing_bits
 from coadjoint.crosscheck.compare import ExactPoints, against_oracle, exact_points
 from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.subject import Subject, list_stopping
+from coadjoint.derive.reference import Reference
 from coadjoint.errors import CompilerError, CrossCheckError
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import BUILDS
+from coadjoint.solve.folders import load_texts
+from coadjoint.spec.reader import read_spec_text
 from tests.kernels import COMPILER, EXACT, FUSED, ProgramReference, TextSystem
 from tests.programs import HEAVY_TOP, PENDULUM, program
 
@@ -419,3 +423,40 @@ def test_what_a_language_stops_at_is_known_of_a_function():
     assert [statement.name for statement in statements] == ["a", "b", "c"]
     assert outputs == [each.outputs[0].value, each.outputs[2].value]
     assert list_stopping(replace(each, outputs=each.outputs[1:2])) == ([], [])
+
+
+#: A particle with an angle that has its value at 1 beyond a clamp, where rounding decides on it.
+CLAMPED = """
+title = "C"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[hamiltonian]
+h = "p^2/2 + q^2/2"
+[observables]
+a = "acos(min(abs(q), 1))"
+"""
+
+
+def test_points_beyond_a_clamp_are_replaced_by_others(monkeypatch):
+    """Half of all points are compared; a wrong value there is seen, and without others none is."""
+    rendered = pipeline.render(read_spec_text(CLAMPED, "clamped.toml"))
+    reference = Reference(rendered.equations)
+    with load_texts(rendered.texts) as system:
+        subject = Subject(rendered.programs, reference, system, ("numpy",))
+        points = exact_points(subject, "observables", 150)
+        reached = sum(len(members) for _, members in points.batches)
+        assert points.count / 2 <= reached < points.count
+        against_oracle(subject, points)
+        batch, members = points.batches[-1]
+        wrong = {
+            n: [replace(each, value=each.value + 1) for each in rows] for n, rows in members.items()
+        }
+        spoiled = replace(points, batches=[*points.batches[:-1], (batch, wrong)])
+        with pytest.raises(CrossCheckError, match="rung 4"):
+            against_oracle(subject, spoiled)
+        draw = compare.draw_usable
+        monkeypatch.setattr(compare, "draw_usable", lambda *given: draw(*given).take(slice(0)))
+        with pytest.raises(CrossCheckError, match="has a value at only"):
+            against_oracle(subject, exact_points(subject, "observables", 150))

@@ -8,7 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from coadjoint import pipeline
 from coadjoint.crosscheck import solver_exact, solver_steps
+from coadjoint.crosscheck import solvers as solver_checks
+from coadjoint.crosscheck.ladder import crosscheck
 from coadjoint.crosscheck.oracle import Bounded
 from coadjoint.crosscheck.recurrences import check_recurrences, draw_points
 from coadjoint.crosscheck.solver_exact import ExactStep, Solvers
@@ -30,6 +33,7 @@ from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.solvers import _list_functions, check_solvers
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.derive import derive
+from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.lowering import lower
@@ -46,6 +50,7 @@ from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import arrange, select_programs
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.methods import (
     average_gradient,
     coadjoint_mean,
@@ -56,6 +61,7 @@ from coadjoint.solve.methods import (
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
 from coadjoint.solve.steps import Taylor
 from coadjoint.solver_kinds import SOLVER
+from coadjoint.spec.reader import read_spec_text
 from tests.kernels import COMPILER, ProgramReference
 from tests.programs import BOUNDED, HEAVY_TOP, LOOPED, PENDULUM, program
 from tests.specs import RIGID_BODY, lowered, spec
@@ -813,3 +819,43 @@ def test_a_system_at_rest_compiles(tmp_path):
     start = np.array(ensemble.state)
     made.advance["taylor"]["c"](ensemble, 3)
     assert np.array_equal(ensemble.state, start)
+
+
+#: A turning body that is pulled by the size of a component of its quaternion.
+PULLED = """
+title = "P"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+q = { role = "quaternion" }
+Pi = { role = "momentum", default = ["0.1", "0.2", "0.3"] }
+[hamiltonian]
+h = "dot(Pi, Pi)/2 + abs(q[1])"
+"""
+
+
+def test_steps_near_constraints_are_compared_where_rates_have_kinks(monkeypatch):
+    """Far away a projection turns quaternions round, and a kink is met at once."""
+    rendered = pipeline.render(read_spec_text(PULLED, "pulled.toml"))
+
+    def verify():
+        reference = Reference(rendered.equations)
+        with load_texts(rendered.texts) as system:
+            given = (rendered.programs, rendered.texts, reference, system, ("numpy",))
+            return crosscheck(*given, bit_points=100)
+
+    assert verify().solvers is not None
+    with monkeypatch.context() as spoiled:
+        spoiled.setattr(solver_checks, "_move_near_constraints", lambda *given: given[-1])
+        with pytest.raises(CrossCheckError, match="rung 4"):
+            verify()
+
+    def shorten(subject, kernel, kind):
+        found = _list_functions(subject, kernel, kind)
+        own = found["projection"]
+        return found | {"projection": lambda *given: own(*given) * (1 + 1e-12)}
+
+    monkeypatch.setattr(solver_checks, "_list_functions", shorten)
+    with pytest.raises(CrossCheckError, match="rung 4"):
+        verify()

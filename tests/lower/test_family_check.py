@@ -51,6 +51,20 @@ def test_functions_in_divisors_are_compared_where_they_stand() -> None:
     assert not _are_equal(one + y, y + 2 * one)
 
 
+def test_trees_without_a_value_on_one_side_of_a_kink_are_compared_on_the_other() -> None:
+    """Members are in no order: both sides are seen, and a side without a value is left out."""
+    gap = x - y
+    largest = gap * (1 + sympy.sign(gap)) / 2
+    slope = sympy.sin(z) / sympy.sqrt(largest)
+    assert _are_equal(slope, sympy.sin(z) * sympy.sqrt(largest) / gap * 2 / (1 + sympy.sign(gap)))
+    for wrong in (1 + largest, 1 + largest.xreplace({x: y, y: x})):
+        assert not _are_equal(sympy.sin(z) * (1 + wrong), sympy.sin(z) * 2)
+    assert not _are_equal(slope, slope * 2)
+    assert not _are_equal(slope * sympy.nan, slope)
+    nowhere = sympy.sin(z) / (sympy.sign(x) - 1)  # all points are positive
+    assert not _are_equal(nowhere, nowhere * (1 + x))
+
+
 def test_slopes_see_what_roots_depend_on() -> None:
     """Where a tree is differentiated, nothing is hidden in a root, and divisors are told."""
     assert _find_polynomials([R]) is None

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from math import isfinite
 
 import pytest
 
@@ -14,6 +15,7 @@ from coadjoint.lower import flows as lowered
 from coadjoint.lower.kahan import _check, lower_kahan
 from coadjoint.lower.program import Number, children, walk, with_children
 from coadjoint.poisson.structure import PoissonStructure
+from coadjoint.spec.reader import read_spec_text
 from tests import specs
 from tests.lower.maps import (
     apply,
@@ -272,3 +274,27 @@ def test_a_step_of_kahan_that_does_not_solve_its_equation_is_refused():
 def test_numbers_are_exact():
     """A fraction has 40 digits."""
     assert abs(number(Fraction(1, 3)) * 3 - 1) < mp.mpf(10) ** -38
+
+
+#: A particle on a line whose momentum is bounded; at the declared start its energy has no value.
+BOUNDED = """
+title = "A bounded momentum"
+routes = ["canonical"]
+[variables]
+x = { role = "coordinate", default = 0 }
+p = { role = "momentum", of = "x", default = START }
+[hamiltonian]
+h = "x^2/2 - sqrt(1 - p^2)"
+"""
+
+
+def test_an_order_of_flows_is_chosen_where_the_start_has_no_energy():
+    """Errors are compared at states with an energy; without any, the first order stays."""
+    found = {}
+    for start in ('"0.5"', "3"):
+        spec = read_spec_text(BOUNDED.replace("START", start), "bounded.toml")
+        found[start] = find_splitting(derive(spec))
+        assert len(found[start].parts) == 2
+    assert found['"0.5"'].errors
+    assert all(map(isfinite, found['"0.5"'].errors.values()))
+    assert not found["3"].errors

@@ -1,6 +1,7 @@
 """Lowering: exact inverse, shared work counted, derivatives by another road."""
 
 import dataclasses
+import math
 import random
 from collections import Counter
 from dataclasses import replace
@@ -28,7 +29,9 @@ from coadjoint.lower.program import (
     run,
     walk,
 )
+from coadjoint.lower.sums import Lowering
 from coadjoint.methods import RELAXED
+from coadjoint.spec.reader import read_spec_text
 from tests.conftest import rational_points
 from tests.prove.rolling import motion
 from tests.sources import textbook
@@ -444,6 +447,66 @@ def test_functions_are_lowered_and_differentiated():
     equations = derive(spec(text))
     for program in lower(equations).values():
         check_inverse(equations, program)
+
+
+#: A particle with an observable.
+CLAMP = """
+title = "C"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[hamiltonian]
+h = "p^2/2"
+[observables]
+a = "WRITTEN"
+"""
+
+
+def call(function, argument):
+    """A function of a double."""
+    if function == "sign":
+        return float((argument > 0) - (argument < 0))
+    return getattr(math, function)(argument)
+
+
+#: Observables whose arguments rounding may move out of where they have a value, and what they are.
+CLAMPED = {
+    "acos(min(abs(q), 1))": lambda q: math.acos(min(abs(q), 1)),
+    "sqrt(1 - min(abs(q), 1)^2)": lambda q: math.sqrt(1 - min(abs(q), 1) ** 2),
+    "asin(min(1, max(-1, q)))": lambda q: math.asin(min(1, max(-1, q))),
+    "log(max(q, 1))": lambda q: math.log(max(q, 1)),
+    "sqrt(max(q, 0) + min(q, 0)^2)": lambda q: math.sqrt(max(q, 0) + min(q, 0) ** 2),
+}
+
+
+def find_wrong(written):
+    """A point at which an observable of a kernel has not its value; None where all have it."""
+    equations = derive(read_spec_text(CLAMP.replace("WRITTEN", written), "clamp.toml"))
+    program = lower(equations)["observables"]
+    check_inverse(equations, program)
+    place = [each.label for each in program.outputs].index("a")
+    source = random.Random(3)
+    for _ in range(300):
+        q = source.choice((1, -1)) * source.uniform(0, 1) * 2.0 ** source.randrange(-4, 40)
+        wanted = CLAMPED[written](q)
+        try:
+            found = run(program, {"q": q, "p": 0.0}, float, call)[place]
+        except ValueError:
+            return q
+        if not math.isclose(found, wanted, rel_tol=1e-7, abs_tol=1e-7):
+            return q
+        if abs(q) > 1 and found != wanted:
+            return q
+    return None
+
+
+@pytest.mark.parametrize("written", CLAMPED)
+def test_what_is_clamped_has_a_value_beyond_the_clamp(monkeypatch, written):
+    """``1 - (u + 1 - (u - 1)*sign(u - 1))^2/4`` is 0 but for rounding, which has no root below."""
+    assert find_wrong(written) is None
+    monkeypatch.setattr(Lowering, "_write_by_sides", lambda self, argument: argument)
+    assert "^2" not in written or find_wrong(written) is not None
 
 
 def test_a_mass_that_depends_on_the_state_is_divided_by():

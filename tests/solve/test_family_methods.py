@@ -6,6 +6,8 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.solve import family_steps
+from coadjoint.solve.choices import Choice
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
 from coadjoint.spec.reader import read_spec_text
@@ -268,6 +270,30 @@ def test_what_does_not_apply_is_refused_with_its_reason(ring):
 def test_a_wrong_step_in_c_is_seen(texts, old, new):
     """Each of these changes some bit of a run."""
     require_wrong_steps(texts, "spherical_midpoint", old, new)
+
+
+#: Masses that are pulled by roots, which most states of a comparison do not have.
+ROOTS = """
+title = "R"
+routes = ["canonical"]
+[index]
+i = { size = 10 }
+[variables]
+q = { role = "coordinate", index = "i", default = 0 }
+p = { role = "momentum", of = "q", index = "i", default = "0.1" }
+[hamiltonian]
+h = "sum(i, p[i]^2/2) + sum(i, sqrt(1 + (q[i] - q[i+1])))"
+"""
+
+
+def test_what_ends_a_step_without_a_value_is_the_same_in_c():
+    """The equations of a step are not solved there, as of other systems; a wrong status is seen."""
+    texts = pipeline.render(read_spec_text(ROOTS, "roots.toml")).texts
+    with load_texts(texts) as system:
+        family_steps.load(system, Choice(name="midpoint", order=2), "c")
+    ends = "if (status != GOES_ON && block->took[l] == 0.0)"
+    wrong = "if (status == STEP_UNDERFLOW && block->took[l] == 0.0)"
+    require_wrong_steps(texts, "midpoint", ends, wrong)
 
 
 # -- Newton's method by bands ---------------------------------------------------------------------

@@ -11,15 +11,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Final
 
 import numpy as np
 
 from coadjoint.crosscheck.columns import find_exact
-from coadjoint.crosscheck.hard import BATCHES, hard_batches
+from coadjoint.crosscheck.hard import BATCHES, draw_usable, hard_batches
 from coadjoint.crosscheck.oracle import Bounded, distance_in_envelopes, errors
 from coadjoint.crosscheck.points import Array, Batch
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
+
+#: Points that are drawn in addition, for each without a value, where half of all have none.
+OTHERS: Final = 4
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,13 @@ def exact_points(subject: Subject, function: str, count: int) -> ExactPoints:
         members = {n: known[first + n] for n in range(batch.size) if first + n in known}
         found.append((batch, members))
         first += batch.size
+    missing = first - len(known)
+    if missing > len(known):  # rounding decides whether there is a value, as beyond a clamp
+        others = draw_usable(subject, function, OTHERS * missing)
+        more = find_exact(subject.reference, function, subject.columns(others))
+        usable = sorted(more)[:missing]
+        members = {n: more[member] for n, member in enumerate(usable)}
+        found.append((others.take(np.array(usable, dtype=np.intp)), members))
     return ExactPoints(function, found)
 
 

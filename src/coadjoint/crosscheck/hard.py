@@ -43,6 +43,12 @@ def hard_batches(subject: Subject, function: str, share: int) -> Iterator[Batch]
     )
 
 
+def draw_usable(subject: Subject, function: str, count: int) -> Batch:
+    """Other points at which the equations give numbers in doubles, at most so many."""
+    more = _draw_others(subject, "random", 2 * count)
+    return more.take(np.flatnonzero(subject.is_defined(function, more))[:count])
+
+
 def _draw(subject: Subject, function: str, family: str, seed: int, size: int) -> Batch:
     """A batch of a family, as many of its members as possible with a value."""
     batch = subject.points.draw(family, seed, size)

@@ -22,7 +22,7 @@ from typing import Any, Final
 import numpy as np
 
 from coadjoint.crosscheck.compare import Figures
-from coadjoint.crosscheck.points import Array
+from coadjoint.crosscheck.points import Array, Batch
 from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (
@@ -63,6 +63,9 @@ FAST: Final = "taylor"
 #: Methods of the exact build in one run of a compiler: fewer runs cost less, and all in one would
 #: leave the other processors idle where one system is worked on.
 TOGETHER: Final = 6
+#: How far points are from the start where constraints are kept and rates have kinks, how many
+#: projections move them onto the constraints, and how far they are moved from them in the end.
+FROM_START, SETTLING, OFF = 0.25, 5, 2.0**-8
 #: What compilers are making, by method and target.
 Compiling = Mapping[tuple[str, str], "Future[Path]"]
 
@@ -157,6 +160,8 @@ def check_solvers(
     advance = _load(subject.system.name, numpy, list_compared(programs), compiling, kind)
     solvers = Solvers(subject=subject, text=text, advance=advance)
     batch = draw_points(subject, TRIES, time=START)
+    if text.kinks is not None and "projection" in functions:
+        batch = _move_near_constraints(subject, functions["projection"], batch)
     batch = batch.take(np.arange(max(MEMBERS, batch.size)) % batch.size).take(slice(MEMBERS))
     size = choose_size(solvers, batch)
     steps, choices = check_steps(solvers, batch, size), check_choice(solvers, batch)
@@ -174,6 +179,31 @@ def check_solvers(
         equal=equal,
         together=together,
     )
+
+
+def _move_near_constraints(subject: Subject, project: Function, batch: Batch) -> Batch:
+    """Points near the constraints and the start of a system, at which the rates have a value.
+
+    Far from constraints a step of Newton's method, which a projection is, may lead to the other
+    side of a kink: ``q*(3 - |q|^2)/2`` turns a quaternion round whose square is above 3. No motion
+    comes there.
+    """
+    state, rows = batch.state.copy(), len(subject.programs["projection"].state)
+    given = [batch.parameters]
+    given.append(np.concatenate([batch.arrays[n] for n in batch.driving] or [np.empty((0, 0))]))
+    begin = [q.default or (0.0,) * len(q.components) for q in subject.system.STATE.values()]
+    start = np.concatenate(begin)[:rows, np.newaxis]
+    with np.errstate(all="ignore"):
+        own = state[:rows]
+        moved = ~np.isclose(project(state, *given)[:rows], own).all(axis=1)
+        away = OFF * own[moved]
+        own[moved] = start[moved] + FROM_START * own[moved]
+        for _ in range(SETTLING):
+            own[:] = project(state, *given)[:rows]
+        own[moved] += away
+    near = Batch({**batch.arrays, "state": state})
+    usable = np.flatnonzero(subject.is_defined("rhs", near))
+    return near.take(usable) if usable.size else batch
 
 
 def _list_equal(programs: Mapping[str, Program], methods: Iterable[str]) -> list[str]:

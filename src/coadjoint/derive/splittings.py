@@ -250,9 +250,13 @@ class _Search:
         if not partitions:
             raise NoFlowError(f"its energy has more than {MOST} parts that do not commute")
         try:
-            with self.field.budget(WORK), localcontext(prec=DIGITS):
+            with self.field.budget(WORK), localcontext(prec=DIGITS) as digits:
+                digits.clear_traps()  # NaN is an answer
                 brackets = self._find_brackets()
         except BudgetSpent:
+            return partitions[0], {}
+        brackets = brackets[..., np.isfinite(brackets).all(axis=(0, 1, 2))]
+        if not brackets.size:  # none of the states has an energy, as that of a declared start
             return partitions[0], {}
         errors: dict[tuple[tuple[int, ...], ...], tuple[float, float]] = {}
         for partition in partitions:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.solver import Solve
@@ -44,10 +44,29 @@ class Ratio:
 #: next to coefficients of parameters; what depends on the state, next to coefficients that inputs
 #: and time may drive.
 _FIXED, _DRIVEN, _MEMBER = range(3)
+#: The highest power of a sign in an argument that is written by its values on either side.
+_SIDED: Final = 2
 #: An element as a sum of quotients, one for each denominator that moves with the member.
 Form = tuple[Ratio, ...]
 #: What to compute before it is shared: coefficients by product, for each such denominator.
 _Sums = dict[Any, tuple[list[tuple[Element, int]], dict[Product, Element]]]
+
+
+@dataclass(frozen=True)
+class Sided:
+    """An argument of a function by its values on either side of a kink.
+
+    ``min(u, 1) = (u + 1 - (u - 1)*s)/2`` with ``s = sign(u - 1)`` is 1 where u is larger, but for
+    rounding of ``u + 1``; ``((1 + s) + (1 - s)*u)/2`` is 1 to the bit, so that its ``acos`` has a
+    value.
+
+    Attributes:
+        sign: The generator of the sign.
+        values: What it is for the signs 1 and -1, and for 0 where its square occurs.
+    """
+
+    sign: str
+    values: Mapping[int, Element | Sided]
 
 
 class Lowering:
@@ -81,6 +100,7 @@ class Lowering:
         self._constants: dict[tuple[Fraction, tuple[tuple[str, int], ...]], Element] = {}
         self._numbers = equations.numbers
         self._kept: list[Element] = []
+        self._arguments: dict[str, list[Element | Sided]] = {}
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
         written = list(elements)
         self._loops = loops_under(equations, written)
@@ -200,8 +220,48 @@ class Lowering:
             if name in self._scales:
                 self._coefficient(self._scales.take(name)[0])
             if name in self.field.adjoined:
-                for argument in self.field.adjoined[name].arguments:
-                    self._form(argument, self._level(argument))
+                for argument in self._list_arguments(name):
+                    self._note_argument(argument)
+
+    def _list_arguments(self, name: str) -> list[Element | Sided]:
+        """The arguments of a function, by their values on either side of kinks if that is short."""
+        if name not in self._arguments:
+            known = self.field.adjoined[name]
+            write = _keep if known.function == "sign" else self._write_by_sides
+            self._arguments[name] = [write(argument) for argument in known.arguments]
+        return self._arguments[name]
+
+    def _write_by_sides(self, argument: Element) -> Element | Sided:
+        """An argument by its values on either side of a kink, if these have fewer terms."""
+        field = self.field
+        for name in sorted(field.names_in(argument) & field.adjoined.keys()):
+            if field.adjoined[name].function != "sign":
+                continue
+            try:
+                parts = field.coefficients(argument, name)
+            except ValueError:  # it stands in a divisor, or in a function
+                continue
+            most = max(parts)
+            if not (min(parts) >= 0 and 0 < most <= _SIDED):
+                continue
+            values = {
+                side: field.sum(part * side**power for power, part in parts.items())
+                for side in (1, -1, 0)[: most + 1]
+            }
+            if sum(map(self._count_terms, values.values())) < self._count_terms(argument):
+                return Sided(name, {k: self._write_by_sides(each) for k, each in values.items()})
+        return argument
+
+    def _count_terms(self, element: Element) -> int:
+        return sum(len(written.monomials) for written in self.field.quotients(element))
+
+    def _note_argument(self, argument: Element | Sided) -> None:
+        if isinstance(argument, Sided):
+            self._note_functions((argument.sign,))
+            for value in argument.values.values():
+                self._note_argument(value)
+        else:
+            self._form(argument, self._level(argument))
 
     def _moves(self, element: Element) -> bool:
         """Whether an element depends on the member, not on parameters alone."""
@@ -326,9 +386,24 @@ class Lowering:
                 if name in each.loop_symbols:
                     return self._item(each, name)
             return self.graph.node_of_name(name, self._numbers)
-        levels = [(argument, self._level(argument)) for argument in known.arguments]
-        arguments = (self._build(self._form(each, level), level) for each, level in levels)
-        return self.graph.call(known.function, *arguments)
+        return self.graph.call(known.function, *map(self._argument, self._list_arguments(name)))
+
+    def _argument(self, argument: Element | Sided) -> int:
+        """The node of an argument of a function."""
+        if not isinstance(argument, Sided):
+            level = self._level(argument)
+            return self._build(self._form(argument, level), level)
+        graph, side = self.graph, self._factor(argument.sign)
+        one, minus = graph.number(Fraction(1)), graph.negate(side)
+        weights = {1: graph.sum([one, side]), -1: graph.sum([one, minus])}
+        rest = []
+        if 0 in argument.values:
+            square = graph.multiply(side, side)
+            weights = {1: graph.sum([square, side]), -1: graph.sum([square, minus])}
+            others = graph.sum([one, graph.negate(square)])
+            rest = [graph.product([others, self._argument(argument.values[0])])]
+        parts = [graph.product([weights[k], self._argument(argument.values[k])]) for k in weights]
+        return graph.sum([graph.product([graph.number(Fraction(1, 2)), graph.sum(parts)]), *rest])
 
     def _item(self, solve: Solve, name: str) -> int:
         """The node of what a loop gives."""
@@ -348,6 +423,11 @@ def loops_under(equations: Equations, elements: Iterable[Element]) -> list[Solve
         return []
     names = frozenset[str]().union(*map(equations.setting.field.names_in, elements))
     return [each for each in equations.exact.solves if names.intersection(each.loop_symbols)]
+
+
+def _keep(argument: Element) -> Element:
+    """An argument as it is."""
+    return argument
 
 
 def _mark(element: Element) -> Any:

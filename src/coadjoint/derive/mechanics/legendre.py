@@ -234,7 +234,10 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
     moved = {place: field.substitute(of.momenta[place], guess) for place in block}
     hessian = tuple(tuple(field.substitute(of.mass[i][j], guess) for j in block) for i in block)
     rest = dict.fromkeys(names, field.zero)
-    still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
+    try:
+        still = tuple(tuple(field.substitute(of.mass[i][j], rest) for j in block) for i in block)
+    except ZeroDivisionError as error:  # a root, a logarithm or a divisor of 0 at rest
+        raise _not_solved(of, own, "d2l/dxi2 is not defined there") from error
     for size in range(1, len(block) + 1):
         minor = determinant(tuple(row[:size] for row in still[:size]))
         if not _is_positive(setting, minor):
