@@ -283,6 +283,33 @@ class FamilySystem(System):
         is_field = (self.symbol, self.spectral, self.profiles) != (None, None, None)
         return "points" if is_field else "members"
 
+    @property
+    def length(self) -> str:
+        """The parameter that is the length of the circle or line of fields; "" without one."""
+        lengths = (
+            *(self.profiles.lengths if self.profiles else ()),
+            *(each.length for each in (self.spectral, self.symbol, *self.connections) if each),
+        )
+        return "" if self.torus is not None or not lengths else lengths[0]
+
+    def find_places(self, parameters: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """Where the points of fields stand along their circle or line, in units of its length.
+
+        Args:
+            parameters: Packed, ``(k,)`` or ``(k, *batch)``.
+
+        Returns:
+            ``(N,)``; None of what is no field along a line, or where trajectories differ in it.
+        """
+        import numpy as np
+
+        if not self.length:
+            return None
+        lengths = np.unique(parameters[self.PARAMETERS.rows(self.length)])
+        if len(lengths) != 1:
+            return None
+        return np.array([place for (place,) in self._list_places([float(lengths[0])])])
+
     def _copy(self, index: Index, **changed: Any) -> Self:
         """The same for another index, and what else is changed."""
         given: dict[str, Any] = {
