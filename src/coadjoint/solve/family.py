@@ -292,23 +292,24 @@ class FamilySystem(System):
         )
         return "" if self.torus is not None or not lengths else lengths[0]
 
-    def find_places(self, parameters: NDArray[np.float64]) -> NDArray[np.float64] | None:
-        """Where the points of fields stand along their circle or line, in units of its length.
+    def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Where the points of fields stand, in units of the lengths, by the coordinates' names.
 
         Args:
             parameters: Packed, ``(k,)`` or ``(k, *batch)``.
 
         Returns:
-            ``(N,)``; None of what is no field along a line, or where trajectories differ in it.
+            Places along each, ``(N,)``; none of what is no field, or where trajectories differ.
         """
         import numpy as np
 
         if not self.length:
-            return None
+            return {}
         lengths = np.unique(parameters[self.PARAMETERS.rows(self.length)])
         if len(lengths) != 1:
-            return None
-        return np.array([place for (place,) in self._list_places([float(lengths[0])])])
+            return {}
+        places = [place for (place,) in self._list_places([float(lengths[0])])]
+        return {self.index.name: np.array(places)}
 
     def _copy(self, index: Index, **changed: Any) -> Self:
         """The same for another index, and what else is changed."""

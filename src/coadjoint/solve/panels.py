@@ -135,7 +135,7 @@ def place_rows(solution: Solution) -> tuple[Array, str]:
     """Where the members of a family stand, and what that is: points of a field at their places."""
     system = solution.system
     assert isinstance(system, FamilySystem), system.name
-    places = system.find_places(solution.parameters)
+    places = system.find_coordinates(solution.parameters).get(system.index.name)
     if places is None:
         counted = "member" if system.counted == "members" else "point"
         return np.arange(system.size, dtype=float), counted
