@@ -7,7 +7,7 @@ class CarriageScene extends PlanarScene {
     this.links = this.findLinks();
     this.size = 0.8 * Math.max(0.1, ...this.wheels().map((w) => Math.abs(w.at)), ...this.links.map((each) => Math.max(Math.abs(each.joint), each.length)));
     this.camera.distance = 8 * this.size;
-    this.hint = this.links.length ? "Drag the golden carriage to turn it, the floor to look around" : "Drag to look around; wheels stand where the constraints put them";
+    this.hint = this.links.length ? "Drag the golden carriage to turn it; drag the floor to look around" : "Drag to look around; wheels stand where the constraints put them";
   }
   /* What a variable of the state or of the observables is, for each free velocity of one. */
   slopes(variable, change = () => {}) {

@@ -255,6 +255,9 @@ document.addEventListener("keydown", (event) => {
     event.preventDefault();
   }
 });
+const showPace = () => { id("pace").textContent = `\u00d7\u00a0${Number((10 ** Number(id("speed").value)).toPrecision(2))}`; };
+id("speed").addEventListener("input", showPace);
+showPace();
 id("play").addEventListener("click", () => run(!running));
 id("again").addEventListener("click", reset);
 
@@ -357,7 +360,7 @@ function paint() {
   }
   strip.update(theme, frames % 12 === 0);
   if (frames % 6 === 0) {
-    id("clock").textContent = `${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
+    id("clock").textContent = `t = ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
     if (id("hint").textContent !== view.hint) id("hint").textContent = view.hint;
     if (running) showSliders(false);
   }

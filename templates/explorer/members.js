@@ -11,7 +11,7 @@ class MembersScene extends Scene {
     this.movable = scene.shape !== "frames";
     this.traced = ["space", "plane", "globe"].includes(scene.shape);
     const kinds = { space: "a place in space", plane: "a place in the plane", globe: "a place on the sphere", arrows: "a vector", frames: "a body", stems: "a number along the line" };
-    this.hint = `${many} members, each with ${kinds[scene.shape]}${this.every > 1 ? `; one of ${this.every} is drawn` : ""}. Drag ${this.movable ? `one to ${scene.shape === "arrows" ? "turn" : "move"} it, the space around them to look` : "to look around"}`;
+    this.hint = `${many} members, each with ${kinds[scene.shape]}${this.every > 1 ? `; ${this.shown.length} of them are drawn` : ""}. Drag ${this.movable ? `one to ${scene.shape === "arrows" ? "turn" : "move"} it; drag elsewhere to look around` : "to look around"}`;
     const at = this.places();
     this.middle = scaled(1 / at.length, at.reduce(plus));
     if (scene.shape === "globe" || scene.shape === "arrows") this.middle = [0, 0, 0];

@@ -4,14 +4,14 @@
 class ParticleScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag a particle or the tip of its velocity, the space around them to look";
+    this.hint = "Drag a particle or the tip of its velocity; drag elsewhere to look around";
     this.camera.pitch = 0.5;
     this.extent = Math.max(...this.positions().map(norm), 0.5);
     const known = new Map(scene.tables.state.map((each) => [each.name, each])); // lengths one without a unit are directions
     this.directions = scene.places.every((each, k) => known.get(each.name)?.units[0] === "1" && Math.abs(norm(this.positions()[k]) - 1) < 1e-9);
     this.rods = this.directions ? findRods(model) : null;
-    if (this.rods) Object.assign(this, { hint: "Drag a mass or the tip of the rate of its rod, the space around them to look", extent: 1 });
-    else if (this.directions) this.hint = "Directions are points of a sphere: drag one or the tip of its rate, the space around them to look";
+    if (this.rods) Object.assign(this, { hint: "Drag a mass or the tip of the rate of its rod; drag elsewhere to look around", extent: 1 });
+    else if (this.directions) this.hint = "Directions are points of a sphere. Drag one or the tip of its rate; drag elsewhere to look around";
     this.camera.distance = (this.rods ? 4.4 : 6.5) * this.extent;
     if (this.rods) this.camera.target = [0, 0, -0.5]; // half as deep as they reach
     this.central = this.isCentral();

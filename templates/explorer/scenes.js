@@ -40,7 +40,7 @@ class Scene {
 class BodyScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag the body to turn it, the space around it to look";
+    this.hint = "Drag the body to turn it; drag elsewhere to look around";
     this.flip = [1, 0, 0, 0];
     const down = scene.vertical && scene.vertical.depth && scene.vertical.depth.length === 1;
     if (down && model.has("energy")) {
@@ -206,7 +206,7 @@ class BodyScene extends Scene {
 class RollingScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = scene.slipping ? "It slides on the plane: orange is the path of the contact. Drag the body to turn it" : "Drag the body to turn it, the floor to look around";
+    this.hint = scene.slipping ? "It slides on the plane: orange is the path of the contact. Drag the body to turn it" : "Drag the body to turn it; drag the floor to look around";
     this.surface();
   }
   surface() {
@@ -398,7 +398,7 @@ class PlanarScene extends Scene {
 class FieldScene extends Scene {
   constructor(model, drawing) {
     super(model, drawing);
-    this.hint = "Drag the coloured curve, which is the field, to pull it; the space around it to look";
+    this.hint = "Drag the coloured curve, which is the field, to pull it; drag elsewhere to look around";
     this.camera.pitch = 0.5;
     this.camera.distance = 8.2;
     const values = this.curve();
@@ -452,25 +452,4 @@ function hue(s) {
   return [0.52 + 0.38 * Math.cos(a), 0.50 + 0.16 * Math.cos(a - 1.4), 0.50 - 0.32 * Math.cos(a + 0.3)];
 }
 
-/* The first two or three rows of a state as a point that moves. */
-class PortraitScene extends Scene {
-  constructor(model, drawing) {
-    super(model, drawing);
-    this.hint = "The first rows of the state as a point in space; drag to look around";
-    this.names = scene.tables.state.flatMap((each) => each.components).slice(0, 3);
-    this.extent = Math.max(...this.point().map(Math.abs), 1e-3);
-    this.camera.distance = 6 * this.extent;
-  }
-  point() { return [0, 1, 2].map((k) => (k < this.names.length ? this.model.x[k] : 0)); }
-  draw(theme) {
-    const { drawing } = this, at = this.point();
-    this.extent = Math.max(this.extent, norm(at) * 0.9);
-    this.camera.distance = Math.max(this.camera.distance, 4.5 * this.extent);
-    this.names.forEach((name, k) => { drawing.line([[0, 0, 0], scaled(this.extent, E[k])], () => [...theme.steel, 0.8], 2); this.label(name, scaled(1.06 * this.extent, E[k])); });
-    this.trail("point").add(at, 0.005 * this.extent);
-    drawing.line(this.trail("point").points, fade(BLUE), 2.5);
-    drawing.draw("sphere", [1, 0, 0, 0], at, Array(3).fill(0.04 * this.extent), ORANGE);
-  }
-}
-
-const SCENES = { body: BodyScene, rolling: RollingScene, planar: PlanarScene, strand: FieldScene, profile: FieldScene, portrait: PortraitScene };
+const SCENES = { body: BodyScene, rolling: RollingScene, planar: PlanarScene, strand: FieldScene, profile: FieldScene };

@@ -27,7 +27,7 @@ class SurfaceScene extends Scene {
     this.most = this.field().reduce((most, v) => Math.max(most, Math.abs(v)), 1e-12);
     const name = plainName(scene.tables.state[0].name);
     const told = `${name}: purple where it is positive, orange where it is negative, up to ${shorten(this.most)}${unitText(scene.tables.state[0].units[0])}`;
-    this.hint = `${told}. ${scene.surface === "plane" ? "Drag across the plane to stir it, the space around it to look" : "Drag to look around"}`;
+    this.hint = `${told}. ${scene.surface === "plane" ? "Drag across the plane to stir it; drag elsewhere to look around" : "Drag to look around"}`;
     if (this.round) Object.assign(this.camera, { distance: 4.6, pitch: 0.35 });
     else Object.assign(this.camera, { distance: 6, pitch: 1.15, yaw: -Math.PI / 2 });
   }

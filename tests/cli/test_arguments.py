@@ -38,3 +38,14 @@ def test_shell_completes_systems_and_files(folder):
     files = [item.value for item in complete.get_completions(["show"], "own/r")]
     assert files == ["own/robot.toml"]
     assert "crosscheck" in [item.value for item in complete.get_completions([], "cr")]
+
+
+def test_a_near_name_is_offered_first_and_few_are_shown(tmp_path, monkeypatch):
+    """The nearest systems and specs of this folder; not a hundred names in front of them."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mytop.toml").touch()
+    with pytest.raises(SpecError, match=r"Did you mean '\./mytop\.toml'") as caught:
+        spec_path("mytopp")
+    assert len(str(caught.value)) < 200
+    with pytest.raises(SpecError, match=r"here\. Did you mean 'heavy_top'.*`coadjoint list`"):
+        spec_path("heavytop")

@@ -71,3 +71,19 @@ def test_file_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(OutputError, match="cannot be written") as caught:
         write_text(tmp_path / "missing" / "a.csv", "")
     assert caught.value.path == str(tmp_path / "missing" / "a.csv")
+
+
+def test_words_stay_whole_on_a_narrow_terminal(capsys, monkeypatch):
+    """Options of a compiler at 80 columns: in a table where they fit, else in lines."""
+    options = "cc (-std=c11 -fno-math-errno -fno-tree-loop-distribution -fno-tree-slp-vectorize)"
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    for columns in (120, 80, 50):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        rows = [
+            ("compiler", "ok", options, "set CC or take numpy-kernels-only"),
+            ("b", "ok", "", ""),
+        ]
+        print_table(("", "status", "found", "what to do"), rows)
+        shown = capsys.readouterr().out
+        assert [word for word in options.split() if word not in shown] == []
+        assert max(map(len, shown.splitlines())) <= columns

@@ -146,6 +146,7 @@ ANGLE = "explorer.model.read(explorer.view.knobs[0].angle)[0]"
             "explorer.model.x[3]",
         ),
         ("euler_2d", "[0.1, 0.1, 0]", "explorer.model.y[0]"),
+        ("n_link_chain", "explorer.view.masses()[2]", "explorer.model.x[2]"),
     ],
 )  # fmt: skip
 def test_what_is_drawn_can_be_dragged(page, pages, name, point, value):
@@ -197,6 +198,51 @@ def test_rods_are_a_linkage_by_their_energy(page, pages):
     np.testing.assert_allclose(np.linalg.norm([first, second - first], axis=1), [0.3, 0.7])
     page.run("explorer.model.call = (name, x, out) => (out[0] = x[6] * x[9], out)")
     assert page.run("findRods(explorer.model)") is None  # no mass has such an energy
+
+
+def test_links_of_a_pendulum_are_found_by_its_last_mass(page, pages):
+    """A chain in the plane has the length of the slider; where x is no sum of sines it has none."""
+    show(page, pages("n_link_chain"), calm=True)
+    page.run("explorer.model.p[1] = 0.7; explorer.view.moving(); explorer.model.observe()")
+    np.testing.assert_allclose(page.run("explorer.view.lengths"), [0.7] * 4, rtol=1e-12)
+    x, _, z = page.run("explorer.view.masses()[3]")
+    np.testing.assert_allclose([x, z], page.run("[...explorer.model.y].slice(1, 3)"), rtol=1e-12)
+    page.run("""(() => {
+      const { model } = explorer, call = model.call.bind(model);
+      model.call = (name, x, out) => { call(name, x, out); out[1] += 0.1 * x[0] ** 2; return out; };
+    })()""")
+    assert page.run("findLinks(explorer.model)") is None
+
+
+def test_a_portrait_shows_rows_that_move_or_all_vectors(page, pages):
+    """Of su(4) the first three rows are conserved; of so(4) both vectors are drawn."""
+    show(page, pages("zeitlin_su_4"), calm=True)
+    rows = page.run("explorer.view.parts[0]")
+    assert len(set(rows)) == 3
+    assert not {0, 1, 2} & set(rows)
+    start = page.run("[...explorer.model.x]")
+    end = page.run(
+        "for (let k = 0; k < 100; k++) explorer.model.step(explorer.model.h); [...explorer.model.x]"
+    )
+    moved = np.abs(np.subtract(end, start))
+    assert moved[:3].max() < 1e-9
+    assert moved[rows].min() > 0.1 * moved.max()
+    show(page, pages("so4_body"), calm=True)
+    assert page.run("explorer.view.parts") == [[0, 1, 2], [3, 4, 5]]
+    assert page.run("explorer.view.tips") == ["M", "N"]
+
+
+def test_a_page_is_as_high_as_its_window(page, pages):
+    """Nothing is scrolled in a wide window, and the slider of speed says its value."""
+    show(page, pages("rigid_body"), width=1280, height=900)
+    assert page.run("document.documentElement.scrollHeight") == 900
+    assert page.run("document.getElementById('pace').textContent.replace(/\\s/g, ' ')") == "× 1"
+    page.run(
+        "Object.assign(document.getElementById('speed'), { value: -1 })"
+        ".dispatchEvent(new Event('input'))"
+    )
+    assert page.run("document.getElementById('pace').textContent.endsWith('0.1')")
+    assert page.run("document.getElementById('clock').textContent.startsWith('t = ')")
 
 
 def test_a_raised_picture_is_met_where_it_is_drawn(page, pages):

@@ -7,7 +7,16 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError, OutputError
 from coadjoint.solve.solution import Solution
-from coadjoint.systems import heavy_top, quadrotor, rigid_body, so4_body
+from coadjoint.systems import (
+    euler_2d,
+    heavy_top,
+    kdv,
+    point_vortices,
+    quadrotor,
+    rigid_body,
+    so4_body,
+    spin_chain,
+)
 from tests.solve.runs import RUNS, check_same, made
 
 xarray = pytest.importorskip("xarray", reason="the extra 'data' is not installed")
@@ -62,6 +71,48 @@ def test_matrices_have_one_component_for_each_entry():
     found = solution.to_xarray()
     for name, quantity in so4_body.system.STATE.items():
         assert found[f"{name}_component"].values.tolist() == list(quantity.components)
+
+
+def test_points_of_a_field_are_along_space():
+    """``ds["Xi"].sel(s=2.5)`` is the strain there; s has the places of points, in its unit."""
+    chain = spin_chain.simulate(None, (0, 0.1), {"L": 8}, samples=3)
+    found = chain.to_xarray()
+    assert found["Xi"].dims == ("Xi_component", "s", "time")
+    np.testing.assert_array_equal(found["s"], 8 * np.arange(256) / 256)
+    np.testing.assert_array_equal(found["s"], chain["s"])
+    row = found["Xi"].sel(Xi_component="Xi2", s=2.5)
+    np.testing.assert_array_equal(row, chain["Xi2[80]"])
+    wave = kdv.simulate(None, (0, 0.01), samples=3)
+    assert wave.to_xarray()["m"].dims == ("s", "time")
+    assert "s" in wave
+    assert "s" not in made()
+    plane = euler_2d.simulate(None, (0, 0.1), samples=3).to_xarray()
+    assert plane["w"].dims == ("x", "y", "time")
+    np.testing.assert_allclose(plane["y"], 2 * np.pi * np.arange(32) / 32, rtol=1e-5)
+
+
+def test_members_of_a_system_are_along_its_index():
+    """Vortices by their numbers, also where trajectories are a batch."""
+    start = np.random.default_rng(3).normal(size=(point_vortices.system.STATE.size, 2))
+    motion = point_vortices.simulate(start, (0, 0.1), samples=3)
+    found = motion.to_xarray()
+    (first, *_) = point_vortices.system.STATE
+    assert found[first].dims[-3:] == ("i", "member", "time")
+    numbers = found["i"].values.tolist()
+    assert numbers == list(range(numbers[0], numbers[0] + 6))
+    np.testing.assert_array_equal(found[first].sel(member=1), motion[first][..., 1, :])
+
+
+@pytest.mark.parametrize("module", [spin_chain, point_vortices, euler_2d])
+def test_fields_and_members_read_back(module, tmp_path):
+    """To the last bit, also of a batch; a value that is spoiled in the file is seen."""
+    system = module.system
+    state = np.random.default_rng(4).normal(size=(system.STATE.size, 3, 2))
+    run = Solution(system, np.array([0.0, 1.0]), state, system.pack(), "OK", "",
+                   course=made((3,)).course)  # fmt: skip
+    run.to_netcdf(tmp_path / "run.nc")
+    again = Solution.from_netcdf(system, tmp_path / "run.nc")
+    assert again.state.tobytes() == run.state.tobytes()
 
 
 def test_members_are_an_axis():

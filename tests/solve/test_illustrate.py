@@ -7,7 +7,7 @@ import pytest
 
 from coadjoint.cli.simulate import find_start
 from coadjoint.solve.illustrate import _take_colours, describe
-from coadjoint.solve.plot import COLOURS
+from coadjoint.solve.panels import COLOURS
 from coadjoint.systems import (
     chaplygin_ball,
     euler_disk,
@@ -52,7 +52,7 @@ def test_a_time_without_a_unit_is_a_number():
     motion = knife_edge_cvt.simulate(
         find_start(knife_edge_cvt.system, ()), (0, 1), samples=20, progress=False
     )
-    assert "over 20, by" in describe(motion)
+    assert "over a time of 1, by" in describe(motion)
 
 
 def test_lines_keep_their_colours_among_those_of_a_surface():

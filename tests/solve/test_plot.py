@@ -5,8 +5,10 @@ import sys
 import numpy as np
 import pytest
 
+from coadjoint.cli.simulate import find_start
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.plot import _choose_limits, plot
+from coadjoint.solve.panels import PARTS, _choose_limits, list_panels
+from coadjoint.solve.plot import plot
 from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
 from coadjoint.systems import (
@@ -16,7 +18,10 @@ from coadjoint.systems import (
     kdv,
     n_body,
     rigid_body,
+    se3_strand,
     so8_body,
+    spin_chain_chiral,
+    toda_lattice,
 )
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
@@ -58,12 +63,12 @@ def plot_figure(solution):
     return figure
 
 
-def test_components_are_drawn_where_there_is_no_sphere(body, tmp_path):
-    """A body whose momentum is not conserved in length, by hand."""
-    spoiled = rigid_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=50)
-    spoiled.state[0] *= np.linspace(1, 2, 50)
+def test_components_are_drawn_where_there_is_no_sphere():
+    """A top whose vertical is not conserved in length, by hand."""
+    spoiled = heavy_top.simulate([0.3, 0, 2.0, 0.6, 0, 0.8], (0, 5), samples=50)
+    spoiled.state[3:] *= np.linspace(1, 2, 50)
     labels = [text.get_text() for axes in plot_figure(spoiled).axes for text in legend(axes)]
-    assert {"Π$_{1}$", "Π$_{2}$", "Π$_{3}$"} <= set(labels)
+    assert {"Π$_{1}$", "Γ$_{2}$", "Γ$_{3}$"} <= set(labels)
 
 
 def legend(axes):
@@ -87,23 +92,71 @@ def test_many_members_are_colours_over_time():
     state = np.vstack([np.cos(np.arange(30)), np.sin(np.arange(30)), np.zeros(30)]).ravel()
     motion = spins.simulate(state, (0, 1), samples=7)
     figure = plot_figure(motion)
-    drawn = [axes.collections[0].get_array() for axes in figure.axes[:6:2]]
+    drawn = [axes.collections[0].get_array() for axes in figure.axes[:3]]
     assert np.array_equal(drawn, motion["S"])
-    assert [axes.get_ylabel() for axes in figure.axes[:6:2]] == ["member"] * 3
+    assert [axes.get_ylabel() for axes in figure.axes[:3]] == ["member"] * 3
+
+
+def test_numbers_of_many_members_are_lines_in_the_order_of_members():
+    """The particles of Toda's lattice: where most do not move yet, colours would be all alike."""
+    start = find_start(toda_lattice.system, ())
+    motion = toda_lattice.simulate(start, (0, 1), samples=5)
+    (lines,) = plot(motion).axes[0].collections
+    assert np.array_equal([piece[:, 1] for piece in lines.get_segments()], motion["q"])
+    assert lines.get_array().tolist() == list(range(100))
+
+
+@pytest.mark.parametrize("module", [spin_chain_chiral, se3_strand, toda_lattice])
+def test_panels_and_the_strip_share_one_axis_of_time(module):
+    """In each column all begin and end at the same places, and show the same times."""
+    start = find_start(module.system, ())
+    figure = plot(module.simulate(start, (0, 0.1), samples=5))
+    figure.draw_without_rendering()
+    panels = [axes for axes in figure.axes if hasattr(axes, "coadjoint_time")]
+    assert len(panels) >= 3
+    ends = {tuple(np.round(axes.get_position().intervalx, 6)) for axes in panels}
+    assert len(ends) == 1 + (module is se3_strand)  # of thirteen panels, in two columns
+    assert {axes.get_xlim() for axes in panels} == {(0.0, 0.1)}
 
 
 def test_each_component_has_its_own_unit():
-    """Of attitudes and places of rods: directions have none, and places are in metres."""
+    """Of twelve rows of frames each third one is a place, in metres."""
     chain = elastic_chain.simulate(None, (0, 0.1), samples=5)
-    labels = [axes.get_ylabel() for axes in plot(chain).axes if axes.get_ylabel().startswith("g$")]
+    labels = [each.label for each in list_panels(chain) if each.label.startswith("g$")]
     assert len(labels) == 12
     assert [label.endswith("[m]") for label in labels] == [False, False, False, True] * 3
 
 
-def test_points_of_a_field_are_no_members():
-    """Rows of a field are points along its coordinate."""
+def test_points_of_a_field_stand_at_their_places():
+    """Rows are at s = 0, L/N, ...; below them is the energy per length, m^2/2."""
     wave = kdv.simulate(None, (0, 0.01), samples=3)
-    assert plot(wave).axes[0].get_ylabel() == "point s"
+    field, energy = (axes for axes in plot(wave).axes[:2])
+    assert field.get_ylabel() == energy.get_ylabel() == "s"
+    (_, density) = list_panels(wave)
+    np.testing.assert_allclose(density.places, 2 * np.arange(256) / 256, rtol=1e-15)
+    np.testing.assert_allclose(density.values, wave["m"] ** 2 / 2, rtol=1e-14)
+    np.testing.assert_allclose(density.values.sum(axis=0) * 2 / 256, wave["energy"], rtol=1e-14)
+
+
+def test_a_strip_shows_the_largest_change_of_each_part_and_zero_at_its_edge(body):
+    """No line is broken, and the axis has numbers, where the change is 0 at times."""
+    motion = rigid_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=2001)
+    strip = plot(motion).axes[-1]
+    line = strip.lines[0]
+    change = np.abs(motion.change("energy")) / np.abs(motion["energy"]).max()
+    floor, above = strip.get_ylim()
+    assert (change == 0).any()
+    assert len(line.get_ydata()) == PARTS
+    assert np.isfinite(line.get_ydata()).all()
+    assert line.get_ydata().max() == change.max() < above
+    assert line.get_ydata().min() >= floor
+    labels = [label.get_text() for label in strip.get_yticklabels()]
+    assert labels[0] == "0"
+    assert len(labels) >= 2
+    rest = rigid_body.simulate([0.0, 0.0, 1.0], (0, 1), samples=5)  # nothing changes at all
+    strip = plot(rest).axes[-1]
+    assert set(strip.lines[0].get_ydata()) == {strip.get_ylim()[0]}
+    assert "no change" in strip.lines[0].get_label()
 
 
 def test_the_drift_of_what_begins_at_zero_is_drawn_as_it_is():

@@ -10,13 +10,26 @@ import pytest
 from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.illustrate import illustrate
+from coadjoint.solve.linkages import find_pendulum
 from coadjoint.solve.plot import draw
-from coadjoint.solve.scenes import choose_view, energy_levels, faces_viewer, find_paths, find_sphere
+from coadjoint.solve.scenes import (
+    choose_view,
+    energy_levels,
+    faces_viewer,
+    find_paths,
+    find_sphere,
+    find_spheres,
+)
 from coadjoint.spec import read_spec
 from coadjoint.systems import (
     kepler,
+    metriplectic_body,
+    monopole_kepler,
     n_body,
+    n_link_chain,
     rigid_body,
+    so4_body,
+    sphere_vortices,
     stochastic_rigid_body,
 )
 from tests.specs import render_claims
@@ -31,6 +44,77 @@ def test_orbits_are_found_by_their_unit():
     bodies = n_body.simulate(None, (0, 3), samples=20)
     paths = find_paths(bodies)
     assert (paths.names, paths.members.shape) == (("r1", "r2"), (3, 2, 20))
+    assert find_paths(rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)) is None
+
+
+def test_a_centre_is_where_the_force_points_to():
+    """Of Kepler's problem; a force that is not along the place has no centre there."""
+    orbit = kepler.simulate({"r": [1, 0, 0.2], "v": [0, 1, 0.1]}, (0, 3), samples=50)
+    assert find_paths(orbit).central
+    beside = monopole_kepler.simulate([1, 0, 0.2, 0, 1, 0.1], (0, 3), samples=50)
+    assert not find_paths(beside).central  # a magnetic force is across the velocity
+    assert not find_paths(n_body.simulate(None, (0, 1), samples=20)).central
+
+
+def test_links_in_the_plane_are_found_by_the_place_of_the_last_mass():
+    """Each mass by hand from the angles; without the observables there are no links."""
+    motion = n_link_chain.simulate({"theta_2": -0.3}, (0, 2), {"l": 0.7}, samples=60)
+    paths = find_paths(motion)
+    assert (paths.linked, paths.unit, paths.names) == (True, "m", ("x", "y"))
+    x = np.cumsum([0.7 * np.sin(motion[f"theta_{n}"]) for n in (1, 2, 3, 4)], axis=0)
+    y = np.cumsum([-0.7 * np.cos(motion[f"theta_{n}"]) for n in (1, 2, 3, 4)], axis=0)
+    np.testing.assert_allclose(paths.members, np.stack([x, y], axis=1), rtol=0, atol=1e-12)
+    names = ("theta_1", "theta_2", "theta_3", "theta_4", "x", "y")
+    known = {name: motion[name] for name in names}
+    assert find_pendulum(_Known(motion.system, known)) is not None
+    known["y"] = known["y"] + 1e-6
+    assert find_pendulum(_Known(motion.system, known)) is None
+
+
+class _Known(dict):
+    """Values of a motion by name."""
+
+    def __init__(self, system, values):
+        super().__init__(values)
+        self.system, self.batch = system, ()
+
+    def __len__(self):
+        return len(self["x"])
+
+
+def test_vectors_of_few_members_share_a_sphere():
+    """Three vortices on one sphere; of one that leaves it there is none."""
+    motion = sphere_vortices.simulate(None, (0, 1), samples=9)
+    (sphere,) = find_spheres(motion)
+    assert (sphere.radius, sphere.labels) == (pytest.approx(1), ("x[0]", "x[1]", "x[2]"))
+    np.testing.assert_array_equal(sphere.paths[2], motion["x"][:, 2])
+    motion.state[0] *= 1.1
+    assert find_spheres(motion) == ()
+
+
+def test_the_momenta_of_four_dimensions_move_on_two_spheres():
+    """M + N and M - N, since so(4) is two copies of so(3); M and N alone change their lengths."""
+    motion = so4_body.simulate([1, 0.2, -0.4, 0.3, 0.5, 0.6], (0, 5), samples=50)
+    assert find_sphere(motion) == ""
+    both = find_spheres(motion)
+    for sphere, sign in zip(both, (1, -1), strict=True):
+        np.testing.assert_array_equal(sphere.paths[0], motion["M"] + sign * motion["N"])
+    motion.state[:3] *= 1.01
+    assert find_spheres(motion) == ()
+
+
+def test_a_vector_that_stands_still_is_no_scene():
+    """A body at rest in its frame is drawn in components."""
+    assert find_sphere(rigid_body.simulate([0, 0, 1], (0, 1), samples=5)) == ""
+
+
+def test_a_vector_that_grows_moves_between_two_spheres():
+    """The momentum of a body that relaxes; of one that does not relax there is one sphere."""
+    motion = metriplectic_body.simulate([1.0, 0.3, -0.8], (0, 20), samples=50)
+    paths = find_paths(motion)
+    size = np.linalg.norm(motion["Pi"], axis=0)
+    assert paths.radii == (size[0], size[-1])
+    assert size[0] < size[-1]
     assert find_paths(rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)) is None
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.solve.plot import unit_label
+from coadjoint.solve.labels import unit_label
 from coadjoint.systems import rigid_body
 from tests.solve.systems import FALL, OSCILLATOR, build
 

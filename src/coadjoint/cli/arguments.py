@@ -59,13 +59,16 @@ def spec_path(system: str) -> Path:
         return Path(f"{system}.toml" if _is_own(system) else system)
     names = shipped_names()
     if system not in names:
-        near = get_close_matches(system, names, n=1)
+        here = [path.stem for path in Path().glob("*.toml")]
+        near = get_close_matches(system, [*here, *names], n=3)
         own = f"A spec of your own is a path: ./{system}.toml."
-        hint = f"Did you mean {near[0]!r}?" if near else own
+        shown = [f"./{name}.toml" if name in here else name for name in near]
+        hint = f"Did you mean {' or '.join(map(repr, shown))}?" if near else own
         raise SpecError(
-            f"no shipped system is called {system!r}, and there is no {system}.toml here; expected "
-            f"one of {', '.join(names)}. {hint}",
+            f"no shipped system is called {system!r}, and there is no {system}.toml here. {hint} "
+            f"`coadjoint list` shows the {len(names)} shipped systems.",
             found=system,
+            expected=names,
         )
     return derivations_folder() / f"{system}.toml"
 

@@ -26,6 +26,8 @@ from coadjoint.files import write_whole
 
 #: Characters of a column that never wraps, and of one that does, at the least.
 RIGID, FLEXIBLE = 16, 12
+#: Characters of words that are never broken.
+WORD = 40
 #: Called with system, stage, stages done, stages in all.
 Progress = Callable[[str, str, int, int], None]
 
@@ -76,16 +78,23 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     """A table on standard output; columns whose name begins with ``>`` are aligned to the right.
 
     In a pipe no cell is ever cut or wrapped, whatever the width. On a terminal long cells go on
-    below themselves and short ones, such as names, stay whole; where even these do not fit next to
-    each other, each row is a block with a line for each column.
+    below themselves and short ones, such as names, and words stay whole; where even these do not
+    fit next to each other, each row is a block with a line for each column.
     """
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else 10_000
     cells = [[printable(cell) for cell in row] for row in rows]
     heads = [column.removeprefix(">") for column in columns]
     natural = [max(map(len, column)) for column in zip(heads, *cells, strict=True)]
     rigid = [n == 0 or size <= RIGID for n, size in enumerate(natural)]
-    least = sum(size if fixed else FLEXIBLE for size, fixed in zip(natural, rigid, strict=True))
-    if least + 3 * len(columns) > width:
+    words = [
+        max(len(word) for cell in column for word in ["", *cell.split()])
+        for column in zip(heads, *cells, strict=True)
+    ]
+    least = [
+        size if fixed else max(FLEXIBLE, min(word, WORD))
+        for size, fixed, word in zip(natural, rigid, words, strict=True)
+    ]
+    if sum(least) + 3 * len(columns) > width:
         _print_blocks(heads, cells, title, width)
         return
     from rich.box import SIMPLE_HEAD
@@ -97,12 +106,12 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     console = Console(file=drawn, width=width, force_terminal=False, color_system=None)
     has_lines = (sys.stdout.encoding or "").lower().startswith("utf")
     table = Table(box=SIMPLE_HEAD if has_lines else None)
-    for column, fixed, size in zip(columns, rigid, natural, strict=True):
+    for column, fixed, size in zip(columns, rigid, least, strict=True):
         table.add_column(
             column.removeprefix(">"),
             justify="right" if column.startswith(">") else "left",
             no_wrap=fixed,
-            min_width=size if fixed else None,
+            min_width=size,
             overflow="fold",
         )
     for row in cells:

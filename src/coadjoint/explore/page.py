@@ -36,6 +36,7 @@ SCRIPTS: Final = (
     "model.js",
     "scenes.js",
     "particles.js",
+    "portraits.js",
     "carriages.js",
     "members.js",
     "surfaces.js",

@@ -17,7 +17,8 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.labels import tell_time
-from coadjoint.solve.plot import COLOURS, draw, new_figure
+from coadjoint.solve.panels import COLOURS
+from coadjoint.solve.plot import draw, new_figure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,6 +8,9 @@ Read next: `coadjoint.solve.carried`.
 from __future__ import annotations
 
 import json
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +30,7 @@ from coadjoint.solve.carried import (
     rebuild,
 )
 from coadjoint.solve.event_tables import list_columns
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.step_tables import as_json, describe_dense
 
 if TYPE_CHECKING:
@@ -49,7 +53,11 @@ FORM = "form_"
 
 
 def to_xarray(solution: Solution) -> Any:
-    """A dataset: a variable for each quantity, ``(name_component, *members, time)``."""
+    """A dataset: a variable for each quantity, ``(name_component, *members, time)``.
+
+    What equal members or points of fields have is ``(name_component, i, *members, time)``, along
+    the index ``i`` or the coordinate ``s``, which has the places of points.
+    """
     xarray = import_extra("xarray", "to_xarray")
     quantities, batch = list_quantities(solution), list_batch(solution)
     axes = name_axes(batch, quantities)
@@ -58,14 +66,17 @@ def to_xarray(solution: Solution) -> Any:
         for axis, size in zip(axes, batch, strict=True)
     }
     coordinates["time"] = ("time", solution.time, {"units": solution.unit("time")})
+    space = _add_space(solution, coordinates, {*quantities, *axes, "time"})
     variables: dict[str, Any] = {}
     for name, quantity in quantities.items():
-        lead = _add_components(coordinates, name, quantity)
-        attributes = {"units": quantity.unit}
+        along = _is_along(quantity, space)
+        own = _take_one(quantity, prod(space.values())) if along else quantity
+        lead = _add_components(coordinates, name, own)
         values = solution[name]
-        if len(quantity.shape) > 1:  # a matrix, along the one axis of its components
-            values = values.reshape(-1, *values.shape[2:])
-        variables[name] = ([*lead, *axes, "time"], values, attributes)
+        sizes = (*([len(own.components)] * bool(lead)), *(space.values() if along else ()))
+        values = values.reshape(*sizes, *values.shape[len(quantity.shape) :])
+        dimensions = [*lead, *(space if along else ()), *axes, "time"]
+        variables[name] = (dimensions, values, {"units": quantity.unit})
     attributes = describe_run(solution) | {
         FORM + name: value for name, value in describe_form(solution).items()
     }
@@ -79,6 +90,50 @@ def to_xarray(solution: Solution) -> Any:
     _add_steps(solution, coordinates, variables, attributes)
     _add_parameters(solution, axes, coordinates, variables, attributes)
     return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _add_space(
+    solution: Solution, coordinates: dict[str, Any], taken: Collection[str]
+) -> dict[str, int]:
+    """The axes of equal members or of points of fields and how long they are, with their places.
+
+    Entries of matrices have none.
+    """
+    system = solution.system
+    if not isinstance(system, FamilySystem) or system.index.of_rows:
+        return {}
+    places = system.find_coordinates(solution.parameters)
+    if system.torus is not None:
+        sizes = dict(zip(system.torus.coordinates, system.torus.sizes, strict=True))
+        lengths = dict(zip(sizes, system.torus.lengths, strict=True))
+    else:
+        sizes, lengths = {system.index.name: system.size}, {system.index.name: system.length}
+    found = {}
+    for name, size in sizes.items():
+        assert size is not None, system.name
+        axis = name + "_" * (name in taken)
+        found[axis] = size
+        if name in places:
+            unit = system.PARAMETERS[lengths[name]].unit
+            coordinates[axis] = (axis, places[name], {"units": unit})
+        elif system.counted == "members":
+            numbers = np.arange(size) + system.index.first_name
+            coordinates[axis] = (axis, numbers, {"units": "1"})
+    return found
+
+
+def _is_along(quantity: Quantity, space: Mapping[str, int]) -> bool:
+    """Whether each member or point has a quantity of its own."""
+    sizes = tuple(space.values())
+    own = bool(space) and quantity.shape[-len(sizes) :] == sizes
+    return own and quantity.components[0].endswith("]")
+
+
+def _take_one(quantity: Quantity, count: int) -> Quantity:
+    """A quantity of all members as that of one."""
+    names = tuple(name.partition("[")[0] for name in quantity.components[::count])
+    shape = (len(names),) if names != (quantity.name,) else ()
+    return replace(quantity, shape=shape, components=names, default=None)
 
 
 def _add_components(coordinates: dict[str, Any], name: str, quantity: Quantity) -> list[str]:
@@ -192,7 +247,13 @@ def _find_rows(system: System, dataset: Any) -> Any:
         table = next(table for table in tables if component in table.components)
         quantity = table.of_component(component)
         whole: Array = dataset[quantity.name].values
-        return whole[quantity.components.index(component)] if quantity.shape else whole
+        if not quantity.shape:
+            return whole
+        count = len(quantity.components)  # along one axis, or along that and those of space
+        axes = next(n for n in range(1, whole.ndim) if prod(whole.shape[:n]) == count)
+        flat = whole.reshape(count, *whole.shape[axes:])
+        row: Array = flat[quantity.components.index(component)]
+        return row
 
     return rows
 

@@ -285,6 +285,34 @@ class FamilySystem(System):
         is_field |= self.torus is not None
         return "points" if is_field else "members"
 
+    @property
+    def length(self) -> str:
+        """The parameter that is the length of the circle or line of fields; "" without one."""
+        lengths = (
+            *(self.profiles.lengths if self.profiles else ()),
+            *(each.length for each in (self.spectral, self.symbol, *self.connections) if each),
+        )
+        return "" if self.torus is not None or not lengths else lengths[0]
+
+    def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Where the points of fields stand, in units of the lengths, by the coordinates' names.
+
+        Args:
+            parameters: Packed, ``(k,)`` or ``(k, *batch)``.
+
+        Returns:
+            Places along each, ``(N,)``; none of what is no field, or where trajectories differ.
+        """
+        import numpy as np
+
+        if not self.length:
+            return {}
+        lengths = np.unique(parameters[self.PARAMETERS.rows(self.length)])
+        if len(lengths) != 1:
+            return {}
+        places = [place for (place,) in self._list_places([float(lengths[0])])]
+        return {self.index.name: np.array(places)}
+
     def _copy(self, index: Index, **changed: Any) -> Self:
         """The same for another index, and what else is changed."""
         given: dict[str, Any] = {

@@ -9,14 +9,12 @@ import base64
 import io
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from coadjoint.solve.rolling_bodies import RollingBody
-    from coadjoint.solve.scenes import Paths
+    from coadjoint.solve.plot import Scene
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
-    from coadjoint.solve.vehicles import Vehicle
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
@@ -25,8 +23,9 @@ SPAN, SAMPLES = 20.0, 1500
 SEEDS, NOISY_SPAN, STEP = (1, 2, 3), 6.0, 1 / 64
 #: Dots for an inch of it: two for each point of a page.
 RESOLUTION = 100
-#: Colours of it: with fewer, time along a path is seen in steps; 256 take a third more room.
-COLOURS = 64
+#: Colours of it: with fewer, time along a path is seen in steps; 256 take a third more room, which
+#: colours over time and space need, since their bars would have steps.
+COLOURS, MANY_COLOURS = 64, 256
 
 
 def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
@@ -40,9 +39,10 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
     with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
         warnings.simplefilter("ignore")
         solutions = _simulate(system, state)
-    place = io.BytesIO()
-    draw(*solutions).savefig(place, format="png", dpi=RESOLUTION)
-    data = base64.b64encode(_take_colours(place)).decode("ascii")
+    place, figure = io.BytesIO(), draw(*solutions)
+    figure.savefig(place, format="png", dpi=RESOLUTION)
+    count = MANY_COLOURS if _has_colours_of_values(figure) else COLOURS
+    data = base64.b64encode(_take_colours(place, count)).decode("ascii")
     return {"picture": f"data:image/png;base64,{data}", "caption": describe(*solutions)}
 
 
@@ -67,14 +67,21 @@ def _simulate(system: System, state: Sequence[float]) -> list[Solution]:
     ]
 
 
-def _take_colours(place: io.BytesIO) -> bytes:
+def _has_colours_of_values(figure: Any) -> bool:
+    """Whether values over time or over space are drawn as colours."""
+    from matplotlib.collections import QuadMesh
+
+    return any(isinstance(each, QuadMesh) for axes in figure.axes for each in axes.collections)
+
+
+def _take_colours(place: io.BytesIO, count: int = COLOURS) -> bytes:
     """A picture with a palette of its colours, which takes a third of the room."""
     from PIL import Image  # matplotlib needs it
 
     small = io.BytesIO()
     with Image.open(place) as picture:
         whole, own = picture.convert("RGB"), _list_line_colours()
-        few = whole.quantize(COLOURS - len(own) // 3).getpalette() or []
+        few = whole.quantize(count - len(own) // 3).getpalette() or []
         palette = Image.new("P", (1, 1))
         palette.putpalette([*few, *own])
         # thin lines are too few dots for colours of their own, among those of a surface
@@ -87,7 +94,7 @@ def _list_line_colours() -> list[int]:
     """The colours of lines: red, green and blue of one after the other."""
     from matplotlib.colors import to_rgb
 
-    from coadjoint.solve.plot import COLOURS as LINES
+    from coadjoint.solve.panels import COLOURS as LINES
 
     return [round(255 * part) for colour in LINES for part in to_rgb(colour)]
 
@@ -97,7 +104,8 @@ def describe(solution: Solution, *others: Solution) -> str:
     from coadjoint.solve.plot import find_scene
 
     unit = solution.unit("time").removeprefix("1")  # of what has no dimension
-    span = f"{NOISY_SPAN if others else SPAN:g} {unit}".rstrip()
+    length = solution.time_reached - solution.time[0]
+    span = f"{length:.3g} {unit}" if unit else f"a time of {length:.3g}"
     if others:
         return (
             f"{len(SEEDS)} paths from one start with the default parameters over {span}, by the "
@@ -108,23 +116,26 @@ def describe(solution: Solution, *others: Solution) -> str:
     return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
 
 
-def _tell_colours(scene: Paths | RollingBody | Vehicle | str | None) -> str:
+def _tell_colours(scene: Scene | None) -> str:
     """What the colours of a picture are; those of components stand in its legend."""
+    from coadjoint.solve.curves import Curves
     from coadjoint.solve.rolling_bodies import RollingBody
-    from coadjoint.solve.scenes import Paths
+    from coadjoint.solve.scenes import Paths, Sphere
     from coadjoint.solve.vehicles import Vehicle
 
     match scene:
-        case Paths(linked=True):
-            return (
-                "The path of each mass has the colour of its rod; lengths are parts of that of all "
-                "rods, found by the energy."
-            )
+        case Paths(linked=True, unit=unit):
+            parts = "; lengths are parts of that of all rods, found by the energy" * (unit == "1")
+            return f"The path of each mass has the colour of its rod{parts}."
         case Paths(labels=labels) if labels:
             return "Each vector has a colour of its own."
         case Paths(members=members) if len(members) > 1:
             return "Each member has a colour of its own."
-        case Paths() | str():
+        case (Sphere(labels=labels),) if labels:
+            return "Each member has a colour of its own."
+        case Curves(title=title):
+            return f"Above, {title}: the colour of a curve is its time, dark at the start."
+        case Paths() | (Sphere(), *_):
             return "Colour is time, dark at the start."
         case RollingBody():
             told = (

@@ -18,16 +18,25 @@ SHORT: Final = 24
 
 def unit_label(unit: str) -> str:
     """A unit for an axis, its exponents raised."""
-    raised = re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
     several = len(set(unit.split(", "))) > 1  # one for each component: the axis has none of its own
-    return "" if unit in ("", "1") or several else f"[{raised}]"
+    return "" if unit in ("", "1") or several else f"[{_raise(unit)}]"
+
+
+def _raise(unit: str) -> str:
+    """A unit with its exponents raised."""
+    return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
 def symbol_label(name: str) -> str:
-    """A name as a symbol with its number below."""
-    whole, bracket, member = name.partition("[")  # of a member: its number stands in brackets
+    """A name as a symbol with its number below, and that of the member, ``S1[0]``, behind it.
+
+    >>> symbol_label("q[0]"), symbol_label("S1[12]")
+    ('q$_{0}$', 'S$_{1,12}$')
+    """
+    whole, _, member = name.partition("[")
     letter, below = spell(whole)
-    return (f"{letter}$_{{{below}}}$" if below else letter) + bracket + member
+    numbers = ",".join(each for each in (below, member.rstrip("]")) if each)
+    return f"{letter}$_{{{numbers}}}$" if numbers else letter
 
 
 def observable_label(system: System, name: str) -> str:
@@ -59,4 +68,5 @@ def _write_formula(text: str) -> str:
 
 def tell_time(solution: Solution, at: int) -> str:
     """The time of a sample, with its unit."""
-    return f"t = {solution.time[at]:.4g} {unit_label(solution.unit('time'))}".strip()
+    unit = solution.unit("time").removeprefix("1")  # of what has no dimension
+    return f"t = {solution.time[at]:.4g} {_raise(unit)}".rstrip()

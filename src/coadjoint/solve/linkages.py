@@ -4,6 +4,7 @@ Mass a of a chain is at the sum of ``l_i gamma_i`` over the rods up to its own. 
 gamma have the rates v, the energy has the products ``v_i . v_j`` with ``l_i l_j`` times the mass
 from ``max(i, j)`` on, so that each pair gives ``l_i/l_j``: no name of a parameter is known. Rods
 hang on each other in the order in which they are declared; two have such lengths in both orders.
+A pendulum of links in the plane is found by the place of its last mass.
 Comes in: a `Solution`, and which variables may be these. Goes out: parts of the whole length.
 Read next: `coadjoint.solve.scenes`.
 """
@@ -12,6 +13,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from itertools import permutations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -76,3 +78,34 @@ def _find_inertia(solution: Solution, rates: Sequence[str]) -> Array | None:
     if not largest or not np.isfinite(whole).all() or inertia[-1, -1] <= 0:
         return None
     return inertia if np.abs(whole - alike).max() <= ROUNDED * largest else None
+
+
+def find_pendulum(
+    solution: Solution,
+) -> tuple[tuple[str, ...], Array, tuple[str, str], str] | None:
+    """Links of a pendulum in the plane: angles whose sines and cosines add up to observables.
+
+    The last mass is at ``x = sum of a_i sin(theta_i)`` and ``y = -sum of a_i cos(theta_i)``, which
+    samples of the motion decide by least squares.
+
+    Returns:
+        The names of the angles, the lengths of the links, the names of the axes, and their unit.
+    """
+    state, observables = solution.system.STATE, solution.system.OBSERVABLES
+    angles = tuple(name for name, each in state.items() if each.unit == "rad" and not each.shape)
+    if not angles or solution.batch or len(solution) < 2 * len(angles):
+        return None
+    turned = np.stack([np.asarray(solution[name]) for name in angles], axis=1)  # (T, links)
+    flat = [name for name, each in observables.items() if not each.shape]
+    for x, y in permutations(flat, 2):
+        if observables[x].unit != observables[y].unit:
+            continue
+        lengths, _, rank, _ = np.linalg.lstsq(np.sin(turned), solution[x], rcond=1e-9)
+        size = np.abs(lengths).sum()
+        off = max(
+            np.abs(np.sin(turned) @ lengths - solution[x]).max(),
+            np.abs(np.cos(turned) @ lengths + solution[y]).max(),
+        )
+        if rank == len(angles) and lengths.min() > 0 and off <= ROUNDED * size:
+            return angles, np.asarray(lengths, dtype=float), (x, y), observables[x].unit
+    return None

@@ -8,14 +8,16 @@ axes. Read next: `coadjoint.solve.plot`.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from coadjoint.errors import CoadjointError
-from coadjoint.solve.linkages import find_lengths
+from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.labels import symbol_label
+from coadjoint.solve.linkages import find_lengths, find_pendulum
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,6 +58,8 @@ class Paths:
         members: ``(members, dimensions, T)``.
         labels: Names of the members; none where they are numbered.
         linked: Whether each hangs on the one before by a rod, the first on the origin.
+        central: Whether the origin attracts or repels it.
+        radii: Of spheres about the origin between which it moves.
     """
 
     names: tuple[str, ...]
@@ -63,6 +67,32 @@ class Paths:
     members: Array
     labels: tuple[str, ...] = ()
     linked: bool = False
+    central: bool = False
+    radii: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Vectors of one length.
+
+    Attributes:
+        symbol: What they are called.
+        unit: Of their length.
+        paths: ``(vectors, 3, T)``.
+        labels: Of each; none of one alone, which time colours.
+        levels: Curves of the energy on it, ``(3, P)`` each.
+    """
+
+    symbol: str
+    unit: str
+    paths: Array
+    labels: tuple[str, ...] = ()
+    levels: tuple[Array, ...] = ()
+
+    @property
+    def radius(self) -> float:
+        """The length."""
+        return float(np.linalg.norm(self.paths[0, :, 0]))
 
 
 def find_paths(solution: Solution) -> Paths | None:
@@ -73,12 +103,54 @@ def find_paths(solution: Solution) -> Paths | None:
         if quantity.unit == _LENGTH and dimensions in (2, 3) and len(quantity.shape) <= 2:
             values = np.asarray(solution[name]).reshape(dimensions, -1, len(solution))
             names = tuple(f"{name}{n + 1}" for n in range(dimensions))
-            return _paths(names, quantity.unit, values.swapaxes(0, 1))
+            found = _paths(names, quantity.unit, values.swapaxes(0, 1))
+            return found and replace(found, central=_is_central(solution, name))
     x, y = state.get("x"), state.get("y")
     if x and y and (x.unit, x.shape) == (y.unit, y.shape) and len(x.shape) <= 1:
         values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
         return _paths(("x", "y"), x.unit, values.swapaxes(0, 1))
-    return _find_moving(solution)
+    return _find_links(solution) or _find_moving(solution) or _find_orbit(solution)
+
+
+def _find_links(solution: Solution) -> Paths | None:
+    """The masses of a pendulum of links in the plane."""
+    pendulum = find_pendulum(solution)
+    if pendulum is None:
+        return None
+    angles, lengths, names, unit = pendulum
+    turned = np.stack([np.asarray(solution[name]) for name in angles])  # (links, T)
+    ends = lengths[:, None, None] * np.stack([np.sin(turned), -np.cos(turned)], axis=1)
+    return Paths(names, unit, np.cumsum(ends, axis=0), labels=angles, linked=True)
+
+
+def _find_orbit(solution: Solution) -> Paths | None:
+    """The state as a point in space, where it is one vector whose length changes."""
+    (name, quantity), *more = solution.system.STATE.items()
+    if more or quantity.shape != (3,) or solution.batch:
+        return None
+    values = np.asarray(solution[name])
+    size = np.linalg.norm(values, axis=0)
+    if not np.isfinite(size).all() or np.ptp(size) <= ON_SPHERE * size.max():
+        return None
+    steps = np.diff(size)
+    one_way = bool((steps >= 0).all() or (steps <= 0).all())
+    radii = (float(size[0]), float(size[-1])) if one_way and size.min() > 0 else ()
+    return Paths(quantity.components, quantity.unit, values[None], radii=radii)
+
+
+def _is_central(solution: Solution, name: str) -> bool:
+    """Whether a place alone is accelerated along the line to the origin, at some samples."""
+    system, rate = solution.system, _find_rate(solution, name)
+    if rate not in system.STATE or len(system.STATE[name].shape) != 1:
+        return False
+    at = np.unique(np.linspace(0, len(solution) - 1, _ASKED).astype(int))
+    found = np.asarray(system.rhs(solution.state[:, at], solution.parameters, target="numpy"))
+    force, place = found[system.STATE.rows(rate)], np.asarray(solution[name])[:, at]
+    if len(place) == 2:
+        force, place = (np.vstack([each, np.zeros(len(at))]) for each in (force, place))
+    size = np.linalg.norm(force, axis=0) * np.linalg.norm(place, axis=0)
+    across = np.linalg.norm(np.cross(force, place, axis=0), axis=0)
+    return bool((size > 0).all() and (across <= _ROUNDED * size).all())
 
 
 def _find_moving(solution: Solution) -> Paths | None:
@@ -161,14 +233,78 @@ def _paths(names: tuple[str, ...], unit: str, members: Array) -> Paths | None:
     return Paths(names=names, unit=unit, members=members)
 
 
+def find_spheres(solution: Solution, *others: Solution) -> tuple[Sphere, ...]:
+    """Spheres on which vectors move; with others, paths of one vector from all solutions.
+
+    That of a vector of the state, of those of few equal members, or of the sum and the difference
+    of two vectors, as of the momenta of so(4), which is two copies of so(3).
+    """
+    state, name = solution.system.STATE, find_sphere(solution)
+    if name:
+        paths = np.stack([each[name] for each in (solution, *others)])
+        sphere = Sphere(
+            symbol=symbol_label(name),
+            unit=state[name].unit,
+            paths=paths,
+            labels=tuple(f"path {n + 1}" for n in range(len(paths))) if others else (),
+        )
+        levels = energy_levels(solution, name, sphere.radius)
+        return (replace(sphere, levels=tuple(levels)),)
+    return _find_members(solution) or _find_halves(solution)
+
+
+def _find_members(solution: Solution) -> tuple[Sphere, ...]:
+    """The sphere of vectors of few equal members, all of one length."""
+    system = solution.system
+    if not isinstance(system, FamilySystem) or not system.spheres or system.size > MOST_PATHS:
+        return ()
+    for name, quantity in system.STATE.items():
+        paths = np.moveaxis(np.asarray(solution[name]), 1, 0)  # (members, 3, T)
+        if quantity.shape == (3, system.size) and _have_one_length(paths):
+            first = system.index.first_name
+            labels = tuple(f"{name}[{first + n}]" for n in range(system.size))
+            return (Sphere(symbol_label(name), quantity.unit, paths, labels),)
+    return ()
+
+
+def _find_halves(solution: Solution) -> tuple[Sphere, ...]:
+    """The sum and the difference of the two vectors that a state is made of."""
+    quantities = list(solution.system.STATE.values())
+    if [each.shape for each in quantities] != [(3,), (3,)]:
+        return ()
+    first, second = quantities
+    a, b = (np.asarray(solution[each.name]) for each in quantities)
+    if first.unit != second.unit:
+        return ()
+    spheres = []
+    for sign, path in (("+", a + b), ("\N{MINUS SIGN}", a - b)):
+        if not (_have_one_length(path[None]) and _moves(path)):
+            return ()
+        symbol = f"{symbol_label(first.name)} {sign} {symbol_label(second.name)}"
+        spheres.append(Sphere(symbol, first.unit, path[None]))
+    return tuple(spheres)
+
+
+def _have_one_length(paths: Array) -> bool:
+    """Whether vectors ``(vectors, 3, T)`` have the same length at all times, and not 0."""
+    with np.errstate(over="ignore", invalid="ignore"):  # what is infinite has no sphere
+        square = (paths**2).sum(axis=1)
+        return bool(square.min() > 0 and np.ptp(square) <= ON_SPHERE * square.max())
+
+
+def _moves(path: Array) -> bool:
+    """Whether a vector ``(3, T)`` of more than one sample does not stand still."""
+    return path.shape[1] < 2 or bool(np.ptp(path, axis=1).max() > ON_SPHERE * np.abs(path).max())
+
+
 def find_sphere(solution: Solution) -> str:
-    """The first three-vector of the state whose length is conserved, or ""."""
+    """The first three-vector of the state that moves and whose length is conserved, or ""."""
     for name, quantity in solution.system.STATE.items():
-        if quantity.shape == (3,):
-            with np.errstate(over="ignore", invalid="ignore"):  # what is infinite has no sphere
-                square = (solution[name] ** 2).sum(axis=0)
-                if square[0] > 0 and np.ptp(square) <= ON_SPHERE * square.max():
-                    return name
+        if quantity.shape != (3,):
+            continue
+        values = np.asarray(solution[name])
+        if _have_one_length(values[None]) and _moves(values):
+            return name
     return ""
 
 
@@ -220,6 +356,32 @@ def faces_viewer(vector: Array, toward: Array) -> NDArray[np.bool_]:
     near[:-1] |= side[1:]
     near[1:] |= side[:-1]
     return near
+
+
+def style_space(axes: Any, labels: Sequence[str]) -> None:
+    """Axes in space: labels, few ticks, no walls."""
+    for axis, label in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, strict=True):
+        axis.set_label_text(label, fontsize=9)
+        axis.labelpad = 2
+        axis.get_major_locator().set_params(nbins=4)
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis._axinfo["grid"].update(color="#e3e6ea", linewidth=0.6)
+    axes.set_box_aspect((1, 1, 1), zoom=1.0)
+    axes.tick_params(labelsize=7, pad=0)
+
+
+def draw_ball(axes: Any, radius: float, *, face: bool = True, wires: bool = True) -> None:
+    """A sphere that shows what is behind it, and its circles of longitude and latitude."""
+    angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25))
+    ball = radius * np.stack(
+        [np.sin(height) * np.cos(angle), np.sin(height) * np.sin(angle), np.cos(height)]
+    )
+    if face:
+        axes.plot_surface(*ball, color="#d9e2ec", alpha=0.35, linewidth=0, shade=False, zorder=2)
+    if wires:
+        axes.plot_wireframe(
+            *ball, rstride=4, cstride=6, color="#8fa3b5", linewidth=0.3, alpha=0.6, zorder=2
+        )
 
 
 def draw_coloured(axes: Any, path: Array, time: Array, **options: Any) -> Any:

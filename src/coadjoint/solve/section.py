@@ -14,7 +14,8 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.events import TIME, explain_unknown
 from coadjoint.solve.labels import unit_label
-from coadjoint.solve.plot import COLOURS, begin_figure, finish
+from coadjoint.solve.panels import COLOURS
+from coadjoint.solve.plot import begin_figure, finish
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -34,7 +34,8 @@ class Solution:
     """One trajectory, or a batch of them.
 
     ``solution["Pi"]`` is ``(3, T)`` or ``(3, *batch, T)``; ``solution["energy"]`` is ``(T,)`` or
-    ``(*batch, T)``; a matrix ``solution["R"]`` of shape ``(3, 3)`` is ``(3, 3, T)``.
+    ``(*batch, T)``; a matrix ``solution["R"]`` of shape ``(3, 3)`` is ``(3, 3, T)``. A field
+    ``solution["Xi"]`` is ``(3, N, T)`` at the places ``solution["s"]``, ``(N,)``.
 
     Attributes:
         system: The System that was simulated.
@@ -198,7 +199,10 @@ class Solution:
                 rows: Array = values[quantities.rows(name)]
                 whole = quantities[name].shape if name in quantities else ()
                 return rows.reshape(*whole, *rows.shape[1:]) if len(whole) > 1 else rows
-        names = [each for quantities, _ in self._tables for each in quantities]
+        places = self.system.find_coordinates(self.parameters)
+        if name in places:
+            return places[name]
+        names = [each for quantities, _ in self._tables for each in quantities] + list(places)
         tables = (self.system.RECONSTRUCTED, self.system.RECONSTRUCTED_OBSERVABLES)
         left = [x for table in tables for x in table] if self.reconstructed is None else []
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""
@@ -211,8 +215,13 @@ class Solution:
 
     def __contains__(self, name: str) -> bool:
         """Whether ``solution[name]`` is there."""
-        return name in ("t", "time") or any(
-            name in quantities or name in quantities.components for quantities, _ in self._tables
+        return (
+            name in ("t", "time")
+            or any(
+                name in quantities or name in quantities.components
+                for quantities, _ in self._tables
+            )
+            or name in self.system.find_coordinates(self.parameters)
         )
 
     def unit(self, name: str) -> str:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from coadjoint.families import Spectral
     from coadjoint.methods import JudgedMethod
     from coadjoint.solve.request import Request
+    from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
 
     Array = NDArray[np.float64]
@@ -142,7 +143,7 @@ class _SpectralKernels(Kernels):
 class SpectralKernel(Kernel):
     """Rates, energy and observables of fields by Fourier derivatives."""
 
-    def __init__(self, system: SpectralSystem) -> None:
+    def __init__(self, system: FamilySystem) -> None:
         assert system.spectral is not None, system.name
         self.source, self._size, self._names = "", system.size, list(system.own_state)
         self._spectral: Spectral = system.spectral
@@ -161,30 +162,52 @@ class SpectralKernel(Kernel):
     def _evaluate(self, function: str, call: Call) -> None:
         """A function of all trajectories at once, the points before the trajectories."""
         shape = (self._size, call.members)
-        fields = dict(zip(self._names, call.state.reshape(-1, *shape), strict=True))
-        parameters = call.parameters if call.parameters.ndim > 1 else call.parameters[:, np.newaxis]
-        given = dict(zip(self._shared, parameters, strict=True))
-        known, length = given | fields, given[self._spectral.length]
         with np.errstate(all="ignore"):
-            waves = Waves(self._size, length)
-            for u, (m, factors) in self._spectral.solved.items():
-                parts = {k: self._find(text, given, shape[1:]) for k, text in factors.items()}
-                known[u] = waves.solve(fields[m], parts)
-            waiting = dict(self._spectral.products)
-            for name, (of, order) in self._order():
-                if of in waiting:
-                    known[of] = self._find(waiting.pop(of), known, shape)
-                known[name] = waves.differentiate(known[of], order)
+            known = self._differentiate(call.state, call.parameters, shape)
             if function == "rhs":
                 rates = [self._find(text, known, shape) for text in self._spectral.rates.values()]
                 call.block[...] = np.reshape(rates, call.block.shape)
                 return
+            spacing = known[self._spectral.length] / self._size
             sums = [
-                length / self._size * np.sum(self._find(text, known, shape), axis=0)
+                spacing * np.sum(self._find(text, known, shape), axis=0)
                 for name, text in self._spectral.densities.items()
                 if function == "observables" or name == "energy"
             ]
             call.block[...] = np.reshape(sums, call.block.shape)
+
+    def find_densities(self, state: Array, parameters: Array) -> dict[str, Array]:
+        """What is summed over the points for each total, ``(N, members)``, by its name.
+
+        Args:
+            state: ``(n, members)``.
+            parameters: Packed, ``(k,)`` or ``(k, members)``.
+        """
+        shape = (self._size, state.shape[1])
+        with np.errstate(all="ignore"):
+            known = self._differentiate(state, parameters, shape)
+            return {
+                name: self._find(text, known, shape)
+                for name, text in self._spectral.densities.items()
+            }
+
+    def _differentiate(
+        self, state: Array, parameters: Array, shape: tuple[int, int]
+    ) -> dict[str, Array]:
+        """Parameters, fields, products and their derivatives by name."""
+        fields = dict(zip(self._names, state.reshape(-1, *shape), strict=True))
+        columns = parameters if parameters.ndim > 1 else parameters[:, np.newaxis]
+        given = dict(zip(self._shared, columns, strict=True))
+        known, waves = given | fields, Waves(self._size, given[self._spectral.length])
+        for u, (m, factors) in self._spectral.solved.items():
+            parts = {k: self._find(text, given, shape[1:]) for k, text in factors.items()}
+            known[u] = waves.solve(fields[m], parts)
+        waiting = dict(self._spectral.products)
+        for name, (of, order) in self._order():
+            if of in waiting:
+                known[of] = self._find(waiting.pop(of), known, shape)
+            known[name] = waves.differentiate(known[of], order)
+        return known
 
     def _order(self) -> Iterator[tuple[str, tuple[str, int]]]:
         """Derivatives of fields, then those of products in the order of these."""
@@ -242,6 +265,23 @@ class Waves:
         waves = fft.rfft(values, axis=0) * symbol
         found: Array = fft.irfft(waves, n=self.size, axis=0)
         return found
+
+
+def find_densities(solution: Solution) -> dict[str, Array]:
+    """The densities of the totals of fields along a circle, ``(N, *batch, T)``, by their names.
+
+    Derivatives in them are those of Fourier series. Without a circle there are none.
+    """
+    system = solution.system
+    if not isinstance(system, FamilySystem) or system.spectral is None:
+        return {}
+    state, parameters = solution.state, solution.parameters
+    if parameters.ndim > 1:  # each trajectory has its own at all of its samples
+        parameters = np.broadcast_to(
+            parameters[..., np.newaxis], (*parameters.shape, state.shape[-1])
+        ).reshape(len(parameters), -1)
+    found = SpectralKernel(system).find_densities(state.reshape(len(state), -1), parameters)
+    return {name: value.reshape(-1, *state.shape[1:]) for name, value in found.items()}
 
 
 def solve_velocities(

@@ -26,6 +26,7 @@ from coadjoint.solve.functions import Functions, Target, by_name
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from coadjoint.families import Connection, PrincipalSymbol
@@ -130,6 +131,14 @@ class System(Functions):
             f"sizes of {self.name} are {dict(sizes)!r}, and {problem}; expected {expected}. {way}",
             found=list(sizes),
         )
+
+    def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Where the points of fields stand, by the names of coordinates; none of what is no field.
+
+        Args:
+            parameters: Packed, ``(k,)`` or ``(k, *batch)``.
+        """
+        return {}
 
     def with_derivatives(self, derivatives: str) -> System:
         """Fields by ``"differences"``, which the spec declares, or by ``"fourier"`` derivatives.

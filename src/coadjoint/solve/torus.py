@@ -26,6 +26,9 @@ from coadjoint.sizes import MOVES, check_least
 from coadjoint.solve.family import BY_WAVES, FamilySystem
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from coadjoint.declared import Quantity
     from coadjoint.families import Torus
     from coadjoint.solve.kernels import Kernels
@@ -100,6 +103,18 @@ class TorusSystem(FamilySystem):
         places = [f"{i},{j}" for i in range(self.counts[0]) for j in range(self.counts[1])]
         components = tuple(f"{c}[{place}]" for c in quantity.components for place in places)
         return replace(repeated, shape=(*quantity.shape, *self.counts), components=components)
+
+    def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Where points stand along both coordinates, ``(Nx,)`` and ``(Ny,)``."""
+        import numpy as np
+
+        around, found = self.around, {}
+        for name, length, size in zip(around.coordinates, around.lengths, self.counts, strict=True):
+            lengths = np.unique(parameters[self.PARAMETERS.rows(length)])
+            if len(lengths) != 1:
+                return {}
+            found[name] = np.arange(size) * float(lengths[0]) / size
+        return found
 
     def _list_places(self, lengths: Sequence[float]) -> Iterator[tuple[float, ...]]:
         """The coordinates of all points, along the second coordinate first."""

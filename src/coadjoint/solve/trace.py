@@ -14,8 +14,9 @@ import numpy as np
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.labels import unit_label
+from coadjoint.solve.panels import COLOURS
 from coadjoint.solve.paths import Path
-from coadjoint.solve.plot import COLOURS, begin_figure, finish
+from coadjoint.solve.plot import begin_figure, finish
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -159,7 +159,7 @@ def draw_vehicle(axes: Any, vehicle: Vehicle) -> Any:
         axes.plot(*line, color="#000000", linewidth=1.8, zorder=5)[0]
         for line in vehicle.list_lines(int(samples[-1]), larger)
     ]
-    if larger > 1.0:
+    if f"{larger:.2g}" != "1":
         axes.set_title(
             f"the vehicle is drawn {larger:.2g} times its size", fontsize=9, color="#5b6570"
         )
