@@ -264,7 +264,7 @@ def test_a_bent_rod_begins_as_a_period_of_an_endless_one():
     turn = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
     assert turn @ period == pytest.approx([0, 0, np.hypot(*period[1:])])
     D = default_of(declared, "D")
-    assert D == pytest.approx(np.linalg.norm(period) / 10, abs=1e-10)
+    assert pytest.approx(np.linalg.norm(period) / 10, abs=1e-10) == D
     R, x = poses_of(declared)
     places = [turn @ place(10 * n / N) - [0, 0, D[0] * 10 * n / N] for n in range(N)]
     np.testing.assert_allclose(x, places, atol=1e-9)
@@ -289,7 +289,7 @@ def test_a_rod_that_closes_begins_as_a_ring():
 
 
 def test_a_rod_with_free_ends_begins_in_the_middle_of_pieces():
-    """Straight: from the first one on, at distances along its axis; between walls from the first."""
+    """Straight: from the first one on, along its axis; between walls from the first of these."""
     straight = ("sin(2*pi*s/L)/5", "0")
     _, x = poses_of(lattice_of(rod(*FREE, straight), 4))
     np.testing.assert_allclose(x, np.outer(np.arange(4) * 2.5, [0, 0, 1]), atol=1e-12)
@@ -346,9 +346,10 @@ def test_the_energy_of_a_straight_rod_at_rest_is_zero():
     equations = derive(lattice.family.windows[0], "lie-poisson")
     count = len(equations.variables) // 18
     energy = equations.setting.field.to_sympy(equations.close(equations.exact.energy))
-    bodies = [np.eye(3, 4) + [[0] * 4, [0] * 4, [0, 0, 0, n]] for n in range(count)]
     for stretched, expected in ((1, 0), (2, 25.0 * (count - 1))):
-        poses = [np.array(body) * [1, 1, 1, stretched * a] for body in bodies]
+        poses = [np.eye(3, 4) for _ in range(count)]
+        for n, pose in enumerate(poses):
+            pose[2, 3] = stretched * a * n
         state = [*(x for pose in poses for x in pose.ravel()), *[0] * 6 * count]
         names = map(sympy.Symbol, map(str, (*equations.variables, *equations.setting.parameters)))
         values = dict(zip(names, [*state, *NUMBERS, a], strict=True))
