@@ -410,8 +410,9 @@ def test_a_loaded_rod_keeps_what_is_claimed(tmp_path, monkeypatch):
     path = derivations_folder() / "se3_strand.toml"
     system = coadjoint.load(path, sizes={"s": 16}, derivatives="lattice")
     assert list(system.STATE) == ["g", "Pi", "P"]
-    still = {name: np.zeros((3, 16)) for name in ("Pi", "P")}
-    found = system.simulate(still, (0, 5), method="splitting4", step=0.02, samples=3)
+    momenta = {name: np.zeros((3, 16)) for name in ("Pi", "P")}
+    momenta["Pi"][2], momenta["P"][0] = 0.01, np.sin(2 * np.pi * np.arange(16) / 16) / 10
+    found = system.simulate(momenta, (0, 5), method="splitting4", step=0.02, samples=3)
     assert str(found.status) == "OK"
     assert np.abs(found.drift["L"]).max() < 1e-11
     assert np.abs(found.drift["J"]).max() < 1e-11

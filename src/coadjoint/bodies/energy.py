@@ -13,6 +13,8 @@ entries of S, and a component that is left over one of x. So :math:`\Xi \cdot K 
 degree 2 in the entries of U. How components are paired does not matter for rotations, since S has
 rank 1 there: a rotation of body axes that leaves V as it is leaves its lattice, too.
 
+Of a right invariant strand the strain is :math:`(\partial_s R) R^T`, and :math:`U = R' R^T`.
+
 A rod has places x as well, and its strain a second part e, with :math:`R^T (x' - x)/a` in its
 place. As a body sees it that is e in the middle of the link, turned by half of it, and tends to e
 with the order a alone. The next body sees it turned back by the other half. So the energy of a
@@ -71,6 +73,11 @@ class Strand:
     def field(self) -> Field:
         """The exact field of its equations."""
         return self.equations.setting.field
+
+    @property
+    def side(self) -> str:
+        """Whether it is left or right invariant."""
+        return self.spec.invariance
 
     @property
     def is_rod(self) -> bool:
@@ -146,7 +153,7 @@ def _check_strand(spec: Spec) -> None:
         hint = f"{by_hand} elastic_chain does on se(3)."
         problem = f"it is a strand on {spec.algebra.name}"
         raise refuse(spec, problem, "one on so(3) or se(3)", hint)
-    if spec.invariance != "left":
+    if spec.invariance == "right" and spec.algebra.name == "se(3)":
         problem = "it is right invariant, and so its strains are not seen in body axes"
         hint = "The inverse of g is a left one: write minus its velocities and strains for these."
         raise refuse(spec, problem, 'invariance = "left"', hint)

@@ -46,6 +46,16 @@ class Links:
         """Where a body of a rod is."""
         return f"translation({self.names['attitude']}[{member}])"
 
+    def turn_over(self, vector: str) -> str:
+        """A vector in body axes as one in space; of a right invariant strand the reverse."""
+        turn = self.turn_of(self.names["index"])
+        return f"{turn}*{vector}" if self.strand.side == "left" else f"transpose({turn})*{vector}"
+
+    def _link(self, here: str, after: str) -> str:
+        """The turn from one attitude to the next."""
+        left = self.strand.side == "left"
+        return f"transpose({here})*{after}" if left else f"{after}*transpose({here})"
+
     # -- the energy -----------------------------------------------------------------------
 
     @cached_property
@@ -101,10 +111,10 @@ class Links:
         here, after, end = map(self.turn_of, (i, f"{i}+1", f"{last}-1"))
         turns, steps = self._parts
         if not steps:
-            yield f"sum({i}, {self._call('potential', turns, f'transpose({here})*{after}')})"
+            yield f"sum({i}, {self._call('potential', turns, self._link(here, after))})"
             if has_walls:  # the first one has the attitude 1
                 yield self._call("potential", turns, self.turn_of("0"))
-                link = f"transpose({end})*{self.turn_in(wall)}"
+                link = self._link(end, self.turn_in(wall))
                 yield self._call("potential", turns, link)
             return
         bond = self.names["bond"]

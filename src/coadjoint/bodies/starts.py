@@ -163,10 +163,11 @@ def _find_frames(strand: Strand, equal: int, links: int, first: Fraction) -> Arr
         turning[:3, :3] = dense.hat(tuple(strains.T[:3]))
         if strand.is_rod:
             turning[:3, 3] = strains.T[3:]
-        # each matrix transposed
-        nodes.append(float(h) * length * turning.transpose(2, 1, 0))
+        # from the left by columns, since then R' = R X: its transpose follows from the right
+        order = (2, 1, 0) if strand.side == "left" else (2, 0, 1)
+        nodes.append(float(h) * length * turning.transpose(order))
     frames = [np.eye(size)]
     for step in find_steps(nodes) if begins else ():  # none of a single body
         frames.append(step @ frames[-1])
-    # by columns: the transpose of R follows from the left
-    return np.array(frames[::pieces]).transpose(0, 2, 1)
+    found: Array = np.array(frames[::pieces])
+    return found.transpose(0, 2, 1) if strand.side == "left" else found

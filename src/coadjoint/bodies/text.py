@@ -69,7 +69,7 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     """The spec of a lattice of rigid bodies whose limit is a strand, as text.
 
     Args:
-        spec: A strand on so(3), or a rod on se(3), left invariant, around a circle or between
+        spec: A strand on so(3), or a left invariant rod on se(3), around a circle or between
             ends, whose energy per length is the sum of a function of momenta and advected vectors
             and a polynomial of strains.
         bodies: How many there are by default; as many as the strand has points if left out.
@@ -194,7 +194,7 @@ class _Lattice:
         count = f", count = {_quote(self.names['count'])}" if self._has_walls else ""
         yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring}{count} }}"
         assert spec.algebra is not None, spec.name
-        yield f'[algebra]\nname = "{spec.algebra.name}"\ninvariance = "left"'
+        yield f'[algebra]\nname = "{spec.algebra.name}"\ninvariance = "{self.strand.side}"'
         yield "[variables]\n" + "\n".join(self._variables())
         yield "[parameters]\n" + "\n".join(self._parameters())
         terms = [f"  sum({i}, {self.write(self.strand.own)})"]
@@ -209,8 +209,9 @@ class _Lattice:
         yield note + "[observables]\n" + "\n".join(self._observables.values())
         kept = [name for name in ("energy", *self._observables) if self._is_kept(name)]
         casimirs = [f"trace({R}*transpose({R}))", f"det({R})"]
-        in_space = [f"({R}*{each.name}[{i}])" for each in self.strand.advected]
-        casimirs += [f"{vector}[{n}]" for vector in in_space for n in (1, 2, 3)]
+        turn = self.links.turn_over
+        kept_vectors = [f"({turn(f'{each.name}[{i}]')})" for each in self.strand.advected]
+        casimirs += [f"{vector}[{n}]" for vector in kept_vectors for n in (1, 2, 3)]
         yield f"[claims]\ncasimirs = {json.dumps(casimirs)}\nconserved = {json.dumps(kept)}"
 
     @property
@@ -253,6 +254,7 @@ class _Lattice:
 
     def _variables(self) -> Iterator[str]:
         starts = self._starts
+        axes = "in body axes" if self.strand.side == "left" else "in axes of space"
         role, doc = "attitude", "from a body to space"
         if self.strand.is_rod:
             role, doc = "pose", "attitude and place"
@@ -264,10 +266,10 @@ class _Lattice:
             if self.strand.is_rod and len(each.block) == 3:
                 role += f'", block = "{"rotation" if 0 in each.block else "translation"}'
             given = starts.fields.get(each.name)
-            doc = each.doc or f"{what} in body axes, per length"
+            doc = each.doc or f"{what} {axes}, per length"
             yield self._variable(each.name, role, given, doc, each.unit)
         for each in self.strand.advected:
-            doc = each.doc or "in body axes"
+            doc = each.doc or axes
             given = starts.fields.get(each.name)
             role = 'advected", representation = "vector'
             role += '", block = "rotation' if self.strand.is_rod else ""
@@ -330,16 +332,21 @@ class _Lattice:
 
     def _totals(self) -> Mapping[str, tuple[str, str, str]]:
         """The momenta of a body in space by names of their totals, with units and what they are."""
-        J, place, R = self.names["momentum"], self.links.place_of(self.place), self.body
+        J, place, turn = (
+            self.names["momentum"],
+            self.links.place_of(self.place),
+            self.links.turn_over,
+        )
         spin, unit = self._part((0, 1, 2))
-        angular, doc = f"{R}*{spin}", "total angular momentum in space"
+        axes = "space" if self.strand.side == "left" else "body axes"
+        angular, doc = turn(spin), f"total angular momentum in {axes}"
         if not self.strand.is_rod:
             return {J: (angular, unit, doc)}
         moved, unit_of_moved = self._part((3, 4, 5))
-        angular += f" + cross({place}, {R}*{moved})"
+        angular += f" + cross({place}, {turn(moved)})"
         if self._starts.rise:
             angular, doc = f"({angular})[3]", "total angular momentum about the third axis in space"
-        linear = (f"{R}*{moved}", unit_of_moved, "total momentum in space")
+        linear = (turn(moved), unit_of_moved, "total momentum in space")
         return {self.names["linear"]: linear, J: (angular, unit, doc)}
 
     def _part(self, block: tuple[int, ...]) -> tuple[str, str]:
