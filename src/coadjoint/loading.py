@@ -43,8 +43,9 @@ def load(
             over the members they are the same for all sizes; else each size is derived.
         derivatives: Those of fields along space: ``"differences"``, of the order that the spec
             says, or ``"fourier"``, as in `System.with_derivatives`. With ``"lattice"`` a strand on
-            so(3) becomes the lattice of as many bodies as it has points, with attitudes in the
-            place of strains: the system of the spec that `coadjoint.write_lattice` writes.
+            so(3) or se(3) becomes the lattice of as many bodies as it has points, with attitudes
+            and places instead of strains: the system of the spec that `coadjoint.write_lattice`
+            writes.
         seconds: Processor time that deriving may take; by default the environment variable
             ``COADJOINT_SECONDS``, else ``WORKER_SECONDS`` of docs/limits.md.
         progress: Told of every stage: system, stage, stages done, stages in all. By default they

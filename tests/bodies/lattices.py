@@ -12,6 +12,7 @@ from coadjoint.spec.reader import read_spec_text
 from tests.specs import shipped
 
 CHAIN = shipped("spin_chain").path.read_text(encoding="utf-8")
+ROD = shipped("se3_strand").path.read_text(encoding="utf-8")
 STIFF = "- dot(Xi, diag(K)*Xi)/2"
 
 
@@ -28,9 +29,17 @@ TOPS = (
 )
 
 
-def strand(*changes, name="chain"):
+#: What makes the rod one between ends; its momentum along itself is then not claimed.
+FREE = (("order = 4", 'order = 4, ends = "free"'), ('"energy", "p"', '"energy"'))
+
+
+def rod(*changes):
+    """The elastic rod with some pieces replaced, each of which is there."""
+    return strand(*changes, name="rod", text=ROD)
+
+
+def strand(*changes, name="chain", text=CHAIN):
     """The spin chain with some pieces replaced, each of which is there."""
-    text = CHAIN
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
@@ -48,7 +57,7 @@ def family_of(declared):
 
 
 def compile_rates(family, modules="numpy"):
-    """A function of states ``(12, N)`` of a ring and of parameters: rates of all bodies."""
+    """A function of states ``(n, N)`` of a ring and of parameters: rates of all bodies."""
     shifts = sorted({n for _, n in family.neighbours})
     near = [family.neighbours.get((x, n), sympy.Dummy()) for n in shifts for x in family.states]
     given = [*family.states, *near, *family.shared]

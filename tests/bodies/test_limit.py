@@ -6,6 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
+from scipy.integrate import solve_ivp
 
 from coadjoint.derive import derive
 from coadjoint.solve.strands import transport
@@ -24,6 +25,72 @@ def test_the_lattice_of_the_spin_chain_is_the_shipped_one():
     assert (found.states, found.neighbours) == (known.states, known.neighbours)
     pairs = zip(found.rates, known.rates, strict=True)
     assert [sympy.expand(one - other) for one, other in pairs] == [0] * 12
+
+
+RIGHT = ('"left"', '"right"')
+ODD = (STIFF, f"{STIFF} - Xi[3]/2 - Xi[1]*Xi[2]*Xi[3]")
+
+
+def transposed(state):
+    """The inverses of all attitudes, and minus the momenta."""
+    attitudes = state[:9].reshape(3, 3, -1).transpose(1, 0, 2).reshape(9, -1)
+    return np.vstack([attitudes, -state[9:]])
+
+
+def test_a_right_invariant_chain_is_a_left_one_of_inverses():
+    """Velocities and strains of the inverse are minus these: odd terms change their sign.
+
+    Without that rates are other ones.
+    """
+    found = compile_rates(family_of(lattice_of(strand(RIGHT, ODD))))
+    state, given = np.random.default_rng(8).normal(size=(12, 5)), [1, 2, 3, 3, 2, 1, 0.3]
+    turned = transposed(state)
+    for sign, agrees in (("+", True), ("-", False)):
+        odd = (STIFF, f"{STIFF} {sign} Xi[3]/2 {sign} Xi[1]*Xi[2]*Xi[3]")
+        known = compile_rates(family_of(lattice_of(strand(odd))))
+        other = transposed(known(turned, given))
+        assert np.allclose(found(state, given), other, rtol=1e-11, atol=1e-11) == agrees
+
+
+def test_rates_tend_to_those_of_a_right_invariant_strand():
+    """Of momenta of a curve of turns g' = hat(Xi) g, the transpose of one from the left: order 2.
+
+    Against the left invariant strand the difference does not become less.
+    """
+    declared = strand(RIGHT, ODD)
+    rates = compile_rates(family_of(lattice_of(declared)), modules="mpmath")
+
+    def of_transposes(state, parameters):
+        turned = transposed(state)
+        turned[9:] *= -1
+        return rates(turned, parameters)
+
+    with mpmath.workdps(50):
+        # from the left -Xi turns into the inverse of what Xi turns into from the right
+        right, wrong = (_differences(of_transposes, of, -1) for of in (declared, strand(ODD)))
+    assert all(3.9 < one / other < 4.1 for one, other in right)
+    assert any(0.9 < one / other < 1.1 for one, other in wrong)
+
+
+def test_a_right_invariant_chain_begins_as_its_strain_turns():
+    """About two axes: R' = hat(Xi) R, by a method of SciPy; from the left it is another turn."""
+    profile = ('"vector(0, sin(2*pi*s/L)/2, 0)"', '"vector(s/L, 1/3, 0)"')
+    free = (("order = 4", 'order = 4, ends = "free"'), ('"energy", "P"', '"energy"'))
+    declared = lattice_of(strand(RIGHT, profile, *free), 4)
+    rows = np.array(declared.family.defaults["R"], dtype=float).reshape(3, 3, 4)
+    errors = []
+    for side in (1, -1):
+
+        def flow(s, R, side=side):
+            x, y = s / 10, 1 / 3
+            hat = np.array([[0, 0, y], [0, 0, -x], [-y, x, 0]])
+            factors = (hat, R.reshape(3, 3))[::side]
+            return (factors[0] @ factors[1]).ravel()
+
+        run = solve_ivp(flow, (1.25, 8.75), np.eye(3).ravel(), rtol=1e-11, atol=1e-12)
+        errors.append(np.abs(run.y[:, -1].reshape(3, 3) - rows[..., -1]).max())
+    assert errors[0] < 1e-8
+    assert errors[1] > 0.1
 
 
 def test_another_lattice_is_another():
@@ -59,13 +126,16 @@ def test_rates_tend_to_those_of_the_strand(kind):
     assert any(0.9 < one / other < 1.1 for one, other in wrong)
 
 
-def _differences(rates, of):
-    """Rates of the generic body less those of a strand, at two distances, by component."""
+def _differences(rates, of, sign=1):
+    """Rates of the generic body less those of a strand, at two distances, by component.
+
+    Where the sign is -1 the strain of the strand is minus the one that turns bodies.
+    """
     equations, random = derive(of, "lie-poisson"), Random(3)
     values = {x: mpmath.mpf(random.randint(-9, 9)) / 7 for row in [*STRAIN, PI] for x in row}
     given = {sympy.Symbol(f"{n}{k}"): mpmath.mpf(k + 1) for n in "IK" for k in (1, 2, 3)}
     function = sympy.lambdify([*values, *given], equations.rates[:3], modules="mpmath")
-    known = function(*values.values(), *given.values())
+    known = function(*(v if x in PI else sign * v for x, v in values.items()), *given.values())
     errors = []
     for distance in (mpmath.mpf(1) / 1000, mpmath.mpf(1) / 2000):
         state = np.zeros((12, 3), dtype=object)

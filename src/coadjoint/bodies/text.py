@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from coadjoint.bodies.energy import Strand, pair_components, read_strand, refuse
+from coadjoint.bodies.energy import Strand, read_strand, refuse
+from coadjoint.bodies.links import Links
 from coadjoint.bodies.starts import Starts, find_starts
 from coadjoint.derive.interpret import entries
 from coadjoint.errors import LimitError, SpecError
@@ -48,6 +49,18 @@ _NAMES: Final = {
     "first": ("x", "y", "z"),
     "second": ("S", "Y", "Z"),
 }
+#: Names of what rods have in addition, or in the place of these.
+_RODS: Final = {
+    "attitude": ("g", "q", "p"),
+    "linear": ("L", "H", "linear"),
+    "rise": ("D", "c", "rise"),
+    "third": ("e", "u", "v"),
+    "stretch": ("stretch", "shear", "pull"),
+    "bond": ("bond", "pair", "tie"),
+    "here": ("Q", "O", "here"),
+    "next": ("T", "N", "next"),
+    "step": ("w", "r", "step"),
+}
 #: Digits behind the point of momenta and attitudes at the beginning.
 _DIGITS: Final = 14
 
@@ -56,16 +69,18 @@ def write_lattice(spec: Spec, bodies: int | None = None) -> str:
     """The spec of a lattice of rigid bodies whose limit is a strand, as text.
 
     Args:
-        spec: A strand on so(3), left invariant, around a circle or between ends, whose energy
-            per length is the sum of a function of momenta and advected vectors and a polynomial
-            of strains.
+        spec: A strand on so(3), or a left invariant rod on se(3), around a circle or between
+            ends, whose energy per length is the sum of a function of momenta and advected vectors
+            and a polynomial of strains.
         bodies: How many there are by default; as many as the strand has points if left out.
 
     Returns:
         The text of a spec with an index, which `coadjoint.read_spec` and `coadjoint.load` read from
         a file. Parameters are those of the strand with the distance of bodies in the place of the
         length; momenta and the energy are per length. Bodies begin with the momenta of the profile,
-        and with the attitudes that its strain turns into, unless a ring does not close with them.
+        and with the attitudes and places that its strain integrates to. A ring of attitudes that
+        do not close begins with all alike. A rod that goes round a circle of s without closing in
+        space is a period of an endless one along the third axis.
 
     Raises:
         SpecError: The strand has no such lattice, with the reason; or there is no body.
@@ -127,14 +142,18 @@ class _Lattice:
         assert space is not None, spec.name
         self.strand, self.spec, self.bodies, self.length = strand, spec, bodies, space.length
         self.is_open, self.is_clamped = space.has_ends, space.ends == "clamped"
-        taken = {strand.momentum.name, *(each.name for each in spec.parameters)} - {self.length}
+        taken = {each.name for each in spec.parameters} - {self.length}
+        taken |= {each.name for each in (*strand.momenta, *strand.advected)}
         taken |= {each.name for each in spec.observables}
-        taken |= {each.name for each in strand.advected}
-        self.names = {use: self._choose(use, names, taken) for use, names in _NAMES.items()}
+        self.names = {
+            use: self._choose(use, names, taken)
+            for use, names in (_NAMES | (_RODS if strand.is_rod else {})).items()
+        }
         self.place = self.names["index"]
         self.distance = self.names["distance"]
         self.attitude = self.names["attitude"]
-        self.body = f"{self.attitude}[{self.place}]"
+        self.links = Links(strand, self.names, self.write)
+        self.body = self.links.turn_of(self.place)
 
     def _choose(self, use: str, names: tuple[str, ...], taken: set[str]) -> str:
         """A name that the strand does not use.
@@ -153,7 +172,7 @@ class _Lattice:
         """An element as a formula, with momenta of a body."""
         known = {
             component: f"{each.name}[{self.place}, {n}]"
-            for each in (self.strand.momentum, *self.strand.advected)
+            for each in (*self.strand.momenta, *self.strand.advected)
             for n, component in enumerate(each.components, 1)
         }
         for parameter in self.spec.parameters:
@@ -174,17 +193,15 @@ class _Lattice:
         ring = json.dumps(not self.is_open)
         count = f", count = {_quote(self.names['count'])}" if self._has_walls else ""
         yield f"[index]\n{i} = {{ size = {self.bodies}, periodic = {ring}{count} }}"
-        yield '[algebra]\nname = "so(3)"\ninvariance = "left"'
+        assert spec.algebra is not None, spec.name
+        yield f'[algebra]\nname = "{spec.algebra.name}"\ninvariance = "{self.strand.side}"'
         yield "[variables]\n" + "\n".join(self._variables())
         yield "[parameters]\n" + "\n".join(self._parameters())
         terms = [f"  sum({i}, {self.write(self.strand.own)})"]
-        if self.strand.potential:
-            yield "[definitions]\n" + "\n".join(self._definitions())
-            turned = f"transpose({R})"
-            terms.append(f"+ sum({i}, {self._call(f'{turned}*{self.attitude}[{i}+1]')})")
-        if self._has_walls:  # the first wall has the attitude 1
-            last = f"transpose({self.attitude}[{self.names['count']}-1])*{self.names['wall']}"
-            terms += [f"+ {self._call(link)}" for link in (f"{self.attitude}[0]", last)]
+        if self.links.has_any:
+            yield "[definitions]\n" + "\n".join(self.links.definitions())
+            links = self.links.terms(rises=self._starts.rise > 0, has_walls=self._has_walls)
+            terms += [f"+ {each}" for each in links]
         lines = "\n".join(terms)
         yield f'# the energy over {self.distance}\n[hamiltonian]\nh = """\n{lines}\n"""'
         left = self._left_out()
@@ -192,23 +209,43 @@ class _Lattice:
         yield note + "[observables]\n" + "\n".join(self._observables.values())
         kept = [name for name in ("energy", *self._observables) if self._is_kept(name)]
         casimirs = [f"trace({R}*transpose({R}))", f"det({R})"]
-        in_space = [f"({R}*{each.name}[{i}])" for each in self.strand.advected]
-        casimirs += [f"{vector}[{n}]" for vector in in_space for n in (1, 2, 3)]
+        turn = self.links.turn_over
+        kept_vectors = [f"({turn(f'{each.name}[{i}]')})" for each in self.strand.advected]
+        casimirs += [f"{vector}[{n}]" for vector in kept_vectors for n in (1, 2, 3)]
         yield f"[claims]\ncasimirs = {json.dumps(casimirs)}\nconserved = {json.dumps(kept)}"
+
+    @property
+    def _has_walls(self) -> bool:
+        """Whether there are links to walls, which stand still."""
+        return self.is_clamped and self.links.has_any
 
     def _describe(self) -> str:
         row = "a row with free ends" if self.is_open else "a ring"
         row = "a row between two walls, which stand still," if self.is_clamped else row
+        if self._starts.rise:
+            return self._describe_period()
         closes = "" if self.is_open else ", and the ring closes exactly"
+        what = "attitudes and places" if self.strand.is_rod else "attitudes"
         begin = "the profiles of the strand say"
         if self._starts.attitudes is None:
             begin += ", but that all stand alike"
         if self._starts.gap:
             begin += f": the holonomy of its strain is not 1 but for {self._starts.gap:.2g}"
         return (
-            f"Rigid bodies in {row} at distances {self.distance}, with attitudes {self.attitude}, "
+            f"Rigid bodies in {row} at distances {self.distance}, with {what} {self.attitude}, "
             f"whose limit is the strand of {self.spec.name}. The turn from one body to the next is "
             f"a rotation{closes}. Momenta and the energy are per length. Bodies begin as {begin}."
+        )
+
+    def _describe_period(self) -> str:
+        i, a, g, rise = self.place, self.distance, self.attitude, self.names["rise"]
+        return (
+            f"Rigid bodies at distances {a} along a rod, with attitudes and places {g}, whose "
+            f"limit is the strand of {self.spec.name}. The rod does not close in space: it is a "
+            f"period of an endless one, which goes on along the third axis by {a}*{rise} a body. "
+            f"Body {i} is at translation({g}[{i}]) + ({i} + k*N)*{a}*{rise}*(0, 0, 1) for all "
+            "whole k. Momenta and the energy are per length, and totals are of one period. Bodies "
+            "begin as the profiles of the strand say, turned so that the rod goes along this axis."
         )
 
     @cached_property
@@ -216,20 +253,39 @@ class _Lattice:
         return find_starts(self.strand, self.bodies)
 
     def _variables(self) -> Iterator[str]:
-        starts, Pi = self._starts, self.strand.momentum
-        doc = Pi.doc or "angular momenta in body axes, per length"
-        yield self._variable(self.attitude, "attitude", starts.attitudes, "from a body to space")
-        yield self._variable(Pi.name, "momentum", starts.fields.get(Pi.name), doc, Pi.unit)
-        for each in self.strand.advected:
-            doc = each.doc or "in body axes"
+        starts = self._starts
+        axes = "in body axes" if self.strand.side == "left" else "in axes of space"
+        role, doc = "attitude", "from a body to space"
+        if self.strand.is_rod:
+            role, doc = "pose", "attitude and place"
+        yield self._variable(self.attitude, role, starts.attitudes, doc, self._pose_unit)
+        for each in self.strand.momenta:
+            what = "angular momenta" if 0 in each.block else "momenta"
+            what = "angular momenta and momenta" if len(each.block) == 6 else what
+            role = "momentum"
+            if self.strand.is_rod and len(each.block) == 3:
+                role += f'", block = "{"rotation" if 0 in each.block else "translation"}'
             given = starts.fields.get(each.name)
-            yield self._variable(each.name, "advected", given, doc, each.unit)
+            doc = each.doc or f"{what} {axes}, per length"
+            yield self._variable(each.name, role, given, doc, each.unit)
+        for each in self.strand.advected:
+            doc = each.doc or axes
+            given = starts.fields.get(each.name)
+            role = 'advected", representation = "vector'
+            role += '", block = "rotation' if self.strand.is_rod else ""
+            yield self._variable(each.name, role, given, doc, each.unit)
+
+    @property
+    def _pose_unit(self) -> str:
+        """The unit of entries of a pose: its last column is a place."""
+        (unit,) = (each.unit for each in self.spec.parameters if each.name == self.length)
+        row = f"1, 1, 1, {unit}"
+        return f"{row}, {row}, {row}" if self.strand.is_rod and unit not in ("", "1") else ""
 
     def _variable(self, name: str, role: str, given: Array | None, doc: str, unit: str = "") -> str:
         """The line of a variable."""
         default = "" if given is None else f", default = {json.dumps(_write_numbers(given))}"
-        more = ', representation = "vector"' if role == "advected" else ""
-        keys = f'role = "{role}"{more}, index = "{self.place}"{default}{_unit(unit)}'
+        keys = f'role = "{role}", index = "{self.place}"{default}{_unit(unit)}'
         return f"{name} = {{ {keys}, doc = {_quote(doc)} }}"
 
     def _parameters(self) -> Iterator[str]:
@@ -246,88 +302,69 @@ class _Lattice:
             keys += [f"doc = {_quote(doc)}"] if doc else []
             yield f"{name} = {{ {', '.join(keys)}{_unit(each.unit)} }}"
         if self._has_walls:
-            wall = np.eye(3) if self._starts.wall is None else self._starts.wall
-            rows = json.dumps(_write_numbers(wall))
-            doc = "attitude of the wall behind the last body; that of the first wall is 1"
-            yield f'{self.names["wall"]} = {{ shape = [3, 3], default = {rows}, doc = "{doc}" }}'
-
-    # -- the potential --------------------------------------------------------------------
-
-    @cached_property
-    def _uses(self) -> tuple[bool, bool]:
-        """Whether the potential has entries of x, and of S."""
-        pairs = [pair_components(exponents) for exponents in self.strand.potential]
-        return any(left for left, _ in pairs), any(paired for _, paired in pairs)
-
-    def _arguments(self) -> Iterator[tuple[str, str]]:
-        """What the potential depends on: the name of the function of links, and of the argument."""
-        names = self.names
-        either = (("turn", "first"), ("squares", "second"))
-        for used, (function, argument) in zip(self._uses, either, strict=True):
-            if used:
-                yield names[function], names[argument]
-
-    def _definitions(self) -> Iterator[str]:
-        U, a, names = self.names["link"], self.distance, self.names
-        first, second = self._uses
-        if first:
-            yield "# tends to the strain"
-            parts = f"{U}[3, 2] - {U}[2, 3], {U}[1, 3] - {U}[3, 1], {U}[2, 1] - {U}[1, 2]"
-            yield f'"{names["turn"]}({U})" = "vector({parts})/(2*{a})"'
-        if second:
-            yield "# tends to the products of components of the strain"
-            one = f"(1 - trace({U}))*diag(vector(1, 1, 1))"
-            yield f'"{names["squares"]}({U})" = "({U} + transpose({U}) + {one})/{a}^2"'
-        arguments = ", ".join(argument for _, argument in self._arguments())
-        if arguments:
-            yield f'"{names["potential"]}({arguments})" = {_quote(self._write_potential())}'
-
-    @property
-    def _has_walls(self) -> bool:
-        """Whether there are links to walls, which turn with nothing."""
-        return self.is_clamped and any(self._uses)
-
-    def _call(self, link: str) -> str:
-        """The potential of a link."""
-        values = [f"{function}({link})" for function, _ in self._arguments()]
-        return f"{self.names['potential']}({', '.join(values)})"
-
-    def _write_potential(self) -> str:
-        """The potential as a formula in x and S."""
-        x, S, terms = self.names["first"], self.names["second"], list[str]()
-        # by degrees, and the first components first
-        known = self.strand.potential
-        for exponents in sorted(known, key=lambda each: (sum(each), [-n for n in each])):
-            factor = known[exponents]
-            left, pairs = pair_components(exponents)
-            parts = [f"{x}[{n + 1}]" for n in left]
-            parts += [f"{S}[{m + 1}, {n + 1}]" for m, n in pairs]
-            text = self.write(factor)
-            whole = f"({text})" if " " in text else text
-            terms.append("*".join([whole, *parts]) if parts else whole)
-        return " + ".join(terms).replace("+ -", "- ")
+            columns, doc, name = 3, "attitude", self.names["wall"]
+            if self.strand.is_rod:
+                columns, doc = 4, "attitude and place"
+            wall = np.eye(3, columns) if self._starts.wall is None else self._starts.wall
+            rows, unit = json.dumps(_write_numbers(wall)), _unit(self._pose_unit)
+            doc += " of the wall behind the last body; the first wall has the attitude 1"
+            doc += " and the place 0" if self.strand.is_rod else ""
+            yield f'{name} = {{ shape = [3, {columns}], default = {rows}{unit}, doc = "{doc}" }}'
+        if self._starts.rise:
+            doc = "step to the next body along the third axis, per length"
+            rise = json.dumps(_write_numbers(np.array(self._starts.rise)))
+            yield f'{self.names["rise"]} = {{ default = {rise}, doc = "{doc}" }}'
 
     # -- observables and claims -----------------------------------------------------------
 
     @cached_property
     def _observables(self) -> Mapping[str, str]:
-        """The total momentum in space, and what the strand has without strains, by names."""
-        i, J, Pi = self.place, self.names["momentum"], self.strand.momentum
-        doc = f"total angular momentum in space, over {self.distance}"
-        total = f"sum({i}, {self.body}*{Pi.name}[{i}])"
-        rows = {J: f'{J} = {{ expression = "{total}"{_unit(Pi.unit)}, doc = "{doc}" }}'}
+        """The total momenta in space, and what the strand has without strains, by names."""
+        rows = {name: self._total(name, *total) for name, total in self._totals().items()}
         for each in self.spec.observables:
             values = self._of_momenta(each)
             if values is None:
                 continue
             texts = [self.write(value) for value in values]
             inner = f"vector({', '.join(texts)})" if each.formula.shape else texts[0]
-            doc = f"{each.doc}, over {self.distance}" if each.doc else f"over {self.distance}"
-            rows[each.name] = (
-                f"{each.name} = {{ expression = {_quote(f'sum({i}, {inner})')}{_unit(each.unit)}, "
-                f"doc = {_quote(doc)} }}"
-            )
+            rows[each.name] = self._total(each.name, inner, each.unit, each.doc or "total")
         return rows
+
+    def _totals(self) -> Mapping[str, tuple[str, str, str]]:
+        """The momenta of a body in space by names of their totals, with units and what they are."""
+        J, place, turn = (
+            self.names["momentum"],
+            self.links.place_of(self.place),
+            self.links.turn_over,
+        )
+        spin, unit = self._part((0, 1, 2))
+        axes = "space" if self.strand.side == "left" else "body axes"
+        angular, doc = turn(spin), f"total angular momentum in {axes}"
+        if not self.strand.is_rod:
+            return {J: (angular, unit, doc)}
+        moved, unit_of_moved = self._part((3, 4, 5))
+        angular += f" + cross({place}, {turn(moved)})"
+        if self._starts.rise:
+            angular, doc = f"({angular})[3]", "total angular momentum about the third axis in space"
+        linear = (turn(moved), unit_of_moved, "total momentum in space")
+        return {self.names["linear"]: linear, J: (angular, unit, doc)}
+
+    def _part(self, block: tuple[int, ...]) -> tuple[str, str]:
+        """The momentum of a body along a block of the algebra, a vector, and its unit."""
+        for each in self.strand.momenta:
+            if each.block == block:
+                return f"{each.name}[{self.place}]", each.unit
+        (whole,) = self.strand.momenta
+        entries = ", ".join(f"{whole.name}[{self.place}, {n + 1}]" for n in block)
+        return f"vector({entries})", ""
+
+    def _total(self, name: str, term: str, unit: str, doc: str) -> str:
+        """The line of an observable that is a sum over bodies."""
+        doc = f"{doc}, over {self.distance}"
+        return (
+            f"{name} = {{ expression = {_quote(f'sum({self.place}, {term})')}{_unit(unit)}, "
+            f"doc = {_quote(doc)} }}"
+        )
 
     def _of_momenta(self, each: Observable) -> tuple[Element, ...] | None:
         """An observable of the strand by components, if it names no strains."""
@@ -336,7 +373,7 @@ class _Lattice:
         equations, field = self.strand.equations, self.strand.field
         values = entries(equations.setting.value(each.formula))
         closed = tuple(map(equations.close, values))
-        own = (self.strand.momentum, *self.strand.advected)
+        own = (*self.strand.momenta, *self.strand.advected)
         known = {*(n for x in own for n in x.components), *field.adjoined}
         known |= {n for x in self.spec.parameters for n in x.components} - {self.length}
         return closed if all(field.reach(value) <= known for value in closed) else None
@@ -345,12 +382,17 @@ class _Lattice:
         """Whether the lattice keeps it: of the strand's, linear functions of momenta it keeps."""
         if name == "energy":
             return True
-        if self.is_clamped or self.strand.advected:  # walls and fields turn bodies
+        if self.is_clamped:  # walls push and turn bodies
+            return False
+        if name == self.names.get("linear"):
+            return True
+        if self.strand.advected:  # fields turn bodies
             return False
         if name == self.names["momentum"]:
             return True
         claimed = {each.formula.text for each in self.spec.conserved if not each.where}
-        momenta, field = self.strand.momentum.components, self.strand.field
+        momenta = [name for each in self.strand.momenta for name in each.components]
+        field = self.strand.field
         (each,) = (x for x in self.spec.observables if x.name == name)
         slopes = (field.gradient(x, momenta) for x in self._of_momenta(each) or ())
         linear = all(not field.reach(x) & {*momenta} for slope in slopes for x in slope)

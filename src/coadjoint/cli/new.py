@@ -60,7 +60,7 @@ conserved = ["energy"]
     "strand",
     metavar="SYSTEM|SPEC",
     shell_complete=complete_system,
-    help="A strand on so(3), whose lattice of rigid bodies with attitudes is written.",
+    help="A strand on so(3) or se(3), whose lattice of rigid bodies is written.",
 )
 @click.option("--bodies", type=click.IntRange(1), help="How many. Default: 16.")
 @seconds_option
