@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 #: Members near the default state, drawn so that none is at rest, and by what part of it, the widest
-#: first: those in the domain count.
-MEMBERS: Final = 4
+#: first: those in the domain count. They are more than half a vector of C, as those are that differences
+#: take, so that one library has both.
+MEMBERS: Final = 5
 SPREADS: Final = (0.1, 0.01, 0.001)
 DRAWN: Final = 16
 #: Steps to the nearest state on constraints, and how far off them it may be.
@@ -125,12 +126,14 @@ class Runs:
 
     Args:
         system: The System.
+        count: Steps of the longest of the three runs that tell an order.
 
     Raises:
         KernelArgumentError: None of them can be followed.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, count: int = HALVED) -> None:
+        self.count = count
         self.system = system = _compile_sooner(system)
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
@@ -306,12 +309,13 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     there are roundings alone, those of a run more are twice as long, as far as they are solved.
     """
     first = runs.step * (2.0 if method.order > 4 else 1.0)
-    ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
+    count = runs.count
+    ends = [runs.run(method.name, first / part, count * part, runs.states) for part in (1, 2, 4)]
     order, reached = _compare(ends)
     for power in range(1, SOONER + 1):
-        if order is not None or not reached:
+        if order is not None or not reached or not count >> power:
             break
-        longer = runs.run(method.name, first * 2**power, HALVED >> power, runs.states)
+        longer = runs.run(method.name, first * 2**power, count >> power, runs.states)
         ends = [longer, *ends[:2]]
         order, _ = _compare(ends)
         if order is not None:  # steps that are too long say nothing: a fault would have been seen
@@ -319,7 +323,7 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     for part in LATER:
         if order is None or order > method.order - SHY:
             break
-        ends = [*ends[1:], runs.run(method.name, first / part, HALVED * part, runs.states)]
+        ends = [*ends[1:], runs.run(method.name, first / part, count * part, runs.states)]
         again, _ = _compare(ends)
         order = order if again is None else again
     return order, reached
