@@ -39,6 +39,7 @@ BENCHMARKS = (
     "ensembles_jax",
     "trajectories",
     "structure",
+    "methods",
     "memory",
 )
 #: Those that have figures and nothing more: their files are written here.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 import sympy
 
 from coadjoint.cli.arguments import load_system
+from coadjoint.solve.methods import midpoint
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 
@@ -183,3 +185,84 @@ def test_kernels_of_families_by_hand_compute_the_same(monkeypatch, tmp_path, nam
     found = contest.competitors(families.FUSED[:1])
     assert len(found) == 2 + len(families.WAYS[name])
     families.check_equal(contest, found)
+
+
+@pytest.fixture
+def methods(monkeypatch):
+    """The benchmark of every method of every system."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return import_module("methods")
+
+
+@pytest.mark.parametrize(
+    ("name", "names", "compared"),
+    [
+        ("rigid_body", ("coadjoint_mean", "exact_body"),
+         {"orders": 1, "maps": 2, "integrals": 3, "reversals": 2}),
+        ("kepler", ("gauss8", "splitting"),
+         {"orders": 2, "maps": 2, "integrals": 2, "reversals": 2}),
+        ("chaplygin_ball", ("discrete_gradient",),
+         {"orders": 1, "integrals": 1, "reversals": 1, "growths": 1}),
+    ],
+)  # fmt: skip
+def test_methods_of_three_kinds_of_systems_do_what_is_claimed(methods, name, names, compared):
+    """A momentum of a group, a canonical motion, and one with constraints."""
+    rows = list(methods.measure_system(name, names))
+    assert [row.found.method.name for row in rows] == [*names]
+    assert [row.failures for row in rows] == [()] * len(rows)
+    assert +sum((row.compared for row in rows), methods.Counter()) == compared
+
+
+@pytest.mark.parametrize(
+    ("half", "longer", "seen"),
+    [
+        (0.4, 0.0, ["its order is 1.0, and 2"]),
+        (0.5, 0.1, ["its order is 1.0, and 2"]),
+        (0.0, 0.0, []),
+    ],
+)
+def test_a_spoiled_method_is_a_failure_of_the_table(methods, monkeypatch, half, longer, seen):
+    """The midpoint short of the middle, in steps that are too long, and at the start: Euler's."""
+
+    def sweep(self, arc, middle, kept):
+        rise = arc.length * self.rates(arc.lanes, arc.middle, middle)
+        following = arc.state + (arc.low + half * rise)
+        return midpoint.Sweep(following, rise * (1 + longer * arc.length), False)
+
+    monkeypatch.setattr(midpoint.Midpoint, "sweep", sweep)
+    (row,) = methods.measure_system("rigid_body", ("midpoint",))
+    for each in (*seen, "energy drifts by", "casimir1 drifts by", "leads back with an error"):
+        assert [failure for failure in row.failures if each in failure], each
+    assert row.list_cells()[-1] == "; ".join(row.failures)
+
+
+def test_a_false_claim_of_a_poisson_map_is_a_failure(methods, monkeypatch):
+    """Of the midpoint; maps that are similar to Poisson maps are told from them."""
+    system = load_system("rigid_body")
+    wrong = tuple(replace(x, is_poisson=x.name == "midpoint") for x in system.METHODS)
+    monkeypatch.setattr(system, "METHODS", wrong)
+    monkeypatch.setattr(methods, "load_system", lambda name: system)
+    (row,) = methods.measure_system("rigid_body", ("midpoint",))
+    assert [each for each in row.failures if "from a Poisson map" in each]
+    assert min(methods.measure_controls().values()) > methods.SEEN
+
+
+def test_constraints_that_are_eliminated_are_told_from_those_that_are_kept(monkeypatch):
+    """Of velocities that are solved for no state is off them, so that nothing is measured."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    structure = import_module("structure")
+    found = {name: structure.is_eliminated(load_system(name), None) for name in structure.ROLLING}
+    assert [name for name, so in found.items() if not so] == ["suslov"]
+
+
+def test_the_midpoint_with_plain_sums_is_another_text(monkeypatch, tmp_path):
+    """Its energy drifts by more, which is asked before the times; without the text nothing runs."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    structure = import_module("structure")
+    monkeypatch.setattr(structure, "TIMED", 1000)
+    monkeypatch.setattr(structure, "MEMBERS", 512)
+    (figure,) = structure.measure_compensation()
+    assert "9." in figure.measured
+    monkeypatch.setattr(structure, "PLAIN", (("no such text", ""),))
+    with pytest.raises(AssertionError, match="no such text"):
+        structure.write_plain(tmp_path / "x")

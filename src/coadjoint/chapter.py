@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.methods import list_fitting, list_kept, list_unfit
+from coadjoint.methods import list_fitting, list_kept, list_unfit, tell_order
 from coadjoint.notation.numbers import shorten_numbers
 
 #: What the kinds of claims are about, as headings of sentences.
@@ -169,7 +169,12 @@ def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, An
     judged = certificate.get("methods", ())
     rows = [("method", "order", "keeps exactly", "cost of a step")]
     rows += [
-        (m["name"], str(m["order"]), ", ".join(list_kept(m)) or "nothing", m["cost"])
+        (
+            m["name"],
+            tell_order(m["name"], m["order"]),
+            ", ".join(list_kept(m)) or "nothing",
+            m["cost"],
+        )
         for m in list_fitting(judged)
     ]
     if rows[1:]:

@@ -39,7 +39,8 @@ def export_header(rendered: Rendered, method: str) -> str:
     """
     system, context = rendered.equations.spec.name, rendered.context
     if context is None:
-        find_method(method, system, (), "its solvers are loops over equal members")
+        many = "points" if rendered.equations.spec.space else "equal members"
+        find_method(method, system, (), f"its solvers are loops over {many}")
         raise AssertionError(system)
     chosen, judged = find_method(method, system, rendered.methods, find_obstacle(context))
     with load_texts(rendered.texts) as loaded:

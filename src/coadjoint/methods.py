@@ -17,6 +17,9 @@ from coadjoint.limits import C_STATEMENTS
 
 #: What is kept of each search for the next step: an offset and its first two differences.
 TERMS: Final = 3
+#: The method that is the motion itself, to rounding: its order is that of what its series leave
+#: out, in parts of a step, and no run shows it.
+EXACT: Final = "exact_body"
 #: Of how many steps one is composed, by its order.
 _LENGTHS: Final = MappingProxyType({2: 1, 4: 5, 6: 9})
 
@@ -39,6 +42,11 @@ def list_unfit(judged: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
         if not each["cost"]:
             unfit.setdefault(each["decides"], []).append(each["name"])
     return unfit
+
+
+def tell_order(name: str, order: int) -> str:
+    """The order of a method as text; of the motion itself, which has none, that it is exact."""
+    return "exact" if name == EXACT else str(order)
 
 
 @dataclass(frozen=True)

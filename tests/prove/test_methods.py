@@ -194,6 +194,7 @@ def test_a_cubic_term_takes_the_energy_from_the_midpoint():
     assert before["midpoint"].exactly == ("energy", "casimir1")
     assert before["spherical_midpoint"].exactly == ("energy", "casimir1")
     facts, after = judge(spec(HAMILTONIAN, (END, f"{END} + Pi[1]^3")))
+    assert "matrix_products" not in facts.as_record()
     assert facts.energy_degree is None
     for name in ("midpoint", "gauss6", "spherical_midpoint"):
         assert (after[name].exactly, after[name].nearly) == (("casimir1",), ("energy",)), name
@@ -215,6 +216,9 @@ def test_another_algebra_takes_the_spheres():
     assert not methods["spherical_midpoint"].applies
     assert methods["spherical_midpoint"].decides.startswith("it expects a motion")
     assert default(methods) == "isospectral_midpoint4"
+    assert facts.as_record()["matrix_products"] is True
+    assert "matrices with all products B A B" in methods["isospectral_midpoint"].decides
+    assert "matrices" not in methods["coadjoint_mean"].decides
 
 
 def test_friction_takes_the_bracket():

@@ -247,8 +247,11 @@ def test_kinks_and_equal_members_are_refused():
     rhs = program("rhs", "Pi1 Pi2 Pi3", "I1 I2 I3", "", "Pi2*Pi3; -sign(Pi2); Pi1*Pi2", (3,))
     assert "rates have kinks" in find_obstacle(replace(context, programs=(rhs,)))
     family = Rendered(emitted("rigid_body"), Certificate("rigid_body", ()), {}, {})
-    with pytest.raises(KernelArgumentError, match="loops over equal members"):
+    with pytest.raises(KernelArgumentError, match=r"'rk4' .* loops over equal members"):
         export_header(family, "rk4")
+    field = Rendered(emitted("kdv"), Certificate("kdv", ()), {}, {})
+    with pytest.raises(KernelArgumentError, match=r"no method of kdv has a header: .* over points"):
+        export_header(field, "auto")
 
 
 def test_words_of_cpp_are_refused_by_name():

@@ -150,6 +150,18 @@ def test_a_step_that_is_not_solved_ends_its_member_alone():
     assert np.array_equal(alone.state[:, -1], 40 * TURNING)
 
 
+@pytest.mark.parametrize("method", ["midpoint", "midpoint4", "gauss4", "discrete_gradient"])
+def test_sweeps_that_solve_nothing_are_counted(method):
+    """Of a first step, too, in C as in NumPy; the steps before one that fails keep theirs."""
+    start = TURNING[:, np.newaxis] * np.array([40.0, 1.0])
+    options = {"method": method, "step": 0.5, "samples": 1}
+    runs = [rigid_body.simulate(start, (0, 10), FREE, target=t, **options) for t in TARGETS]
+    assert [str(each) for each in np.ravel(runs[0].status)] == ["NOT_SOLVED", "OK"]
+    assert runs[0].steps[0] == 0
+    assert runs[0].sweeps[0] > 0
+    assert runs[0].sweeps.tolist() == runs[1].sweeps.tolist()
+
+
 def test_what_a_method_keeps_is_said():
     """In the settings and the representation of a run."""
     run = rigid_body.simulate(TURNING, (0, 1), FREE, method="midpoint", step=0.1)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from coadjoint.cli.output import print_table, say
-from coadjoint.methods import NOISY, PLAIN, list_fitting, list_kept, list_unfit
+from coadjoint.methods import NOISY, PLAIN, list_fitting, list_kept, list_unfit, tell_order
 
 
 def print_methods(record: Mapping[str, Any]) -> None:
@@ -36,7 +36,7 @@ def _row(method: Mapping[str, Any]) -> tuple[str, ...]:
     """A line of the table."""
     return (
         method["name"],
-        str(method["order"]),
+        tell_order(method["name"], method["order"]),
         ", ".join(list_kept(method)) or "-",
         ", ".join(method["nearly"]) or "-",
         method["decides"],

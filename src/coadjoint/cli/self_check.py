@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from coadjoint.cli.output import print_table, say
 from coadjoint.errors import CoadjointError
+from coadjoint.methods import tell_order
 from coadjoint.solve.self_check import Measured, check_methods
 
 if TYPE_CHECKING:
@@ -56,8 +57,9 @@ def main(system: System, package: str, arguments: Sequence[str] | None = None) -
     print_table(columns, list(map(_row, found)), f"Methods of {system.name}, on runs")
     wrong = [each for each in found if each.failures]
     compared = sum(each.compared for each in found)
-    say(f"{len(found) - len(wrong)} of {len(found)} methods do what is claimed; {compared} numbers "
-        "were compared with claims.")  # fmt: skip
+    numbers = "1 number was" if compared == 1 else f"{compared} numbers were"
+    say(f"{len(found) - len(wrong)} of {len(found)} methods do what is claimed; {numbers} compared "
+        "with claims.")  # fmt: skip
     for each in wrong:
         say(f"{each.method.name}: {'; '.join(each.failures)}.")
     return int(bool(wrong) or not compared)
@@ -69,7 +71,7 @@ def _row(each: Measured) -> tuple[str, ...]:
     rest = {name: x for name, x in each.drifts.items() if name not in kept}
     return (
         each.method.name,
-        str(each.method.order),
+        tell_order(each.method.name, each.method.order),
         "rounding" if each.order is None else f"{each.order:.1f}",
         "-" if each.defect is None else f"{each.defect:.0e}",
         _list(kept),

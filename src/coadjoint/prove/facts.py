@@ -193,6 +193,14 @@ class Facts:
         """Factors so(3) and se(3), where the algebra is a product of these and of R."""
         return find_spheres(self.programs) if stays_on_orbits(self.programs) else ()
 
+    @property
+    def has_products(self) -> bool:
+        """Whether the algebra is one of matrices with all products B A B, up to those of 1 or i.
+
+        Kernels have these products then, as far as they are not too long.
+        """
+        return "sandwich" in self.programs
+
     # -- of the motion as a whole ---------------------------------------------------------
 
     @cached_property
@@ -420,6 +428,7 @@ class Facts:
             "separable": self.is_separable,
             "nambu": self.is_nambu,
             "spheres": [[list(each.rows), list(each.tangent)] for each in self.spheres],
+            "matrix_products": self.has_products,
             "unimodular": algebra is not None and algebra.is_unimodular,
             "compact": algebra is not None and _is_compact(algebra),
             "reversed_by": self.reversal,

@@ -207,6 +207,8 @@ def _on_orbits(facts: Facts) -> tuple[Kept, ...]:
 
 
 _ACTION: Final = "the motion is the bracket with its energy, and the bracket is linear"
+#: What the isospectral midpoint asks for beyond that.
+_PRODUCTS: Final = "that of matrices with all products B A B, up to multiples of 1 or i"
 
 
 def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -215,7 +217,7 @@ def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     cost = f"{SWEEPS} of {count(stages, 'coadjoint arc')}, each a dozen brackets"
     if method.file == "isospectral_midpoint":
         cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
-        return Judgement(_on_orbits(facts), True, _ACTION, cost)
+        return Judgement(_on_orbits(facts), True, f"{_ACTION}, {_PRODUCTS}", cost)
     kept = _on_orbits(facts)
     # the whole state moves by exp(h xi), attitudes with it: what all such elements leave as it is
     moved = [each for each in facts.integrals if each not in kept]

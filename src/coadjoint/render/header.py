@@ -16,7 +16,7 @@ from typing import Any, Final
 from coadjoint.declared import KernelContext
 from coadjoint.errors import KernelArgumentError, SpecError
 from coadjoint.lower.mapped import list_maps
-from coadjoint.methods import MAPPED, STRUCTURED, JudgedMethod, StructuredMethod
+from coadjoint.methods import EXACT, MAPPED, STRUCTURED, JudgedMethod, StructuredMethod
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.kernels import (
     describe_solver,
@@ -107,18 +107,23 @@ def find_method(
     known = {each.name: each for each in judged}
     fit = [*PLAIN, *(each.name for each in known.values() if each.applies)]
     ranked = [each for each in known.values() if each.rank == 1]
+    if obstacle:
+        who = (
+            f"no method of {system} has a"
+            if name == "auto"
+            else f"method {name!r} of {system} has no"
+        )
+        raise KernelArgumentError(f"{who} header: {obstacle}.", found=name, expected=[])
     if name == "auto":
         name = ranked[0].name if ranked else "rk4"
-    reason = obstacle
-    if not reason and name not in fit:
+    if name not in fit:
         own = known.get(name)
         reason = own.decides if own else "there is no such method with a fixed step"
-    if reason:
         raise KernelArgumentError(
-            f"method {name!r} of {system} has no header: {reason}."
-            + ("" if obstacle else f" Expected one of {', '.join(fit)}."),
+            f"method {name!r} of {system} has no header: {reason}. Expected one of "
+            f"{', '.join(fit)}.",
             found=name,
-            expected=[] if obstacle else fit,
+            expected=fit,
         )
     method = {**PLAIN, **STRUCTURED, **MAPPED}[name]
     return method, known.get(name) or JudgedMethod(name=name, order=method.order)
@@ -265,7 +270,8 @@ def _tell(method: StructuredMethod, judged: JudgedMethod) -> list[str]:
     """What the head says of a method: its theorem, and what it keeps of this system."""
     exactly = [*judged.exactly, *(["the Poisson tensor"] if judged.is_poisson else [])]
     lines = [
-        f"The method is {method.theorem}; its order is {method.order}.",
+        f"The method is {method.theorem}; "
+        + ("it is exact." if method.name == EXACT else f"its order is {method.order}."),
         f"Keeps to the rounding of each step: {', '.join(exactly) or 'nothing that is proved'}.",
     ]
     if judged.decides:

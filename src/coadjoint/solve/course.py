@@ -53,7 +53,8 @@ class Course:
         codes: How each trajectory ended, as `Status`; None from SciPy.
         steps: Steps that were taken; likewise.
         rejected: Steps that were tried in vain; likewise.
-        sweeps: Sweeps by which the equations of all steps were solved; None of explicit methods.
+        sweeps: Sweeps by which the equations of all steps were solved, and those of a last one that
+            was not; None of explicit methods.
         reached: The time that each trajectory reached; likewise.
         last: The state there, ``(n, *batch)``; likewise.
         below: What is reconstructed there, ``(k, *batch)``; None if nothing is.

@@ -364,7 +364,7 @@ class Ensemble:
     def _take_left(
         self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
     ) -> None:
-        """Keep what a step that was accepted leaves.
+        """Keep what a step that was accepted leaves, and count sweeps, in vain or not.
 
         What moves a state onto constraints is no rounding, and there the sums begin anew.
         """
@@ -376,7 +376,8 @@ class Ensemble:
         own = self.memory[: len(memory)]
         own[:, going] = np.where(accepted, memory, own[:, going])
         if self.sweeps is not None:
-            self.sweeps[going] += np.where(accepted, attempt.left.sweeps, np.uint64(0))
+            made = accepted | ~attempt.left.solved
+            self.sweeps[going] += np.where(made, attempt.left.sweeps, np.uint64(0))
 
     def _find_time(self, going: NDArray[np.intp], lanes: Lanes, took: Array) -> tuple[Array, Array]:
         """The time after a step, and what rounding takes of it."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from coadjoint.build.compiler import BUILDS
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import JudgedMethod
+from coadjoint.methods import STRUCTURED, JudgedMethod
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.spectral import list_mean_zero
 from coadjoint.solver_kinds import SOLVER
@@ -31,8 +31,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 #: Members near the default state, drawn so that none is at rest, and by what part of it, the widest
-#: first: those in the domain count.
-MEMBERS: Final = 4
+#: first: those in the domain count. They are more than half a vector of C, as are those that
+#: differences take, so that one library has both.
+MEMBERS: Final = 5
 SPREADS: Final = (0.1, 0.01, 0.001)
 DRAWN: Final = 16
 #: Steps to the nearest state on constraints, and how far off them it may be.
@@ -47,21 +48,28 @@ SHORTER: Final = 5
 #: further runs are, and steps of the run that tells drifts.
 HALVED: Final = 8
 LATER: Final = (8, 16)
+#: By what powers of 2 steps are longer, where those of the first three runs differ by roundings.
+SOONER: Final = 3
 DRIFTING: Final = 100
 #: Components of a state beyond which a compiled solver takes less time than NumPy, with compiling.
 LARGE: Final = 8
+#: Files of methods whose compositions take less time in NumPy, with compiling.
+QUICK: Final = ("midpoint", "gauss")
 #: By how much an order may be measured too low. One that is too high is no fault of a method.
 SHY: Final = 0.5
 #: Gaps of runs, relative to the state, that are roundings: no order is read from them.
-ROUNDED: Final = 1e-12
+ROUNDED: Final = 1e-13
 #: How far a map may be from a Poisson map by differences, and how far integrals may go that are
 #: kept exactly, times the square of the growth of states: near a pole terms of an integral cancel.
-DEFECT: Final = 1e-7
+DEFECT: Final = 1e-11
 DRIFT: Final = 1e-12
 #: Directions that the tensor has, by the size that it has along them.
 LEAST: Final = 1e-9
-#: The part of a state by which differences move it.
-_DIFFERENCE: Final = 1e-5
+#: The parts of a state by which differences move it, at most, and their weights: those of order 8
+#: (B. Fornberg, Mathematics of Computation 51 (1988) 699) mostly leave roundings alone at the first
+#: distance; of stiff motions at the second one.
+_DIFFERENCES: Final = (2.0**-7, 2.0**-10)
+_WEIGHTS: Final = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
 
 @dataclass(frozen=True)
@@ -73,6 +81,8 @@ class Measured:
         order: The measured order; None where runs differ by roundings alone.
         defect: How far a step is from a Poisson map, relative to the tensor; None without one.
         drifts: The largest drift of each integral.
+        exponents: With what power of the number of steps it grows.
+        grown: By what factor states grew.
         compared: How many numbers were compared with what is claimed.
         failures: What contradicts the claims, as clauses.
     """
@@ -81,6 +91,8 @@ class Measured:
     order: float | None
     defect: float | None
     drifts: dict[str, float]
+    exponents: dict[str, float]
+    grown: float
     compared: int
     failures: tuple[str, ...]
 
@@ -111,7 +123,7 @@ def check_methods(system: System, names: list[str] | None = None) -> Iterator[Me
         return
     runs = Runs(system)
     for method in chosen:
-        yield _measure(runs, method)
+        yield measure_method(runs, method)
 
 
 class Runs:
@@ -119,12 +131,14 @@ class Runs:
 
     Args:
         system: The System.
+        count: Steps of the longest of the three runs that tell an order.
 
     Raises:
         KernelArgumentError: None of them can be followed.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, count: int = HALVED) -> None:
+        self.count = count
         self.system = system = _compile_sooner(system)
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
@@ -188,14 +202,30 @@ class Runs:
                 states = np.asarray(self.system.projection(states, **self.at))
         return states
 
+    def find_tensor(self, state: Array) -> Array | None:
+        """The Poisson tensor at a state; of equal members column by column, None without either."""
+        functions = self.system.functions
+        if "poisson_tensor" in functions:
+            return np.asarray(self.system.poisson_tensor(state, **self.at))
+        if "bracket_vector" not in functions:
+            return None
+        turn = self.system.bracket_vector
+        return np.stack([np.asarray(turn(state, e, **self.at)) for e in np.eye(len(state))], axis=1)
+
     def run(self, method: str, step: float, count: int, states: Array) -> Array:
         """States after so many steps; NaN where they were not reached."""
         found = self._simulate(method, step, count, states, samples=1)
         return np.asarray(found.state[..., -1])
 
-    def find_drifts(self, method: str) -> tuple[dict[str, float], float]:
-        """The largest drift of each integral at ends of steps, and by how much states grew."""
-        found = self._simulate(method, self.step, DRIFTING, self.states, samples=41)
+    def find_drifts(
+        self, method: str, count: int = DRIFTING
+    ) -> tuple[dict[str, float], float, dict[str, float]]:
+        """The largest drift of each integral at ends of steps, how states grew, and how drifts did.
+
+        The last are exponents p of the best lines ``log drift = p log n + c`` through numbers n of
+        steps that are doubled, of the median of members; what is less than a rounding is half one.
+        """
+        found = self._simulate(method, self.step, count, self.states, samples=count)
         sizes = np.abs(found.state).max(axis=0)
         first = sizes[..., :1]
         growth = float(np.nanmax(sizes / first, initial=1.0))
@@ -203,7 +233,14 @@ class Runs:
         if isinstance(self.system, FamilySystem):
             for name, radii in self.system.find_radii(found.state).items():
                 drifts[name] = float(np.nanmax(np.abs(radii / radii[..., :1] - 1.0)))
-        return drifts, growth
+        exponents = {name: _find_exponent(found.change(name), found[name]) for name in found.drift}
+        return drifts, growth, exponents
+
+    def find_target(self, method: str) -> str:
+        """Where a run takes less time, with compiling."""
+        own = STRUCTURED.get(method)
+        is_slow = own is not None and own.stages > 1 and own.file not in QUICK
+        return "c" if is_slow else self.target
 
     def _simulate(self, method: str, step: float, count: int, states: Array, samples: int) -> Any:
         return self.system.simulate(
@@ -212,7 +249,7 @@ class Runs:
             method=method,
             step=step,
             samples=samples,
-            target=self.target,
+            target=self.find_target(method),
             progress=False,
         )
 
@@ -235,11 +272,17 @@ def _fill(quantity: Any) -> list[float]:
     return [1.0] * count
 
 
-def _measure(runs: Runs, method: JudgedMethod) -> Measured:
-    """A method on the runs of a system."""
+def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> Measured:
+    """A method on the runs of a system, against what is claimed of it.
+
+    Args:
+        runs: Of the system.
+        method: The method.
+        count: Steps of the run that tells drifts.
+    """
     order, reached = _find_order(runs, method)
-    defect = _find_defect(runs, method.name) if method.is_poisson else None
-    drifts, growth = runs.find_drifts(method.name)
+    defect = find_defect(runs, method.name) if method.is_poisson else None
+    drifts, growth, exponents = runs.find_drifts(method.name, count)
     failures = [] if reached else ["no run reached its end"]
     if order is not None and not order > method.order - SHY:
         failures.append(f"its order is {order:.1f}, and {method.order} is claimed")
@@ -257,23 +300,47 @@ def _measure(runs: Runs, method: JudgedMethod) -> Measured:
         order=order,
         defect=defect,
         drifts=drifts,
+        exponents=exponents,
+        grown=growth,
         compared=compared,
         failures=tuple(failures),
     )
 
 
+def _find_exponent(change: Array, values: Array) -> float:
+    """The exponent of the growth of an observable's change, ``(*shape, N, T)`` from step 1 on."""
+    count, members = change.shape[-1], change.shape[-2]
+    moved = np.abs(change).reshape(-1, members, count).max(axis=0)
+    size = np.abs(values).reshape(-1, members, count).max(axis=(0, 2))
+    part = moved / np.where(size > 0, size, 1.0)[:, np.newaxis]
+    largest = np.nanmedian(np.fmax.accumulate(part, axis=1), axis=0)
+    places = 2 ** np.arange(int(math.log2(count)) + 1)
+    seen = np.maximum(largest[places - 1], 0.25 * np.finfo(float).eps)
+    return float(np.polyfit(np.log(places), np.log(seen), 1)[0])
+
+
 def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     """The order by three runs with steps that are halved, and whether some reached the end.
 
-    Where it is too low, steps may be too long for it: those of a run more are half as long.
+    Where it is too low, steps may be too long for it: those of a run more are half as long. Where
+    there are roundings alone, those of a run more are twice as long, as far as they are solved.
     """
     first = runs.step * (2.0 if method.order > 4 else 1.0)
-    ends = [runs.run(method.name, first / part, HALVED * part, runs.states) for part in (1, 2, 4)]
+    count = runs.count
+    ends = [runs.run(method.name, first / part, count * part, runs.states) for part in (1, 2, 4)]
     order, reached = _compare(ends)
+    for power in range(1, SOONER + 1):
+        if order is not None or not reached or not count >> power:
+            break
+        longer = runs.run(method.name, first * 2**power, count >> power, runs.states)
+        ends = [longer, *ends[:2]]
+        order, _ = _compare(ends)
+        if order is not None:  # steps that are too long say nothing: a fault would have been seen
+            return (order if order > method.order - SHY else None), True
     for part in LATER:
         if order is None or order > method.order - SHY:
             break
-        ends = [*ends[1:], runs.run(method.name, first / part, HALVED * part, runs.states)]
+        ends = [*ends[1:], runs.run(method.name, first / part, count * part, runs.states)]
         again, _ = _compare(ends)
         order = order if again is None else again
     return order, reached
@@ -292,22 +359,36 @@ def _compare(ends: list[Array]) -> tuple[float | None, bool]:
     return math.log2(gaps[0] / gaps[1]), True
 
 
-def _find_defect(runs: Runs, method: str) -> float | None:
+def find_defect(runs: Runs, method: str, part: float = 1.0) -> float | None:
     """``max |D J D^T - J|`` of a step with the derivative D, relative to J; by differences.
 
-    They are along the leaf, whose directions are those of J: constraints hold there.
+    They are along the leaf, whose directions are those of J: constraints hold there. None without
+    a tensor.
+
+    Args:
+        runs: Of the system.
+        method: The name of the method.
+        part: The length of the step, in those of the runs.
     """
-    if "poisson_tensor" not in runs.system.functions:
-        return None
     column = runs.states[:, :1]
     state = column[:, 0]
-    start = np.asarray(runs.system.poisson_tensor(state, **runs.at))
+    start = runs.find_tensor(state)
+    if start is None:
+        return None
     along, sizes, _ = np.linalg.svd(start)
     along = along[:, sizes > LEAST * sizes[0]]
-    eps, count = _DIFFERENCE * float(np.abs(state).max()), along.shape[1]
-    given = np.concatenate([column + eps * along, column - eps * along, column], axis=1)
-    ends = runs.run(method, runs.step, 1, runs.project(given))
-    slope = (ends[:, :count] - ends[:, count:-1]) / (2 * eps)
-    end = np.asarray(runs.system.poisson_tensor(ends[:, -1], **runs.at))
-    found = slope @ (along.T @ start @ along) @ slope.T
-    return float(np.abs(found - end).max() / np.abs(end).max())
+    inner, defects = along.T @ start @ along, list[float]()
+    for distance in _DIFFERENCES:
+        eps = distance * float(np.abs(state).max())
+        moves = [m * eps * along for n in range(1, len(_WEIGHTS) + 1) for m in (n, -n)]
+        given = np.concatenate([column, *(column + move for move in moves)], axis=1)
+        ends = runs.run(method, part * runs.step, 1, runs.project(given))
+        pairs = ends[:, 1:].reshape(len(ends), len(_WEIGHTS), 2, along.shape[1])
+        slope = np.einsum("n,inj->ij", _WEIGHTS, pairs[:, :, 0] - pairs[:, :, 1]) / eps
+        end = runs.find_tensor(ends[:, 0])
+        assert end is not None
+        off = np.abs(slope @ inner @ slope.T - end).max() / np.abs(end).max()
+        defects.append(float(off))
+        if off < DEFECT:
+            break
+    return min(defects)

@@ -221,7 +221,8 @@ class LiePoisson:
             if offsets:
                 kept.append(keep_offset(offsets[number], found.middle - state))
             state, low = add_low(state, low, found.rise)
-            after, solved, made = after + length, solved & found.solved, made + found.made
+            made = made + np.where(solved, found.made, np.uint64(0))  # up to one that fails
+            after, solved = after + length, solved & found.solved
         return state, np.concatenate([low, *kept]), solved, made
 
     def search(self, arc: Arc, start: Array, offset: Array, done: Mask) -> Search:
