@@ -168,6 +168,8 @@ def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, An
     ]
     if rows[1:]:
         law = "those that apply, with steps of one length"
+        if strong := certificate["structure"].get("strong_order"):
+            law += f"; orders are those of means over paths, and of each path the order is {strong}"
         unfit = [(", ".join(names), why) for why, names in list_unfit(judged).items()]
         unfit = [("method", "reason"), *unfit] if unfit else []
         yield section("Methods of integration", "methods", law=law, rows=rows)

@@ -107,7 +107,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         seed=1,
         bound=2.0,
         remembered=choice.count_memory(system.STATE.size, searches=False),
-        is_implicit=choice.is_structured,
+        is_implicit=choice.is_implicit,
         has_clock=False,
         sides=len(system.kink_names),
     )

@@ -3,7 +3,7 @@
 Over a step the noise is taken as constant: its increments over the length of the step. So Heun's
 method and the implicit midpoint follow ``rhs + noise (dW/h)``, which gives the motion in the sense
 of Stratonovich. They are the functions of the generated ``solver.c``, operation by operation.
-Heun's keeps nothing exactly; the midpoint keeps what is linear or quadratic and kept on each path,
+Heun's keeps linear functions; the midpoint keeps what is linear or quadratic and kept on each path,
 as far as the equation of a step is solved, which is to rounding. The coadjoint mean, and on spheres
 the spherical midpoint, keep Casimirs and the Poisson bracket: the Hamiltonians of noise times the
 increments are a part of the energy of a step.
@@ -28,7 +28,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Sweep
 from coadjoint.solve.methods.spherical_midpoint import Scale
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.runge_kutta import end_where_rates_end
-from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step, larger
+from coadjoint.solve.steps import Attempt, Lanes, Left, find_fixed_step, larger
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,11 +132,17 @@ class _Noisy:
         return rates
 
     def make_attempt(
-        self, lanes: Lanes, h: Array, end: Array, accepted: NDArray[np.bool_]
+        self,
+        lanes: Lanes,
+        h: Array,
+        end: Array,
+        accepted: NDArray[np.bool_],
+        sweeps: NDArray[np.uint64] | None = None,
     ) -> Attempt:
-        """A step that was made; between its ends the path is straight."""
+        """A step that was made, by so many sweeps; between its ends the path is straight."""
         start = lanes.state
         return Attempt(
+            left=None if sweeps is None else Left(None, sweeps, accepted),
             took=np.where(accepted, h, 0.0),
             state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=accepted,
@@ -166,10 +172,11 @@ class Midpoint(_Noisy):
         h = find_fixed_step(lanes, self.size)
         middle, rise, own = lanes.state, np.zeros(lanes.state.shape), self.prepare(lanes, h)
         done, solved = np.zeros(h.shape, bool), np.zeros(h.shape, bool)
-        last = np.full(h.shape, np.inf)
+        last, made = np.full(h.shape, np.inf), np.zeros(h.shape, np.uint64)
         for _ in range(SWEEPS):
             if done.all():
                 break
+            made += ~done
             found = own.sweep(middle)
             ends, following = ~np.asarray(found.goes_on), found.middle
             rise = np.where(done, rise, found.rise)
@@ -182,7 +189,9 @@ class Midpoint(_Noisy):
             fresh = ((change == 0.0) & ends) | (small & (change >= last))
             last = np.where(done, last, change)
             done |= fresh
-        return self.make_attempt(lanes, h, own.finish(middle, rise), solved & own.confirm())
+        end = own.finish(middle, rise)
+        solved &= own.confirm() & np.isfinite(end).all(axis=0)
+        return self.make_attempt(lanes, h, np.where(solved, end, lanes.state), solved, made)
 
     def prepare(self, lanes: Lanes, h: Array) -> _Chord:
         """What finds a better middle of a step."""
