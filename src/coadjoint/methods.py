@@ -135,7 +135,8 @@ class JudgedMethod:
 
     Attributes:
         name: Of the method.
-        order: By what power of the step an error falls; with noise, that of a mean over paths.
+        order: By what power of the step an error falls; with noise, that of a path, which is 1/2
+            unless all processes commute.
         exactly: Integrals of this system that it keeps to the rounding of each step, by name; with
             noise, on each path.
         nearly: The other integrals; a step changes them by an error of its order.
@@ -146,7 +147,7 @@ class JudgedMethod:
     """
 
     name: str
-    order: int
+    order: float
     exactly: tuple[str, ...] = ()
     nearly: tuple[str, ...] = ()
     is_poisson: bool = False
@@ -444,7 +445,7 @@ _MAPS: Final = (
     ),
 )
 
-_ON_PATHS: Final = "Casimirs, to the rounding of each step, and the Poisson bracket, on each path"
+_ON_PATHS: Final = "Casimirs, to the rounding of each step, and the Poisson bracket"
 _OF_ONE_ENERGY: Final = "with H + sum_k H_k dW_k/h as the energy of a step, in Stratonovich's sense"
 _BRACKETS: Final = "and noise by brackets"
 
@@ -492,6 +493,12 @@ _NOISY_ENTRIES: Final = (
 #: With a fixed step, without a method that keeps structure; and with noise.
 PLAIN: Final = "dop853"
 PLAIN_WITH_NOISE: Final = "midpoint"
+
+#: What orders and integrals of methods are those of, with noise.
+OF_PATHS: Final = (
+    "in the sense of Stratonovich, what is kept is kept on each path; orders are those of paths, "
+    "and those of means over paths are 1"
+)
 
 #: Methods of motions with noise, by name.
 NOISY: Final = MappingProxyType({each.name: each for each in _NOISY_ENTRIES})

@@ -122,16 +122,15 @@ class Facts:
         return self.structure is not None and self.energy is not None and not acted_on
 
     @cached_property
-    def strong_order(self) -> str:
+    def strong_order(self) -> float:
         """By what power of the step paths converge by methods that take increments alone.
 
-        It is 1 where all processes are proved to commute (P. E. Kloeden and E. Platen, Numerical
-        Solution of Stochastic Differential Equations (1992)); "" without noise.
+        It is 1 where all processes are proved to commute, else 1/2 (P. E. Kloeden and E. Platen,
+        Numerical Solution of Stochastic Differential Equations (1992)).
         """
         names = [each.name for each in self.spec.noise]
         pairs = (tell_commuting(*pair) for pair in combinations(names, 2))
-        commute = all(each in self._proved for each in pairs)
-        return "" if not names else "1" if commute else "1/2"
+        return 1 if all(each in self._proved for each in pairs) else 0.5
 
     # -- energy and bracket ---------------------------------------------------------------
 
@@ -437,7 +436,6 @@ class Facts:
             "unimodular": algebra is not None and algebra.is_unimodular,
             "compact": algebra is not None and _is_compact(algebra),
             "reversed_by": self.reversal,
-            "strong_order": self.strong_order,
             "divergence_free": volume_statement(self.motion) in self._proved,
             "acts": [name for name, is_so in acts.items() if is_so],
             "integrals": {each.name: _name_degree(each.degree) for each in self.integrals},

@@ -163,7 +163,7 @@ def _judge(
     names = [each.name for each in found.exactly]
     return JudgedMethod(
         name=method.name,
-        order=method.order,
+        order=facts.strong_order if facts.is_noisy else method.order,
         exactly=tuple(names),
         nearly=tuple(each.name for each in facts.integrals if each.name not in names),
         is_poisson=found.is_poisson,

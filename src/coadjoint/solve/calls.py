@@ -110,9 +110,7 @@ class CStepper:
         self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._rows, self._sums = (
             rows,
-            IMPLICIT_SUMS
-            if choice.is_noisy or choice.is_implicit
-            else (choice.degree + 1) ** 2,
+            IMPLICIT_SUMS if choice.is_noisy or choice.is_implicit else (choice.degree + 1) ** 2,
         )
         self._advance = library.take(choice.kind.advance)
 

@@ -7,7 +7,7 @@ starts. Read next: `coadjoint.solve.stochastic`, the methods.
 from __future__ import annotations
 
 from numbers import Integral
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 

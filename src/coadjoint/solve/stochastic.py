@@ -77,6 +77,8 @@ class _Noisy:
         seed: Of the noise.
         bound: The largest size of a normal number.
         branches: Whether the drift has branch points: it has to be finite after each step.
+        parts: Of how many numbers the increment of a step is the sum, so that long steps follow
+            the path of as many short ones.
         spheres: Rows of vectors on spheres, and of their tangents.
         orbits: Of a motion on coadjoint orbits, what it is made of.
     """
@@ -94,20 +96,23 @@ class _Noisy:
         seed: int,
         bound: float,
         branches: bool = False,
+        parts: int = 1,
         spheres: Sequence[Sphere] = (),
         orbits: Orbits | None = None,
     ) -> None:
-        self.spheres, self.orbits = spheres, orbits
+        self.spheres, self.orbits, self.parts = spheres, orbits, parts
         self.rates, self.fields, self.along, self.size = rates, fields, along, size
         self.processes = np.arange(processes, dtype=np.uint64)[:, np.newaxis]
         self.seed, self.bound, self.branches = seed, bound, branches
 
     def find_noise(self, lanes: Lanes, h: Array, process: int | NDArray[np.uint64]) -> Array:
         """The increment of a Wiener process over the length of the step, or those of some."""
-        normal = draw_normals(self.seed, lanes.member, lanes.steps, process)
-        normal = np.where(normal > -self.bound, normal, -self.bound)
-        normal = np.where(normal < self.bound, normal, self.bound)
-        return np.asarray(normal * np.sqrt(h) / h)
+        first, total = lanes.steps * np.uint64(self.parts), np.zeros(1)
+        for part in range(self.parts):
+            normal = draw_normals(self.seed, lanes.member, first + np.uint64(part), process)
+            normal = np.where(normal > -self.bound, normal, -self.bound)
+            total = total + np.where(normal < self.bound, normal, self.bound)
+        return np.asarray(total * np.sqrt(h / self.parts) / h)
 
     def move(self, lanes: Lanes, h: Array) -> Callable[[Array, Array], Array]:
         """The rates with the noise of a step."""
