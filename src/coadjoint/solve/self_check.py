@@ -208,8 +208,11 @@ class Runs:
     def follow_paths(self, method: str, part: int) -> Array:
         """Ends of paths of one noise by steps of a part of the step, a quarter at the least."""
         system, choice = self.system, Choice(name=method, order=1, is_noisy=True)
-        is_family = isinstance(system, FamilySystem)
-        stepper = FamilyTwin(system, choice, "numpy") if is_family else NumpyStepper(system, choice)
+        stepper = (
+            FamilyTwin(system, choice, "numpy")
+            if isinstance(system, FamilySystem)
+            else NumpyStepper(system, choice)
+        )
         stepper.parts = 4 // part
         inputs = np.zeros(0) if not system.INPUTS else pack_inputs(system, None)
         run = Ensemble(
@@ -226,7 +229,7 @@ class Runs:
             seed=SEED,
             bound=find_bound(method, self.step / 4),
             is_implicit=choice.is_implicit,
-            has_clock=not is_family,
+            has_clock=not isinstance(system, FamilySystem),
         )
         run.begin(0.0)
         stepper.advance(run, 0, run.state.shape[1], HALVED * part)
@@ -260,7 +263,7 @@ class Runs:
             samples=samples,
             target=self.target,
             progress=False,
-            **({"seed": SEED} if self.is_noisy else {}),
+            seed=SEED if self.is_noisy else None,
         )
 
 

@@ -44,8 +44,8 @@ Function = Callable[[Lanes, "Array", "Array"], "Array"]
 def find_bound(name: str, step: float) -> float:
     """The largest size of a normal number: that of an implicit step has to be bounded.
 
-    G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, SIAM Journal on Numerical Analysis 39 (2002)
-    2066: ``sqrt(4 |log h|)``, by which the strong order 1 stays. It is 2 for steps above 1/e.
+    G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, SIAM Journal on Numerical Analysis 40 (2002)
+    1583: ``sqrt(4 |log h|)``, by which the strong order 1 stays. It is 2 for steps above 1/e.
     """
     return math.inf if name == "heun" else math.sqrt(4.0 * max(1.0, -math.log(step)))
 
