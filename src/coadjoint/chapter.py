@@ -168,7 +168,7 @@ def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, An
     ]
     if rows[1:]:
         law = "those that apply, with steps of one length"
-        if "noise" in certificate["structure"].get("acts", ()):
+        if "noise" in certificate.get("structure", {}).get("acts", ()):
             law += f"; {OF_PATHS}"
         unfit = [(", ".join(names), why) for why, names in list_unfit(judged).items()]
         unfit = [("method", "reason"), *unfit] if unfit else []
