@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.methods import list_fitting, list_kept, list_unfit, tell_order
+from coadjoint.methods import OF_PATHS, list_fitting, list_kept, list_unfit, tell_order
 from coadjoint.notation.numbers import shorten_numbers
 
 #: What the kinds of claims are about, as headings of sentences.
@@ -179,6 +179,8 @@ def _cost(folder: Path, certificate: Mapping[str, Any]) -> Iterator[dict[str, An
     ]
     if rows[1:]:
         law = "those that apply, with steps of one length"
+        if "noise" in certificate.get("structure", {}).get("acts", ()):
+            law += f"; {OF_PATHS}"
         unfit = [(", ".join(names), why) for why, names in list_unfit(judged).items()]
         unfit = [("method", "reason"), *unfit] if unfit else []
         yield section("Methods of integration", "methods", law=law, rows=rows)

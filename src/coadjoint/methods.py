@@ -44,9 +44,9 @@ def list_unfit(judged: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
     return unfit
 
 
-def tell_order(name: str, order: int) -> str:
+def tell_order(name: str, order: float) -> str:
     """The order of a method as text; of the motion itself, which has none, that it is exact."""
-    return "exact" if name == EXACT else str(order)
+    return "exact" if name == EXACT else f"{order:g}"
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class StructuredMethod:
     Attributes:
         name: As a person writes it.
         file: Its module of `coadjoint.solve.methods`, and its file below ``templates/c/methods``.
-        order: By what power of the step an error falls.
+        order: By what power of the step an error falls; with noise, that of a mean over paths.
         needs: Functions of the kernel that its steps call, the rates apart.
         keeps: What it keeps exactly, as a clause.
         theorem: What it is and why it keeps that, with the source.
@@ -143,17 +143,19 @@ class JudgedMethod:
 
     Attributes:
         name: Of the method.
-        order: By what power of the step an error falls.
-        exactly: Integrals of this system that it keeps to the rounding of each step, by name.
+        order: By what power of the step an error falls; with noise, that of a path, which is 1/2
+            unless all processes commute.
+        exactly: Integrals of this system that it keeps to the rounding of each step, by name; with
+            noise, on each path.
         nearly: The other integrals; a step changes them by an error of its order.
-        is_poisson: Whether its step is a Poisson map of this system.
+        is_poisson: Whether its step is a Poisson map of this system; with noise, on each path.
         decides: The fact that decides: why it keeps these; of one that does not apply, why not.
         cost: What a step costs, in words; "" of one that does not apply.
         rank: Its place in the order in which ``"auto"`` takes methods, from 1; 0 for not at all.
     """
 
     name: str
-    order: int
+    order: float
     exactly: tuple[str, ...] = ()
     nearly: tuple[str, ...] = ()
     is_poisson: bool = False
@@ -451,11 +453,63 @@ _MAPS: Final = (
     ),
 )
 
-#: Methods of motions with noise; ``"auto"`` is the last one.
-NOISY: Final = ("heun", "spherical_midpoint", "coadjoint_mean", "midpoint")
-#: With a fixed step, without a method that keeps structure.
-PLAIN: Final = "dop853"
+_ON_PATHS: Final = "Casimirs, to the rounding of each step, and the Poisson bracket"
+_OF_ONE_ENERGY: Final = "with H + sum_k H_k dW_k/h as the energy of a step, in Stratonovich's sense"
+_BRACKETS: Final = "and noise by brackets"
 
+_NOISY_ENTRIES: Final = (
+    StructuredMethod(
+        name="heun",
+        file="heun",
+        order=1,
+        needs=(),
+        keeps="linear integrals, to the rounding of each step",
+        theorem="Heun's method for Stratonovich's equations (W. Ruemelin, SIAM Journal on "
+        "Numerical Analysis 19 (1982) 604), which keeps linear integrals on each path",
+    ),
+    StructuredMethod(
+        name="spherical_midpoint",
+        file="spherical_midpoint",
+        order=1,
+        needs=("orbits", "spheres"),
+        keeps=_ON_PATHS,
+        theorem=f"{_SPHERICAL}, {_OF_ONE_ENERGY}",
+        expects=f"{_SPHERES}, {_BRACKETS}",
+    ),
+    StructuredMethod(
+        name="coadjoint_mean",
+        file="coadjoint_mean",
+        order=1,
+        needs=("orbits",),
+        keeps=_ON_PATHS,
+        theorem=f"{_MEAN}, {_OF_ONE_ENERGY}",
+        expects=f"{_LIE_POISSON}, {_BRACKETS}",
+    ),
+    StructuredMethod(
+        name="midpoint",
+        file="midpoint",
+        order=1,
+        needs=(),
+        keeps="linear and quadratic integrals, to the rounding of each step",
+        theorem="the implicit midpoint for Stratonovich's equations, which keeps quadratic "
+        "integrals on each path (J. Hong, D. Xu and P. Wang, Applied Numerical Mathematics 87 "
+        "(2015) 38), with bounded increments (G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, "
+        "SIAM Journal on Numerical Analysis 40 (2002) 1583)",
+    ),
+)
+
+#: With a fixed step, without a method that keeps structure; and with noise.
+PLAIN: Final = "dop853"
+PLAIN_WITH_NOISE: Final = "midpoint"
+
+#: What orders and integrals of methods are those of, with noise.
+OF_PATHS: Final = (
+    "in the sense of Stratonovich, what is kept is kept on each path; orders are those of paths, "
+    "and those of means over paths are 1"
+)
+
+#: Methods of motions with noise, by name.
+NOISY: Final = MappingProxyType({each.name: each for each in _NOISY_ENTRIES})
 _TABLE: Final = {each.name: each for each in _ENTRIES}
 #: Every method that keeps structure, by name.
 STRUCTURED: Final = MappingProxyType(_TABLE)
@@ -502,3 +556,20 @@ def list_structured(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
     refused = BY_ENERGY if "entropy" in functions else ()
     able = (each for each in _ENTRIES if each.file not in refused)
     return tuple(each for each in able if set(each.needs) <= set(functions))
+
+
+def list_noisy(functions: Collection[str]) -> tuple[StructuredMethod, ...]:
+    """The methods for noise that the functions of a solver allow; none without noise.
+
+    Args:
+        functions: As of `list_structured`: ``orbits`` where drift and noise stay on coadjoint
+            orbits, ``spheres`` where these are spheres.
+
+    >>> [method.name for method in list_noisy(["rhs", "noise"])]
+    ['heun', 'midpoint']
+    >>> list_noisy(["rhs"])
+    ()
+    """
+    if "noise" not in functions:
+        return ()
+    return tuple(each for each in NOISY.values() if set(each.needs) <= set(functions))

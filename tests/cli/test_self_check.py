@@ -104,10 +104,41 @@ def test_differences_along_the_leaf_find_the_defect():
     assert midpoint > 1e-6
 
 
-def test_noise_leaves_nothing_to_check(capsys):
+def test_methods_for_noise_are_checked_on_paths():
+    """Order, drift, and the bracket with one noise for all differences; Heun's keeps nothing."""
+    found = {
+        each.method.name: each for each in check_methods(stochastic_rigid_body.system, ["all"])
+    }
+    assert not [each.failures for each in found.values() if each.failures]
+    for name in ("midpoint", "coadjoint_mean", "spherical_midpoint"):
+        assert found[name].drifts["casimir1"] < 1e-14
+    assert found["spherical_midpoint"].defect < 1e-9
+    assert found["heun"].drifts["casimir1"] > 1e-5
+    assert all(abs(each.order - 0.5) < 0.2 for each in found.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "claim", "expected"),
+    [
+        ("midpoint", {"order": 1}, "and 1 is claimed"),
+        ("heun", {"is_poisson": True}, "from a Poisson map"),
+        ("heun", {"exactly": ("casimir1",)}, "casimir1 drifts by"),
+    ],
+)
+def test_a_false_claim_about_noise_is_caught(name, claim, expected, monkeypatch):
+    """An order that processes that do not commute do not allow, the bracket, and a Casimir."""
+    system = stochastic_rigid_body.system
+    wrong = tuple(replace(x, **claim) if x.name == name else x for x in system.METHODS)
+    monkeypatch.setattr(system, "METHODS", wrong)
+    (found,) = check_methods(system, [name])
+    assert [each for each in found.failures if expected in each]
+
+
+def test_without_methods_there_is_nothing_to_check(capsys, monkeypatch):
     """And says so."""
-    assert main(stochastic_rigid_body.system, "here", ["--check"]) == 0
-    said = "No method that keeps structure applies to stochastic_rigid_body"
+    monkeypatch.setattr(rigid_body.system, "METHODS", ())
+    assert main(rigid_body.system, "here", ["--check"]) == 0
+    said = "No method that keeps structure applies to rigid_body"
     assert said in capsys.readouterr().out
 
 

@@ -84,7 +84,11 @@ def test_methods_are_listed_with_what_decides(run):
 @pytest.mark.parametrize(
     ("system", "said"),
     [
-        ("stochastic_rigid_body", '"auto" with step= takes midpoint.'),
+        ("stochastic_rigid_body", '"auto" with step= takes spherical_midpoint.'),
+        (
+            "stochastic_rigid_body",
+            "in the sense of Stratonovich, what is kept is kept on each path",
+        ),
         ("stochastic_rigid_body", "do not apply: motions with noise have methods of their own"),
         (
             "toda_lattice",

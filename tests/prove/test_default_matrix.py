@@ -96,9 +96,9 @@ MATRIX = {
     ),
     "noise": (
         "stochastic_rigid_body",
-        "",
-        (),
-        {"coadjoint_mean": "methods of their own", "splitting": "noise", "kahan": "noise"},
+        "spherical_midpoint",
+        ("coadjoint_mean", "midpoint", "heun"),
+        {"gauss4": "methods of their own", "splitting": "noise", "kahan": "noise"},
     ),
 }
 

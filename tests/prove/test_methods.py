@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from coadjoint import pipeline
 from coadjoint.derive import derive
 from coadjoint.exact.linear import PRIME
 from coadjoint.exact.residues import draw, residue
@@ -15,7 +16,10 @@ from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.prove import Certificate
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.turned import are_linear_symmetries, with_rotations
+from coadjoint.spec.reader import read_spec_text
 from coadjoint.systems import galilei, heavy_top, kepler, nambu_body, rigid_body, suslov
+from tests.prove.test_noise import OSCILLATOR
+from tests.solve.test_noisy_orbits import CUBIC
 from tests.specs import RIGID_BODY, emitted, lowered, spec
 
 HAMILTONIAN = RIGID_BODY.replace(
@@ -58,7 +62,8 @@ def _judge(equations, programs):
     maps = lower_maps(equations, programs["rhs"])
     empty = Certificate(equations.spec.name, ())
     facts, methods = judge_methods(equations, empty, programs, maps)
-    assert [each.name for each in methods] == [*STRUCTURED, *MAPPED]
+    own = ["heun"] if facts.is_noisy else []
+    assert [each.name for each in methods] == [*STRUCTURED, *MAPPED, *own]
     return facts, {each.name: each for each in methods}
 
 
@@ -105,7 +110,7 @@ def test_facts_are_those_of_the_book(name, expected):
         ("euler_disk", "discrete_gradient"),
         ("guiding_centre", "discrete_gradient"),
         ("bloch", "discrete_gradient"),
-        ("stochastic_rigid_body", ""),
+        ("stochastic_rigid_body", "spherical_midpoint"),
     ],
 )
 def test_the_default_is_that_of_the_matrix(name, expected):
@@ -230,14 +235,79 @@ def test_friction_takes_the_bracket():
     assert default(methods) == "gauss4"
 
 
-def test_kinks_and_noise_take_all():
-    """Each method says what is in the way."""
+# -- noise ----------------------------------------------------------------------------------------
+
+#: A body with an axis of symmetry, and noise about it, which keeps the energy and what turns.
+ALONG = HAMILTONIAN.replace("I[2]", "I[1]")
+ALONG = ALONG.replace("[claims]", '[observables]\nL = "Pi[3]"\n[noise]\ndW1 = "Pi[3]/2"\n[claims]')
+ALONG += 'conserved = ["L"]\n'
+ACROSS = ALONG.replace("[claims]", 'dW2 = "Pi[1]"\n[claims]')
+
+
+def list_exactly(methods):
+    """What each method keeps exactly, of those that apply."""
+    return {name: {*each.exactly} for name, each in methods.items() if each.applies}
+
+
+def test_noise_has_methods_of_its_own():
+    """All others name them."""
     _, methods = judge_shipped("stochastic_rigid_body")
     reasons = {each.decides for each in methods.values() if not each.applies}
     own = "heun, spherical_midpoint, coadjoint_mean, midpoint"
-    said = f"motions with noise have methods of their own: {own}"
-    assert said in reasons
-    assert not any(each.applies for each in methods.values())
+    assert reasons == {f"motions with noise have methods of their own: {own}"}
+    kept = list_exactly(methods)
+    assert kept.pop("heun") == set()
+    assert kept.keys() == {"midpoint", "coadjoint_mean", "spherical_midpoint"}
+    assert all(each == {"casimir1"} for each in kept.values())
+    maps = [name for name, each in methods.items() if each.is_poisson]
+    assert maps == ["coadjoint_mean", "spherical_midpoint"]
+
+
+def test_noise_that_takes_an_integral_takes_it_from_methods():
+    """Noise about the axis keeps all three; another process leaves the Casimir alone."""
+    _, methods = judge(spec(ALONG))
+    along = list_exactly(methods)
+    assert along["midpoint"] == {"energy", "L", "casimir1"}
+    assert along["heun"] == {"L"}  # which is linear
+    assert along["spherical_midpoint"] == along["coadjoint_mean"] == {"L", "casimir1"}
+    _, methods = judge(spec(ACROSS))
+    across = list_exactly(methods)
+    assert across.pop("heun") == set()
+    assert all(each == {"casimir1"} for each in across.values())
+
+
+def test_a_torque_takes_orbits_from_methods_with_noise():
+    """No step is the action of an element then, and no Casimir is kept."""
+    forces = '[inputs]\nu = { shape = [3] }\n[forces]\nPi = "u"\n[noise]'
+    _, methods = judge(spec(ACROSS.replace("[noise]", forces)))
+    assert list_exactly(methods) == {"midpoint": set(), "heun": set()}
+    assert "in the state, and noise by brackets" in methods["coadjoint_mean"].decides
+    assert default(methods) == ""
+
+
+def test_a_map_of_the_bracket_is_preferred_with_noise():
+    """It keeps a cubic Casimir that nobody named; that of a constant tensor is the midpoint."""
+    _, cubic = judge(read_spec_text(CUBIC, "cubic.toml"))
+    assert default(cubic) == "coadjoint_mean"
+    assert not cubic["midpoint"].rank
+    facts, shaken = judge(read_spec_text(OSCILLATOR, "shaken.toml"))
+    assert (facts.tensor, shaken["midpoint"].is_poisson) == ("constant", True)
+    assert not shaken["heun"].is_poisson
+    assert default(shaken) == "midpoint"
+
+
+@pytest.mark.parametrize(("process", "order"), [("3*Pi[3]", 1), ("Pi[1]", 0.5)])
+def test_paths_have_order_1_where_all_processes_are_proved_to_commute(process, order):
+    """Two about one axis, and two that do not commute."""
+    text = ALONG.replace("[claims]", f'dW2 = "{process}"\n[claims]').replace(
+        'conserved = ["L"]\n', ""
+    )
+    rendered = pipeline.render(spec(text))
+    assert {each.order for each in rendered.methods if each.applies} == {order}
+    _, alone = judge(spec(ALONG))
+    assert alone["midpoint"].order == 1
+    _, unproved = judge(spec(text))  # without a certificate
+    assert unproved["midpoint"].order == 0.5
 
 
 def test_states_that_are_moved_take_quadratic_integrals():

@@ -1,5 +1,7 @@
 """Equal members with noise, one process for all and one of each: paths, bits, means, proofs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals
+from coadjoint.solve.self_check import check_methods
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.spec.reader import read_spec_text
 from tests.families import MOVED, SHAKEN, SPRINGS, VORTICES, read, write_shaken
@@ -218,10 +221,43 @@ def test_inputs_time_and_noise_move_members_together():
         assert np.array_equal(one, other)
 
 
+@pytest.mark.parametrize("target", ["numpy", "c"])
+def test_sweeps_are_counted_and_a_step_without_a_solution_says_so(shaken, target):
+    """Heun's method has none."""
+    three, state = shaken.resize({"i": 3}), draw_spins(3, 5).reshape(9, 5)
+    found = run(three, state, "midpoint", target=target)
+    assert np.array_equal(found.sweeps, run(three, state, "midpoint", target="numpy").sweeps)
+    assert (found.sweeps > 2 * found.steps).all()
+    assert run(three, state, "heun", target=target).sweeps is None
+    far = run(three, state, "midpoint", 320.0, step=40.0, target=target)
+    assert (far.status == "NOT_SOLVED").all()
+    assert not far.steps.any()
+
+
+def test_methods_of_members_with_noise_are_judged_and_checked(rendered, shaken):
+    """Radii of spheres on each path, also without a claim; without the bracket of so(3) none."""
+    kept = {each.name: each.exactly for each in shaken.METHODS}
+    assert kept == {"midpoint": ("dot(S[i], S[i])",), "heun": ()}
+    assert run(shaken, draw_spins(5).ravel(), "auto").settings["method"] == "midpoint"
+    found = {each.method.name: each for each in check_methods(shaken, ["all"])}
+    assert not [each.failures for each in found.values() if each.failures]
+    assert found["midpoint"].drifts["dot(S[i], S[i])"] < 1e-13
+    assert found["heun"].drifts["dot(S[i], S[i])"] > 1e-5
+    (own,) = (x for x in shaken.METHODS if x.name == "heun")
+    wrong = replace(own, exactly=("dot(S[i], S[i])",))
+    with load_texts(rendered.texts) as other:
+        other.METHODS = (wrong,)
+        (failed,) = check_methods(other, ["heun"])
+    assert any("dot(S[i], S[i]) drifts by" in each for each in failed.failures)
+
+
 SPOILED_STEPS = [
     ("(uint32_t)((n + w) / width)", "0", "heun"),
     ("0.5 * (first[n + l] + later[n + l])", "(first[n + l] * 0.25 + 0.75 * later[n + l])", "heun"),
     ("sweep < 100", "sweep < 3", "midpoint"),
+    ("++block->made[l];\n                const int small", "const int small", "midpoint"),
+    ("block->accepted[l] && block->finite[l]", "block->accepted[l]", "midpoint"),
+    ("block->accepted[l] ? block->end[n + l] : x[n + l]", "block->end[n + l]", "midpoint"),
 ]
 
 

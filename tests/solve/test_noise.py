@@ -8,19 +8,21 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from coadjoint.errors import KernelArgumentError
+from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.pipeline import render
 from coadjoint.solve import stochastic
+from coadjoint.solve.choices import Choice
 from coadjoint.solve.events import Event
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.normals import draw_normals, minus_log, normal_of, philox
+from coadjoint.solve.solvers import load as load_solver
 from coadjoint.solve.steps import Lanes
 from coadjoint.solve.stochastic import Heun, Midpoint, find_bound
 from coadjoint.systems import rigid_body
 from coadjoint.systems import stochastic_rigid_body as body
 from tests.kernels import COMPILER
-from tests.prove.test_noise import DRIVEN
-from tests.specs import spec
+from tests.prove.test_noise import DRIVEN, TORQUE
+from tests.specs import shipped, spec
 
 TARGETS = ["numpy", *(["c"] if COMPILER else [])]
 START = np.array([0.6, 0.0, 0.8])
@@ -238,8 +240,8 @@ def test_the_midpoint_keeps_the_quadratic_casimir_and_heun_does_not():
     assert runs["midpoint"].drift["casimir1"] < 1e-12
     assert runs["heun"].drift["casimir1"] > 1e-5
     assert runs["midpoint"].settings["keeps"].startswith("linear and quadratic integrals")
-    assert runs["heun"].settings["keeps"] == "nothing exactly"
-    assert "heun keeps nothing exactly" in repr(runs["heun"])
+    assert runs["heun"].settings["keeps"].startswith("linear integrals")
+    assert "heun keeps linear integrals" in repr(runs["heun"])
     assert "energy" not in runs["midpoint"].drift
 
 
@@ -280,7 +282,7 @@ def test_a_file_keeps_the_seed(tmp_path):
     run = body.simulate(START, (0, 1), step=0.1, seed=2**64 - 1, samples=11)
     run.to_csv(tmp_path / "run.csv")
     again = type(run).from_csv(body.system, tmp_path / "run.csv")
-    assert again.settings == run.settings
+    assert again.settings == {name: x for name, x in run.settings.items() if name != "chosen"}
     assert again.settings["seed"] == 2**64 - 1
 
 
@@ -293,18 +295,73 @@ def test_a_checkpoint_goes_on_with_the_same_seed_alone(tmp_path):
         body.simulate(START, (0, 1), seed=2, **options)
 
 
-def test_a_step_that_is_not_solved_ends_the_path():
-    """No wrong number is returned, and the reason is told."""
+IMPLICIT = ["midpoint", "spherical_midpoint", "coadjoint_mean"]
+
+
+@pytest.mark.parametrize("method", IMPLICIT)
+@pytest.mark.parametrize("step", [4.0, 40.0, 1e200])
+def test_a_step_that_is_not_solved_ends_the_path(method, step):
+    """No wrong number is returned, and the reason is told, also where sweeps leave all bounds."""
     fast = {"I": [1.0, 2.0, 3.0], "sigma": [0.0, 0.0, 0.0]}
     ended = {}
     for target in TARGETS:
-        options = {"step": 1.0, "seed": 0, "samples": 5, "target": target}
-        run = body.simulate([3.0, 2.0, 1.0], (0, 4), fast, **options)
+        options = {"step": step, "seed": 0, "samples": 5, "target": target, "method": method}
+        run = body.simulate([3.0, 2.0, 1.0], (0, 4 * step), fast, **options)
         ended[target] = (run.status, run.message, len(run))
     assert len(set(ended.values())) == 1
     status, message, _ = ended["numpy"]
-    assert status == "STEP_UNDERFLOW"
-    assert message.startswith("the equation of a step of 1 has no solution that is found")
+    assert status == "NOT_SOLVED"
+    assert message.startswith(f"the equation of a step of {step:.12g} was not solved")
+
+
+def test_a_step_that_is_not_finite_is_no_equation():
+    """Of Heun's method, which has none."""
+    for target in TARGETS:
+        run = body.simulate(START, (0, 3e200), method="heun", step=1e200, seed=0, target=target)
+        assert (run.status, run.sweeps) == ("NONFINITE", None)
+
+
+@pytest.mark.parametrize("method", IMPLICIT)
+def test_sweeps_are_counted(method):
+    """Alike by all targets, more where steps are longer; at the least two in each step."""
+    start = np.random.default_rng(0).normal(size=(3, 7))
+    counts = {}
+    for step in (0.0625, 0.25):
+        runs = [
+            body.simulate(start, (0, 2), method=method, step=step, seed=1, target=target)
+            for target in TARGETS
+        ]
+        for run in runs:
+            assert np.array_equal(run.sweeps, runs[0].sweeps)
+        counts[step] = runs[0].sweeps / runs[0].steps
+    assert (counts[0.0625] > 2).all()
+    assert (counts[0.25] > counts[0.0625]).all()
+
+
+@pytest.mark.skipif(COMPILER is None, reason="needs a compiler")
+@pytest.mark.parametrize("method", IMPLICIT)
+def test_wrong_counts_of_sweeps_are_refused(method):
+    """By the twin, before any run: sweeps of lanes that are done count as well."""
+    texts, right = dict(render(shipped("stochastic_rigid_body")).texts), "choose(done, all(0.0), "
+    assert texts["solver.c"].count(right + "all(1.0))") == 1
+    texts["solver.c"] = texts["solver.c"].replace(right, "(")
+    with load_texts(texts) as system, pytest.raises(CrossCheckError, match="differs from its"):
+        load_solver(system, Choice(name=method, order=1, is_noisy=True), "c")
+
+
+def test_the_default_is_what_keeps_most():
+    """On spheres their midpoint; where a torque takes the orbits the midpoint, which says so."""
+    run = body.simulate(START, (0, 1), step=0.1, seed=1)
+    assert run.settings["method"] == "spherical_midpoint"
+    assert "its orbits are those of one sphere" in run.settings["chosen"]
+    named = body.simulate(START, (0, 1), step=0.1, seed=1, method="spherical_midpoint")
+    assert np.array_equal(run.state, named.state)
+    assert "chosen" not in named.settings
+    pushed = spec(DRIVEN, TORQUE, ('conserved = ["dot(Pi, Pi)"]\n', ""))
+    with load_texts(render(pushed).texts) as driven:
+        run = driven.simulate(START, (0, 1), step=0.1, seed=1)
+    assert run.settings["method"] == "midpoint"
+    assert run.settings["chosen"].startswith("it keeps no structure")
 
 
 #: Events of a path: a component, and a formula that is bent along a straight line.

@@ -106,6 +106,11 @@ def test_casimirs_of_an_algebra_without_spheres():
             drifts[method] = np.abs(list_casimirs(run.state[..., -1]) - list_casimirs(start)).max()
     assert drifts["coadjoint_mean"] < 1e-14
     assert drifts["midpoint"] > 1e-7
+    with load_texts(rendered.texts) as motion:  # the default is what keeps the cubic one
+        run = motion.simulate(start, (0, 4), step=1 / 64, seed=3, target="numpy")
+    assert run.settings["method"] == "coadjoint_mean"
+    assert "bracket is linear" in run.settings["chosen"]
+    assert np.abs(list_casimirs(run.state[..., -1]) - list_casimirs(start)).max() < 1e-14
 
 
 @pytest.mark.parametrize("method", ["coadjoint_mean", "spherical_midpoint"])

@@ -177,7 +177,7 @@ def test_attitudes_stay_rotations_with_noise(shaken, method, most, monkeypatch):
     assert run.drift["R_gram"] < most
     told = "after each step and at each sample, onto R*transpose(R) == 1, det(R) == 1"
     assert run.settings["projection"] == told
-    own = "nothing exactly" if method == "heun" else "linear and quadratic integrals"
+    own = "linear integrals" if method == "heun" else "linear and quadratic integrals"
     assert run.settings["keeps"].startswith(own)
     monkeypatch.setattr(Limits, "project", lambda self, lanes, after, state: state)
     alone = shaken.simulate(SHAKES, (0, 4), **again).drift["R_gram"]

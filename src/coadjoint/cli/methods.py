@@ -11,7 +11,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from coadjoint.cli.output import print_table, say
-from coadjoint.methods import NOISY, PLAIN, list_fitting, list_kept, list_unfit, tell_order
+from coadjoint.methods import (
+    OF_PATHS,
+    PLAIN,
+    PLAIN_WITH_NOISE,
+    list_fitting,
+    list_kept,
+    list_unfit,
+    tell_order,
+)
 
 
 def print_methods(record: Mapping[str, Any]) -> None:
@@ -20,14 +28,15 @@ def print_methods(record: Mapping[str, Any]) -> None:
     if not methods:
         say(f"The certificate of {name} judges no methods: run `coadjoint regenerate`.")
         return
-    fit = list_fitting(methods)
+    fit, is_noisy = list_fitting(methods), "noise" in record["structure"].get("acts", ())
     if fit:
         columns = ("method", ">order", "keeps exactly", "keeps nearly", "why", "a step takes")
         print_table(columns, list(map(_row, fit)), f"Methods of {name} with a fixed step")
         say("keeps nearly: up to an error of the order of the method")
-    is_noisy = "noise" in record["structure"].get("acts", ())
+    if is_noisy:
+        say(f"With noise, {OF_PATHS}.")
     first = next((each["name"] for each in fit if each["rank"] == 1), "")
-    say(f'"auto" with step= takes {first or (NOISY[-1] if is_noisy else PLAIN)}.')
+    say(f'"auto" with step= takes {first or (PLAIN_WITH_NOISE if is_noisy else PLAIN)}.')
     for why, names in list_unfit(methods).items():
         say(f"{', '.join(names)} {'do' if len(names) > 1 else 'does'} not apply: {why}.")
 

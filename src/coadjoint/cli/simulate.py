@@ -97,7 +97,8 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     default="auto",
     show_default=True,
     help="taylor, dop853 or rk4, which are generated, or scipy:NAME; auto is taylor where it "
-    "applies. With noise: heun, or midpoint, which auto is.",
+    "applies. With noise: heun, midpoint, spherical_midpoint or coadjoint_mean; auto is the first "
+    "that `show --methods` lists.",
 )
 @click.option("--rtol", type=float, help="Relative tolerance. Default: 1e-10.")
 @click.option("--atol", type=float, help="Absolute tolerance. Default: 1e-12.")

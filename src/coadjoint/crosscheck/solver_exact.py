@@ -135,7 +135,7 @@ class Solvers:
             seed=SEED,
             bound=BOUND,
             remembered=own.count_memory(rows) if structured else 0,
-            is_implicit=structured,
+            is_implicit=structured or self.is_noisy,
             sides=0 if self.text.kinks is None else len(self.text.kinks.outputs),
         )
         ensemble.begin(START)

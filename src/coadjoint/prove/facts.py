@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 
 from coadjoint.algebra import LieAlgebra
 from coadjoint.derive import Equations
@@ -19,15 +20,23 @@ from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.kinks import hold_sides
-from coadjoint.lower.orbits import find_spheres, is_bracket, is_product, stays_on_orbits
+from coadjoint.lower.orbits import (
+    find_spheres,
+    is_bracket,
+    is_noisy_action,
+    is_product,
+    stays_on_orbits,
+)
 from coadjoint.lower.program import Program, run
 from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.prove.certificate import Certificate, Verdict
 from coadjoint.prove.constrained import motion_of
+from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.prove.measures import volume_statement
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.noise import tell_commuting
 from coadjoint.prove.turned import are_linear_symmetries
 
 #: The degrees that are told apart: of polynomials in the state, at most 2.
@@ -104,8 +113,24 @@ class Facts:
     @property
     def is_hamiltonian(self) -> bool:
         """Whether the motion is the bracket with the energy alone."""
-        acted_on = self.spec.is_driven or self.is_noisy or self.equations.distribution is not None
+        return self.is_bracket_alone and not self.is_noisy
+
+    @property
+    def is_bracket_alone(self) -> bool:
+        """The same of the drift, where there is noise, which always is a bracket."""
+        acted_on = self.spec.is_driven or self.equations.distribution is not None
         return self.structure is not None and self.energy is not None and not acted_on
+
+    @cached_property
+    def strong_order(self) -> float:
+        """By what power of the step paths converge by methods that take increments alone.
+
+        It is 1 where all processes are proved to commute, else 1/2 (P. E. Kloeden and E. Platen,
+        Numerical Solution of Stochastic Differential Equations (1992)).
+        """
+        names = [each.name for each in self.spec.noise]
+        pairs = (tell_commuting(*pair) for pair in combinations(names, 2))
+        return 1 if all(each in self._proved for each in pairs) else 0.5
 
     # -- energy and bracket ---------------------------------------------------------------
 
@@ -191,7 +216,8 @@ class Facts:
     @cached_property
     def spheres(self) -> tuple[Sphere, ...]:
         """Factors so(3) and se(3), where the algebra is a product of these and of R."""
-        return find_spheres(self.programs) if stays_on_orbits(self.programs) else ()
+        on_orbits = is_noisy_action if self.is_noisy else stays_on_orbits
+        return find_spheres(self.programs) if on_orbits(self.programs) else ()
 
     @property
     def has_products(self) -> bool:
@@ -277,11 +303,15 @@ class Facts:
         return all(map(structure.is_casimir, seen))
 
     def _is_still(self, value: Element) -> bool:
-        """Whether the rate of a function is zero everywhere, or on linear constraints."""
+        """Whether the rate of a function is zero everywhere, or on linear constraints.
+
+        With noise, that of each process is, too.
+        """
         rate = self.motion.rate(value)
-        return self.field.is_zero(rate) or (
+        is_still = self.field.is_zero(rate) or (
             bool(self.motion.kept) and self.motion.where.contains(rate)
         )
+        return is_still and all(map(self.field.is_zero, noise_rates(self.equations, value)))
 
     @cached_property
     def is_moved(self) -> bool:

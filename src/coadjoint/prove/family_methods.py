@@ -30,6 +30,7 @@ from coadjoint.lower.program import Program
 from coadjoint.methods import (
     BY_ENERGY,
     MAPPED,
+    NOISY,
     STRUCTURED,
     JudgedMethod,
     Sphere,
@@ -47,6 +48,7 @@ from coadjoint.prove.methods import (
     keeps,
     prefer,
     refuse_backward,
+    refuse_noisy,
 )
 from coadjoint.spec.core.components import component_names
 from coadjoint.spec.core.members import member_name
@@ -74,7 +76,8 @@ _BLOCKS: Final = (
     "the components of each member"
 )
 _PLANE: Final = "Python leads the steps of a field in a plane, between transforms"
-_NOISY: Final = "motions with noise have methods of their own: heun, midpoint"
+#: Methods of NOISY whose steps there are as loops over members.
+_NOISY: Final = ("heun", "midpoint")
 
 
 class FamilyFacts(Facts):
@@ -128,7 +131,7 @@ class FamilyFacts(Facts):
         any member, and they commute with all others.
         """
         count = len(self.family.states)
-        if self.structure is None or count % 3 or not self.is_hamiltonian:
+        if self.structure is None or count % 3 or not self.is_bracket_alone:
             return ()
         places = [
             [self.state.index(c) for c in member[first : first + 3]]
@@ -316,12 +319,12 @@ def judge_family(
         refusals |= dict.fromkeys(by_energy, facts.lacks_action)
     refusals |= refuse_backward(facts, refusals)
     if facts.is_noisy:
-        refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _NOISY)
+        refusals = refuse_noisy(_NOISY) | dict.fromkeys(NOISY.keys() - {*_NOISY}, none)
     elif in_plane is not None:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), _PLANE)
     elif facts.has_kinks:
         refusals = dict.fromkeys((*STRUCTURED, *MAPPED), KINKED)
-    if facts.is_driven:
+    if facts.is_driven and not facts.is_noisy:
         refusals |= dict.fromkeys(SPLITTINGS, "inputs or the time drive its energy")
     rules = {"spherical_midpoint": _judge_spheres, "sequence": _judge_splitting}
     # a sweep of the midpoint is one loop, and one of a discrete gradient has eight

@@ -144,7 +144,8 @@ def is_conserved(equations: Equations, each: Emitted) -> bool:
         return keeps_energy(equations)
     if each.kept is Kept.UNLESS_WORKED_ON:
         motion = motion_of(equations)
-        return all(motion.where.contains(motion.rate(value)) for value in each.values)
+        rates = (r for x in each.values for r in (motion.rate(x), *noise_rates(equations, x)))
+        return all(map(motion.where.contains, rates))
     return each.kept is Kept.ALWAYS
 
 

@@ -46,8 +46,10 @@ METRIPLECTIC: Final = (
     "of a metriplectic motion G dh = 0 holds for the derivative of the energy, and not for a "
     "discrete gradient; metriplectic_gradient projects G along that"
 )
-#: Steps of order 2 that make one of each order.
-STEPS: Final = {2: 1, 4: 5, 6: 9}
+#: Steps of order 2 that make one of each order; with noise they have order 1.
+STEPS: Final = {1: 1, 2: 1, 4: 5, 6: 9}
+#: What methods for other motions lack.
+WITH_NOISE: Final = "motions with noise have methods of their own: "
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,10 @@ def judge_methods(
     """
     facts = Facts(equations, programs, certificate)
     solved = hold_sides(select_programs(programs.values(), maps=maps.programs))
-    offered = {each.name for each in describe_structured(solved)["structured"]["methods"]}
+    own = describe_structured(solved)["structured"]
+    if facts.is_noisy:
+        return facts, judge(facts, refuse_noisy({each.name for each in own["noisy"]}), {})
+    offered = {each.name for each in own["methods"]}
     refusals = dict(maps.refusals)
     refusals |= {name: _refuse(facts, x) for name, x in STRUCTURED.items() if name not in offered}
     refusals |= refuse_backward(facts, refusals)
@@ -110,11 +115,12 @@ def judge(
             that of `prefer`.
     """
     every = {**_RULES, **rules}
+    known = {**STRUCTURED, **MAPPED, **(NOISY if facts.is_noisy else {})}
     judged = {
         name: JudgedMethod(name=name, order=method.order, decides=refusals[name])
         if name in refusals
         else _judge(every, facts, method, maps)
-        for name, method in {**STRUCTURED, **MAPPED}.items()
+        for name, method in known.items()
     }
     balanced = {"discrete_gradient"} if facts.has_balance and not facts.is_moved else set[str]()
     return _rank(prefer(facts) if preferred is None else preferred, judged, balanced)
@@ -126,10 +132,20 @@ def refuse_backward(facts: Facts, refusals: Mapping[str, str]) -> dict[str, str]
     return dict.fromkeys(backward, BACKWARD)
 
 
+def refuse_noisy(offered: Collection[str]) -> dict[str, str]:
+    """Why methods do not apply to a motion with noise, by name, where it has some of those for it.
+
+    Args:
+        offered: Names of those that it has.
+    """
+    reason = WITH_NOISE + ", ".join(name for name in NOISY if name in offered)
+    lacking = {name: f"it expects {x.expects}" for name, x in NOISY.items() if name not in offered}
+    others = (name for name in (*STRUCTURED, *MAPPED) if name not in NOISY)
+    return dict.fromkeys(others, reason) | lacking
+
+
 def _refuse(facts: Facts, method: StructuredMethod) -> str:
     """Why a method does not apply, as a clause; of one that does, whether it goes back in time."""
-    if facts.is_noisy:
-        return "motions with noise have methods of their own: " + ", ".join(NOISY)
     if facts.has_kinks:
         return KINKED
     if method.file in BY_ENERGY or (method.file == "metriplectic_gradient" and facts.has_entropy):
@@ -152,7 +168,7 @@ def _judge(
     names = [each.name for each in found.exactly]
     return JudgedMethod(
         name=method.name,
-        order=method.order,
+        order=facts.strong_order if facts.is_noisy else method.order,
         exactly=tuple(names),
         nearly=tuple(each.name for each in facts.integrals if each.name not in names),
         is_poisson=found.is_poisson,
@@ -175,11 +191,15 @@ def _judge_runge_kutta(
     """Methods of Gauss keep quadratic integrals, and are symplectic where the tensor is constant.
 
     Of a step ``X = x + h sum b_i f(Y_i)`` a quadratic integral F changes by
-    ``h sum b_i dF(Y_i) . f(Y_i)``, which is zero where dF . f is, at all stages.
+    ``h sum b_i dF(Y_i) . f(Y_i)``, which is zero where dF . f is, at all stages. With noise f is
+    the drift plus ``sum_k g_k dW_k/h``, and F has to be kept by each of these.
     """
     exactly = tuple(each for each in facts.integrals if each.is_kept_within_steps)
-    is_symplectic = facts.is_hamiltonian and facts.tensor == "constant"
+    is_symplectic = facts.is_bracket_alone and facts.tensor == "constant"
     said = [f"{_list(exactly)} {_be(exactly)} of degree 2 at the most"] if exactly else []
+    said += ["drift and noise keep each, by Stratonovich's calculus"] * bool(
+        exactly and facts.is_noisy
+    )
     if facts.is_moved and not exactly:
         said.append("after each step the state is moved, so that quadratic integrals are not kept")
     elif not exactly:
@@ -209,6 +229,10 @@ def _on_orbits(facts: Facts) -> tuple[Kept, ...]:
 _ACTION: Final = "the motion is the bracket with its energy, and the bracket is linear"
 #: What the isospectral midpoint asks for beyond that.
 _PRODUCTS: Final = "that of matrices with all products B A B, up to multiples of 1 or i"
+_NOISY_ACTION: Final = (
+    "drift and noise are brackets with their Hamiltonians, and the bracket is linear: on each path "
+    "a step is the action of one element"
+)
 
 
 def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -219,6 +243,8 @@ def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
         cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
         return Judgement(_on_orbits(facts), True, f"{_ACTION}, {_PRODUCTS}", cost)
     kept = _on_orbits(facts)
+    if facts.is_noisy:
+        return Judgement(kept, True, _NOISY_ACTION, cost)
     # the whole state moves by exp(h xi), attitudes with it: what all such elements leave as it is
     moved = [each for each in facts.integrals if each not in kept]
     turned = [each for each in moved if facts.is_kept_by_action(each.values)]
@@ -233,7 +259,7 @@ def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     """The spherical midpoint, which on one sphere is the midpoint with another length of step.
 
     There ``X(s m) = s^2 X(m)`` of a field that is homogeneous and quadratic, so that all quadratic
-    integrals are kept.
+    integrals are kept. With noise the energy of a step is not homogeneous.
     """
     exactly, decides = (
         _on_orbits(facts),
@@ -241,7 +267,7 @@ def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     )
     (one, *others) = facts.spheres
     alone = not others and not one.tangent and len(facts.state) == len(one.rows)
-    if alone and facts.is_energy_homogeneous:
+    if alone and facts.is_energy_homogeneous and not facts.is_noisy:
         exactly = tuple(
             each
             for each in facts.integrals
@@ -249,7 +275,18 @@ def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
         )
         decides += ", on which the energy is quadratic"
     cost = f"{SWEEPS} of {count(STEPS[method.order], 'midpoint')}"
+    if facts.is_noisy:
+        decides += ", on which drift and noise, brackets with their Hamiltonians, keep each path"
     return Judgement(exactly, True, decides, cost)
+
+
+def _judge_heun(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) -> Judgement:
+    """A step adds means of rates: it keeps linear functions that drift and noise keep."""
+    exactly = tuple(
+        each for each in facts.integrals if each.is_kept_within_steps and each.degree in (0, 1)
+    )
+    said = f"{_list(exactly)} {_be(exactly)} linear" if exactly else "no integral is linear"
+    return Judgement(exactly, False, said, "two evaluations of rates and noise")
 
 
 def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> Judgement:
@@ -351,6 +388,7 @@ def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Prog
 _RULES: Final[Mapping[str, Rule]] = {
     "midpoint": _judge_runge_kutta,
     "gauss": _judge_runge_kutta,
+    "heun": _judge_heun,
     "coadjoint_mean": _judge_orbits,
     "isospectral_midpoint": _judge_orbits,
     "spherical_midpoint": judge_spheres,
@@ -411,6 +449,8 @@ def prefer(facts: Facts) -> tuple[str, ...]:
 
 def _prefer_first(facts: Facts) -> Sequence[str]:
     """What is preferred to the methods of Gauss."""
+    if facts.is_noisy:  # a map that keeps the bracket keeps all Casimirs, those nobody named too
+        return ["spherical_midpoint", "coadjoint_mean"]
     if facts.has_balance:
         return ["discrete_gradient"]
     if facts.is_constrained:

@@ -69,6 +69,11 @@ def tell_kept(casimir: Formula) -> str:
     return f"the noise keeps {casimir.in_one_line} on each path: {{C, h_k}} = 0"
 
 
+def tell_commuting(one: str, other: str) -> str:
+    """The statement that two processes commute."""
+    return f"{one} and {other} commute: [g_k, g_l] = 0"
+
+
 def _field_defects(first: Equations, each: NoiseField) -> list[Element]:
     """``g - {x, h_k}``."""
     brackets = casimir_defects(first, each.hamiltonian)
@@ -120,6 +125,6 @@ def _about_pair(motion: Motion, one: NoiseField, other: NoiseField) -> Examined:
     return finding(
         "noise",
         decision,
-        f"{pair} commute: [g_k, g_l] = 0",
+        tell_commuting(one.name, other.name),
         f"{pair} do not commute{scope}: they move {name} otherwise in the other order",
     )

@@ -27,7 +27,7 @@ from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.loops import FEWEST, Loops
 from coadjoint.lower.program import Program
 from coadjoint.lower.tableau import dop853
-from coadjoint.methods import BY_ENERGY, MAPPED, STRUCTURED, JudgedMethod
+from coadjoint.methods import BY_ENERGY, MAPPED, NOISY, STRUCTURED, JudgedMethod
 from coadjoint.render.environment import names_read, render_templates
 from coadjoint.render.family_parts import arrange_loops
 from coadjoint.render.family_solvers import Counts, arrange_family
@@ -300,19 +300,21 @@ def describe_steps(context: FamilyContext) -> dict[str, Any]:
     """What the solver in C reads of methods that keep structure."""
     every = {**STRUCTURED, **MAPPED}
     led_by_python = context.torus is not None
-    own = [] if led_by_python else [every[each.name] for each in context.methods]
+    is_noisy = bool(context.shared_noise or context.indexed_noise)
+    own = [] if led_by_python or is_noisy else [every[each.name] for each in context.methods]
     implicit = [each for each in own if each.name in STRUCTURED]
     flows = [name for name in context.loops if name.startswith("flow")]
     places = {name: n for n, name in enumerate(flows or ("flow1", "flow2"))}
     schedules = list_schedules(places)
     count = sum(len(each.components) for each in context.state)
     return {
+        "methods": [NOISY[each.name] for each in context.methods] if is_noisy else own,
         "names": {each.macro: (each.file, each.order) for each in implicit},
         "stages": {
             order: list(map(repr, COMPOSITIONS[order]))
             for order in sorted({each.order for each in implicit})
         },
-        "spheres": [rows[0] for rows in context.spheres.values()],
+        "spheres": [] if is_noisy else [rows[0] for rows in context.spheres.values()],
         "matrices": any(loops.products for loops in context.loops.values()),
         "schedules": {
             each.macro: [(places[flow], repr(part)) for flow, part in schedules[each.name]]

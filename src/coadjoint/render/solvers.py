@@ -18,7 +18,7 @@ from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower import normals
 from coadjoint.lower.carriers import find_carriers
-from coadjoint.lower.compositions import COMPOSITIONS
+from coadjoint.lower.compositions import COMPOSITIONS, list_schedules
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.joined import join, rename, widen
 from coadjoint.lower.mapped import list_maps
@@ -41,7 +41,15 @@ from coadjoint.lower.program import (
     walk,
 )
 from coadjoint.lower.stars import Stars, find_stars, make_looped_jets
-from coadjoint.methods import ACTION, ASKED, JACOBIAN, TERMS, list_structured
+from coadjoint.methods import (
+    ACTION,
+    ASKED,
+    JACOBIAN,
+    MAPPED,
+    TERMS,
+    list_noisy,
+    list_structured,
+)
 from coadjoint.render.recurrences import (
     Line,
     Stage,
@@ -337,12 +345,15 @@ def describe_structured(programs: Mapping[str, Program]) -> dict[str, Any]:
         "metriplectic": is_metriplectic(still),
     }
     methods = list_structured([*programs, *(name for name, is_so in marks.items() if is_so)])
+    noisy = (*programs, *["orbits"] * is_noisy, *["spheres"] * bool(spheres))
     has_newton = bool(methods) and JACOBIAN in programs
     composed = [each for each in methods if each.file != "gauss"]
     orders = sorted({each.order for each in composed})
     return {
         "structured": {
             "methods": methods,
+            "noisy": list_noisy(noisy),
+            "mapped": [MAPPED[name] for name in list_schedules(list_maps(programs))],
             "names": {each.macro: (each.file, each.order) for each in composed},
             "stages": {order: list(map(repr, COMPOSITIONS[order])) for order in orders},
             "has_bracket": bracket is not None,

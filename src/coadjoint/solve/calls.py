@@ -78,7 +78,11 @@ class _StructuredRun(_Run):
 class _NoisyRun(_Run):
     """With the fields that a system with noise has in addition."""
 
-    _fields_: ClassVar[Sequence[tuple[str, Any]]] = (("seed", ctypes.c_uint64), ("bound", _DOUBLE))
+    _fields_: ClassVar[Sequence[tuple[str, Any]]] = (
+        ("seed", ctypes.c_uint64),
+        ("bound", _DOUBLE),
+        ("sweeps", _PLACE),
+    )
 
 
 class _KinkedRun(_Run):
@@ -106,7 +110,7 @@ class CStepper:
         self.source, self.key, self.degree = library.source, library.key, choice.degree
         self._rows, self._sums = (
             rows,
-            IMPLICIT_SUMS if choice.is_implicit else (choice.degree + 1) ** 2,
+            IMPLICIT_SUMS if choice.is_noisy or choice.is_implicit else (choice.degree + 1) ** 2,
         )
         self._advance = library.take(choice.kind.advance)
 
@@ -159,12 +163,11 @@ def call(
 def _describe(ensemble: Ensemble) -> _Run:
     """The arrays of an ensemble, as C takes them; it has to live as long as the result."""
     members, inputs, parameters = ensemble.state.shape[1], ensemble.inputs, ensemble.parameters
-    further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound}
+    swept = {"sweeps": None if ensemble.sweeps is None else _place(ensemble.sweeps)}
+    further: dict[str, Any] = {"seed": ensemble.seed, "bound": ensemble.bound, **swept}
     kind: type[_Run] = _NoisyRun
     if ensemble.memory is not None:
-        kind = _StructuredRun
-        further = {"memory": _place(ensemble.memory)}
-        further["sweeps"] = None if ensemble.sweeps is None else _place(ensemble.sweeps)
+        kind, further = _StructuredRun, {"memory": _place(ensemble.memory), **swept}
     if ensemble.kinks is not None and ensemble.brief is not None:
         kind = _KinkedRun
         further = {"kinks": _place(ensemble.kinks), "brief": _place(ensemble.brief)}

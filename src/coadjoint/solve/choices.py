@@ -67,8 +67,8 @@ class Choice:
 
     @property
     def is_implicit(self) -> bool:
-        """Whether a step may take many evaluations."""
-        return self.is_noisy or self.is_structured
+        """Whether the equation of a step is solved for by sweeps, which are counted."""
+        return self.is_structured or (self.is_noisy and self.name in STRUCTURED)
 
     @property
     def is_structured(self) -> bool:

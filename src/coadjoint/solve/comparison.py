@@ -121,7 +121,7 @@ def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
         seed=1,
         sides=len(list_kinks(system, choice)),
         remembered=choice.count_memory(rows),
-        is_implicit=choice.is_structured,
+        is_implicit=choice.is_implicit,
     )
     run.begin(0.0)
     return run

@@ -368,16 +368,19 @@ class Ensemble:
 
         What moves a state onto constraints is no rounding, and there the sums begin anew.
         """
-        if attempt.left is None or self.memory is None:
+        left = attempt.left
+        if left is None:
             return
-        memory = attempt.left.memory
+        if self.sweeps is not None:
+            made = accepted | ~left.solved
+            self.sweeps[going] += np.where(made, left.sweeps, np.uint64(0))
+        memory = left.memory
+        if memory is None or self.memory is None:
+            return
         if limits.projection is not None:
             memory[: len(attempt.state)] = 0.0
         own = self.memory[: len(memory)]
         own[:, going] = np.where(accepted, memory, own[:, going])
-        if self.sweeps is not None:
-            made = accepted | ~attempt.left.solved
-            self.sweeps[going] += np.where(made, attempt.left.sweeps, np.uint64(0))
 
     def _find_time(self, going: NDArray[np.intp], lanes: Lanes, took: Array) -> tuple[Array, Array]:
         """The time after a step, and what rounding takes of it."""

@@ -59,8 +59,7 @@ def compare_steps(
     lengths = [(3, 2.0**-7), (15, 2.0**-7)]
     if exact and choice.name in ("dop853", "taylor"):
         lengths += [(1, 0.0), (15, 0.0)]
-    structured = choice.is_structured
-    if structured and exact:  # other roundings have other sweeps, and other rests of sums
+    if choice.is_implicit and exact:  # other roundings have other sweeps, and other rests of sums
         lengths += [(1, 2.0**-7), (1, 64.0)]  # the last one has no solution
     for members, step in lengths:
         found, expected = (_probe(system, choice, members, step) for _ in range(2))
@@ -107,7 +106,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
         seed=1,
         bound=2.0,
         remembered=choice.count_memory(system.STATE.size, searches=False),
-        is_implicit=choice.is_structured,
+        is_implicit=choice.is_implicit,
         has_clock=False,
         sides=len(system.kink_names),
     )

@@ -265,7 +265,7 @@ class FamilyStepper(FamilyTwin):
         parts = (*_RUN, *_DRIVEN_RUN * is_driven, *_SIDED_RUN * has_kinks)
         self._run_type = _make_structure(tuple(called), parts)
         has_noise = bool(system.NOISE)
-        is_implicit = any(each.name in STRUCTURED for each in system.METHODS)
+        is_implicit = not has_noise and any(each.name in STRUCTURED for each in system.METHODS)
         fields: tuple[Any, ...] = (
             *_ENSEMBLE,
             *_DRIVEN * is_driven,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import BACKWARD, MAPPED, STRUCTURED, list_backward
+from coadjoint.methods import BACKWARD, MAPPED, NOISY, STRUCTURED, list_backward
 from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.arrays import pack_inputs, pack_parameters, tell_member
 from coadjoint.solve.checkpoints import Checkpoint
@@ -28,7 +28,7 @@ from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.family_steps import find_stepper, tell_series_obstacle
 from coadjoint.solve.kinks import describe_sliding, list_kinks_met
 from coadjoint.solve.march import count_threads, march, progress_bar
-from coadjoint.solve.noisy import KEEPS, check_knots, has_noise
+from coadjoint.solve.noisy import check_knots, has_noise
 from coadjoint.solve.reconstruct import find_start, is_asked
 from coadjoint.solve.recording import Recording
 from coadjoint.solve.request import find_kind
@@ -193,12 +193,13 @@ def find_noisy_obstacle(system: System, name: str) -> str:
     if name not in marks:
         return ""
     has_it = KernelModule(system, SOLVER.files[2]).has(marks[name])
-    return "" if has_it else f"it expects {STRUCTURED[name].expects}, and noise by brackets"
+    return "" if has_it else f"it expects {NOISY[name].expects}"
 
 
 def _tell_keeps(choice: Choice) -> str:
     """What a method keeps by itself, of a motion with noise on each path; "" for nothing."""
-    return STRUCTURED[choice.name].keeps if choice.is_structured else KEEPS.get(choice.name, "")
+    known = NOISY if choice.is_noisy else STRUCTURED
+    return known[choice.name].keeps if choice.name in known else ""
 
 
 def find_series_obstacle(
@@ -337,7 +338,7 @@ def _gather(system: System, request: Request) -> tuple[Ensemble, Signal | Array 
         max_steps=request.max_steps,
         sides=len(list_kinks(system, request.choice)),
         remembered=request.choice.count_memory(rows, searches=not is_family),
-        is_implicit=request.choice.is_structured,
+        is_implicit=request.choice.is_implicit,
         has_clock=not is_family,
     )
     if request.seed is not None and request.step is not None:
@@ -555,8 +556,6 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}"
         if request.step is None
-        else f"the equation of a step of {request.step:.12g} has no solution that is found {place}"
-        if request.seed is not None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
         f"{place}; take shorter steps{_advise_newton(system, request)}",

@@ -7,12 +7,13 @@ starts. Read next: `coadjoint.solve.stochastic`, the methods.
 from __future__ import annotations
 
 from numbers import Integral
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import NOISY, STRUCTURED
+from coadjoint.methods import NOISY, PLAIN_WITH_NOISE, STRUCTURED
+from coadjoint.solve.preferences import Preferred, find_default
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,13 +21,6 @@ if TYPE_CHECKING:
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
 
-#: What each method keeps of what the motion keeps on each path.
-KEEPS: Final = {
-    "heun": "nothing exactly",
-    "spherical_midpoint": "Casimirs, to the rounding of each step, and the Poisson bracket",
-    "coadjoint_mean": "Casimirs, to the rounding of each step, and the Poisson bracket",
-    "midpoint": "linear and quadratic integrals, to the rounding of each step",
-}
 #: Seeds are below this, members of a batch below the other.
 SEEDS, MEMBERS = 2**64, 2**32
 #: How far a sample may be from the end of a step, in steps.
@@ -40,8 +34,8 @@ def has_noise(system: System) -> bool:
 
 def choose_noisy(
     system: System, method: Any, step: float | None, seed: Any, refused: dict[str, Any]
-) -> str:
-    """The method of a run with noise.
+) -> Preferred:
+    """The method of a run with noise, and why it was chosen.
 
     Args:
         system: The System.
@@ -54,7 +48,10 @@ def choose_noisy(
         KernelArgumentError: It is none for noise, or something is missing or does not go with it.
     """
     name = method.lower() if isinstance(method, str) else method
-    name = "midpoint" if name == "auto" else name
+    chosen = Preferred(name, "")
+    if name == "auto":
+        chosen = find_default(system, {}, PLAIN_WITH_NOISE)
+        name = chosen.name
     listed = ", ".join(map(repr, ("auto", *NOISY)))
     if name not in NOISY:
         raise KernelArgumentError(
@@ -84,7 +81,7 @@ def choose_noisy(
             "seed=, a whole number from 0 to 2^64 - 1: the same one gives the same paths.",
             found=str(seed)[:80],
         )
-    return str(name)
+    return chosen
 
 
 def check_no_noise(system: System, method: Any, seed: Any) -> None:

@@ -36,12 +36,13 @@ class Preferred:
     why: str
 
 
-def find_default(system: System, obstacles: Mapping[str, str]) -> Preferred:
+def find_default(system: System, obstacles: Mapping[str, str], plain: str = PLAIN) -> Preferred:
     """The first method of the system that applies to a run, with a fixed step.
 
     Args:
         system: The System.
         obstacles: Why methods do not apply to the run, by name, as far as they do not.
+        plain: The method where none of those applies that are known to keep something.
     """
     ranked = sorted((each for each in system.METHODS if each.rank), key=lambda each: each.rank)
     for method in ranked:
@@ -51,7 +52,7 @@ def find_default(system: System, obstacles: Mapping[str, str]) -> Preferred:
         (f"{each.name} does not apply: {obstacles[each.name]}" for each in ranked),
         f"none is known to keep anything of {system.name}",
     )
-    return Preferred(PLAIN, f"it keeps no structure, and {reason}")
+    return Preferred(plain, f"it keeps no structure, and {reason}")
 
 
 def is_wish(method: Any) -> bool:

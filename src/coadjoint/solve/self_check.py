@@ -2,7 +2,8 @@
 
 Comes in: a System. Goes out: a `Measured` for each of its methods: the order by steps that are
 halved, the defect of a step from a Poisson map by differences, and the drift of integrals. What its
-certificate says of a method by theorems is asked of runs here.
+certificate says of a method by theorems is asked of runs here. With noise the order is that of
+paths: runs with longer steps take sums of the increments of shorter ones.
 Read next: `coadjoint.cli.self_check`, which shows it.
 """
 
@@ -19,8 +20,15 @@ import numpy as np
 from coadjoint.build.compiler import BUILDS
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import STRUCTURED, JudgedMethod
+from coadjoint.solve.arrays import pack_inputs, pack_parameters
+from coadjoint.solve.choices import Choice
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.family_steps import FamilyTwin
+from coadjoint.solve.noisy import has_noise
 from coadjoint.solve.spectral import list_mean_zero
+from coadjoint.solve.stochastic import find_bound
+from coadjoint.solve.twins import NumpyStepper
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
@@ -57,6 +65,9 @@ LARGE: Final = 8
 QUICK: Final = ("midpoint", "gauss")
 #: By how much an order may be measured too low. One that is too high is no fault of a method.
 SHY: Final = 0.5
+#: The same of means over paths with noise, and how many of these there are of each state.
+SHY_OF_PATHS: Final = 0.25
+PATHS: Final = 64
 #: Gaps of runs, relative to the state, that are roundings: no order is read from them.
 ROUNDED: Final = 1e-13
 #: How far a map may be from a Poisson map by differences, and how far integrals may go that are
@@ -65,6 +76,8 @@ DEFECT: Final = 1e-11
 DRIFT: Final = 1e-12
 #: Directions that the tensor has, by the size that it has along them.
 LEAST: Final = 1e-9
+#: Of the noise of runs.
+SEED: Final = 1
 #: The parts of a state by which differences move it, at most, and their weights: those of order 8
 #: (B. Fornberg, Mathematics of Computation 51 (1988) 699) mostly leave roundings alone at the first
 #: distance; of stiff motions at the second one.
@@ -141,15 +154,17 @@ class Runs:
         self.count = count
         self.system = system = _compile_sooner(system)
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
+        self.is_noisy = has_noise(system)
         states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
         self.target = "c" if len(states) > LARGE else "numpy"
         if not states.size:
             raise self._fail()
-        rates = np.asarray(system.rhs(states, **self.at))
-        speeds = np.abs(rates).max(axis=0) / np.abs(states).max(axis=0)
-        fast = float(np.nanmax(np.where(np.isfinite(speeds), speeds, 0.0), initial=0.0))
+        fast = self._find_speed(np.asarray(system.rhs(states, **self.at)), states)
+        if self.is_noisy:  # what it does to a state grows with the root of the time
+            fast = max(fast, self._find_speed(self._find_noise(states), states) ** 2)
         self.step = 2.0 ** round(math.log2(1.0 / (STEPS * fast))) if fast > 0 else 0.125
-        first = "midpoint" if system.obstacle else "rk4"  # where Python leads the steps
+        # by explicit steps, where Python does not lead them
+        first = "heun" if self.is_noisy else "midpoint" if system.obstacle else "rk4"
         for _ in range(SHORTER):
             ends = self.run(first, self.step, HALVED, states)
             self.states = states[:, np.isfinite(ends).all(axis=0)]
@@ -157,6 +172,20 @@ class Runs:
                 return
             self.step /= 2.0
         raise self._fail()
+
+    def _find_noise(self, states: Array) -> Array:
+        """What the processes do to states, ``(n, w, N)``; those of equal members all together."""
+        if not isinstance(self.system, FamilySystem):
+            return np.asarray(self.system.noise(states, **self.at))
+        numbers = np.ones((self.system.NOISE.size, states.shape[1]))
+        return np.asarray(self.system.noise_vector(np.concatenate([states, numbers]), **self.at))
+
+    @staticmethod
+    def _find_speed(rates: Array, states: Array) -> float:
+        """The largest rate of a state, by its size."""
+        largest = np.abs(rates).reshape(-1, states.shape[1]).max(axis=0)
+        speeds = largest / np.abs(states).max(axis=0)
+        return float(np.nanmax(np.where(np.isfinite(speeds), speeds, 0.0), initial=0.0))
 
     def _fail(self) -> KernelArgumentError:
         """There is nothing to run."""
@@ -217,6 +246,43 @@ class Runs:
         found = self._simulate(method, step, count, states, samples=1)
         return np.asarray(found.state[..., -1])
 
+    def follow_paths(self, method: str, part: int) -> Array:
+        """Ends of paths of one noise by steps of a part of the step, a quarter at the least."""
+        system, choice = self.system, Choice(name=method, order=1, is_noisy=True)
+        stepper = (
+            FamilyTwin(system, choice, "numpy")
+            if isinstance(system, FamilySystem)
+            else NumpyStepper(system, choice)
+        )
+        stepper.parts = 4 // part
+        inputs = np.zeros(0) if not system.INPUTS else pack_inputs(system, None)
+        run = Ensemble(
+            state=np.repeat(self.states, PATHS, axis=1),
+            parameters=pack_parameters(system, None),
+            inputs=Inputs(np.zeros(1), inputs[:, np.newaxis], np.zeros((len(inputs), 1))),
+            has_time=bool(system.TIME),
+            samples=np.array([HALVED * self.step]),
+            out=None,
+            rtol=0.0,
+            atol=0.0,
+            size=self.step / part,
+            max_steps=HALVED * part,
+            seed=SEED,
+            bound=find_bound(method, self.step / 4),
+            is_implicit=choice.is_implicit,
+            has_clock=not isinstance(system, FamilySystem),
+        )
+        run.begin(0.0)
+        stepper.advance(run, 0, run.state.shape[1], HALVED * part)
+        return np.where(run.status == Status.OK, run.state, np.nan)
+
+    def step_alike(self, method: str, step: float, states: Array) -> Array:
+        """States after one step, with the same noise: that of a first member."""
+        if not self.is_noisy:
+            return self.run(method, step, 1, states)
+        columns = np.split(states, states.shape[1], axis=1)
+        return np.concatenate([self.run(method, step, 1, each) for each in columns], axis=1)
+
     def find_drifts(
         self, method: str, count: int = DRIFTING
     ) -> tuple[dict[str, float], float, dict[str, float]]:
@@ -251,6 +317,7 @@ class Runs:
             samples=samples,
             target=self.find_target(method),
             progress=False,
+            seed=SEED if self.is_noisy else None,
         )
 
 
@@ -284,7 +351,8 @@ def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> M
     defect = find_defect(runs, method.name) if method.is_poisson else None
     drifts, growth, exponents = runs.find_drifts(method.name, count)
     failures = [] if reached else ["no run reached its end"]
-    if order is not None and not order > method.order - SHY:
+    shy = SHY_OF_PATHS if runs.is_noisy else SHY
+    if order is not None and not order > method.order - shy:
         failures.append(f"its order is {order:.1f}, and {method.order} is claimed")
     if defect is not None and not defect < DEFECT:
         failures.append(f"a step is {defect:.1e} from a Poisson map")
@@ -325,6 +393,8 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     Where it is too low, steps may be too long for it: those of a run more are half as long. Where
     there are roundings alone, those of a run more are twice as long, as far as they are solved.
     """
+    if runs.is_noisy:
+        return _compare([runs.follow_paths(method.name, part) for part in (1, 2, 4)], mean=True)
     first = runs.step * (2.0 if method.order > 4 else 1.0)
     count = runs.count
     ends = [runs.run(method.name, first / part, count * part, runs.states) for part in (1, 2, 4)]
@@ -346,14 +416,20 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     return order, reached
 
 
-def _compare(ends: list[Array]) -> tuple[float | None, bool]:
-    """The order by the ends of three runs; None where they differ by roundings alone."""
+def _compare(ends: list[Array], *, mean: bool = False) -> tuple[float | None, bool]:
+    """The order by the ends of three runs; None where they differ by roundings alone.
+
+    Args:
+        ends: States, with halved steps.
+        mean: Whether the mean gap counts, and not the largest one.
+    """
     reached = np.isfinite(ends).all(axis=(0, 1))
     if not reached.any():
         return None, False
     one, two, three = (each[:, reached] for each in ends)
     size = float(np.abs(three).max())
-    gaps = float(np.abs(one - two).max()), float(np.abs(two - three).max())
+    find = np.mean if mean else np.max
+    gaps = float(find(np.abs(one - two))), float(find(np.abs(two - three)))
     if not gaps[1] > ROUNDED * size:
         return None, True
     return math.log2(gaps[0] / gaps[1]), True
@@ -382,7 +458,7 @@ def find_defect(runs: Runs, method: str, part: float = 1.0) -> float | None:
         eps = distance * float(np.abs(state).max())
         moves = [m * eps * along for n in range(1, len(_WEIGHTS) + 1) for m in (n, -n)]
         given = np.concatenate([column, *(column + move for move in moves)], axis=1)
-        ends = runs.run(method, part * runs.step, 1, runs.project(given))
+        ends = runs.step_alike(method, part * runs.step, runs.project(given))
         pairs = ends[:, 1:].reshape(len(ends), len(_WEIGHTS), 2, along.shape[1])
         slope = np.einsum("n,inj->ij", _WEIGHTS, pairs[:, :, 0] - pairs[:, :, 1]) / eps
         end = runs.find_tensor(ends[:, 0])

@@ -115,7 +115,8 @@ def simulate(
     if has_noise(system):
         given = {"rtol or atol": tolerances, "dense": dense}
         given["reconstruct"] = is_asked(reconstruct)
-        name = choose_noisy(system, method, step, seed, given)
+        preferred = choose_noisy(system, method, step, seed, given)
+        name, chosen = preferred.name, preferred.why
         if obstacle := obstacle or generated.find_noisy_obstacle(system, name):
             raise _explain_obstacle(system, name, obstacle)
     else:

@@ -79,7 +79,8 @@ class Attempt:
         path: The state after a part of it.
         coefficients: Those of the path as polynomials in the time since the step began, that of
             order 0 first, ``(n, degree + 1, N)``.
-        left: Of methods that keep structure, what the step leaves besides its end; else None.
+        left: Of implicit methods, and of those that keep structure, what the step leaves besides
+            its end; else None.
     """
 
     took: Array
@@ -95,12 +96,13 @@ class Left:
     """What a step leaves besides its end.
 
     Attributes:
-        memory: What rounding took of the state, and what is kept of searches, ``(m, N)``.
+        memory: What rounding took of the state, and what is kept of searches, ``(m, N)``; None
+            with noise.
         sweeps: How many sweeps its equation took, ``(N,)``.
         solved: Where that was solved, ``(N,)``.
     """
 
-    memory: Array
+    memory: Array | None
     sweeps: NDArray[np.uint64]
     solved: Mask
 

@@ -3,7 +3,7 @@
 Over a step the noise is taken as constant: its increments over the length of the step. So Heun's
 method and the implicit midpoint follow ``rhs + noise (dW/h)``, which gives the motion in the sense
 of Stratonovich. They are the functions of the generated ``solver.c``, operation by operation.
-Heun's keeps nothing exactly; the midpoint keeps what is linear or quadratic and kept on each path,
+Heun's keeps linear functions; the midpoint keeps what is linear or quadratic and kept on each path,
 as far as the equation of a step is solved, which is to rounding. The coadjoint mean, and on spheres
 the spherical midpoint, keep Casimirs and the Poisson bracket: the Hamiltonians of noise times the
 increments are a part of the energy of a step.
@@ -28,7 +28,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Sweep
 from coadjoint.solve.methods.spherical_midpoint import Scale
 from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.runge_kutta import end_where_rates_end
-from coadjoint.solve.steps import Attempt, Lanes, find_fixed_step, larger
+from coadjoint.solve.steps import Attempt, Lanes, Left, find_fixed_step, larger
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,8 +44,8 @@ Function = Callable[[Lanes, "Array", "Array"], "Array"]
 def find_bound(name: str, step: float) -> float:
     """The largest size of a normal number: that of an implicit step has to be bounded.
 
-    G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, SIAM Journal on Numerical Analysis 39 (2002)
-    2066: ``sqrt(4 |log h|)``, by which the strong order 1 stays. It is 2 for steps above 1/e.
+    G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, SIAM Journal on Numerical Analysis 40 (2002)
+    1583: ``sqrt(4 |log h|)``, by which the strong order 1 stays. It is 2 for steps above 1/e.
     """
     return math.inf if name == "heun" else math.sqrt(4.0 * max(1.0, -math.log(step)))
 
@@ -77,6 +77,8 @@ class _Noisy:
         seed: Of the noise.
         bound: The largest size of a normal number.
         branches: Whether the drift has branch points: it has to be finite after each step.
+        parts: Of how many numbers the increment of a step is the sum, so that long steps follow
+            the path of as many short ones.
         spheres: Rows of vectors on spheres, and of their tangents.
         orbits: Of a motion on coadjoint orbits, what it is made of.
     """
@@ -94,20 +96,23 @@ class _Noisy:
         seed: int,
         bound: float,
         branches: bool = False,
+        parts: int = 1,
         spheres: Sequence[Sphere] = (),
         orbits: Orbits | None = None,
     ) -> None:
-        self.spheres, self.orbits = spheres, orbits
+        self.spheres, self.orbits, self.parts = spheres, orbits, parts
         self.rates, self.fields, self.along, self.size = rates, fields, along, size
         self.processes = np.arange(processes, dtype=np.uint64)[:, np.newaxis]
         self.seed, self.bound, self.branches = seed, bound, branches
 
     def find_noise(self, lanes: Lanes, h: Array, process: int | NDArray[np.uint64]) -> Array:
         """The increment of a Wiener process over the length of the step, or those of some."""
-        normal = draw_normals(self.seed, lanes.member, lanes.steps, process)
-        normal = np.where(normal > -self.bound, normal, -self.bound)
-        normal = np.where(normal < self.bound, normal, self.bound)
-        return np.asarray(normal * np.sqrt(h) / h)
+        first, total = lanes.steps * np.uint64(self.parts), np.zeros(1)
+        for part in range(self.parts):
+            normal = draw_normals(self.seed, lanes.member, first + np.uint64(part), process)
+            normal = np.where(normal > -self.bound, normal, -self.bound)
+            total = total + np.where(normal < self.bound, normal, self.bound)
+        return np.asarray(total * np.sqrt(h / self.parts) / h)
 
     def move(self, lanes: Lanes, h: Array) -> Callable[[Array, Array], Array]:
         """The rates with the noise of a step."""
@@ -132,11 +137,17 @@ class _Noisy:
         return rates
 
     def make_attempt(
-        self, lanes: Lanes, h: Array, end: Array, accepted: NDArray[np.bool_]
+        self,
+        lanes: Lanes,
+        h: Array,
+        end: Array,
+        accepted: NDArray[np.bool_],
+        sweeps: NDArray[np.uint64] | None = None,
     ) -> Attempt:
-        """A step that was made; between its ends the path is straight."""
+        """A step that was made, by so many sweeps; between its ends the path is straight."""
         start = lanes.state
         return Attempt(
+            left=None if sweeps is None else Left(None, sweeps, accepted),
             took=np.where(accepted, h, 0.0),
             state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
             accepted=accepted,
@@ -166,10 +177,11 @@ class Midpoint(_Noisy):
         h = find_fixed_step(lanes, self.size)
         middle, rise, own = lanes.state, np.zeros(lanes.state.shape), self.prepare(lanes, h)
         done, solved = np.zeros(h.shape, bool), np.zeros(h.shape, bool)
-        last = np.full(h.shape, np.inf)
+        last, made = np.full(h.shape, np.inf), np.zeros(h.shape, np.uint64)
         for _ in range(SWEEPS):
             if done.all():
                 break
+            made += ~done
             found = own.sweep(middle)
             ends, following = ~np.asarray(found.goes_on), found.middle
             rise = np.where(done, rise, found.rise)
@@ -182,7 +194,9 @@ class Midpoint(_Noisy):
             fresh = ((change == 0.0) & ends) | (small & (change >= last))
             last = np.where(done, last, change)
             done |= fresh
-        return self.make_attempt(lanes, h, own.finish(middle, rise), solved & own.confirm())
+        end = own.finish(middle, rise)
+        solved &= own.confirm() & np.isfinite(end).all(axis=0)
+        return self.make_attempt(lanes, h, np.where(solved, end, lanes.state), solved, made)
 
     def prepare(self, lanes: Lanes, h: Array) -> _Chord:
         """What finds a better middle of a step."""

@@ -332,10 +332,9 @@ class System(Functions):
             seed: Of the noise of a system that has some: from 0 to 2^64 - 1. The same seed gives
                 the same paths for any number of threads, and for the targets ``"c"`` and
                 ``"numpy"`` as far as these agree to the bit. A member has its own by its place in
-                the batch. Such a system has the methods
-                ``"heun"``, ``"spherical_midpoint"`` on spheres, and ``"midpoint"``, which
-                ``"auto"`` is, with ``step``; samples lie at
-                the ends of steps.
+                the batch. Such a system has the methods ``"heun"`` and ``"midpoint"``, on coadjoint
+                orbits ``"coadjoint_mean"`` and on spheres ``"spherical_midpoint"``, with ``step``;
+                ``"auto"`` is the first of `METHODS` in rank. Samples lie at the ends of steps.
             newton: Whether Newton's method solves the equations of implicit steps, with the
                 generated Jacobian, in the place of sweeps alone: for stiff forces, where these ask
                 for much shorter steps. A sweep then takes a linear solution of as many unknowns as

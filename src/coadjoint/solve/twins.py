@@ -51,6 +51,8 @@ class NumpyStepper:
     """
 
     first_work = 16
+    #: Of how many numbers increments of noise are the sum: more than one compares lengths of steps.
+    parts = 1
 
     def __init__(self, system: System, choice: Choice) -> None:
         self._system, self._choice, self.degree = system, choice, choice.degree
@@ -152,6 +154,7 @@ class NumpyStepper:
             seed=run.seed,
             bound=run.bound,
             branches=self._branches,
+            parts=self.parts,
             spheres=tuple(Sphere(*each) for each in self._spheres),
         )
 
