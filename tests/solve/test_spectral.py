@@ -124,6 +124,9 @@ def test_generated_solvers_are_refused_with_the_reason(options):
         own.simulate(np.zeros(32), (0, 1), **options)
     found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
     assert not found.state.any()
+    with pytest.raises(KernelArgumentError, match=r"method 'midpoint' keeps none; .* series") as no:
+        own.simulate(np.zeros(32), (0, 1), method="midpoint", step=0.1, checkpoint="run.npz")
+    assert str(no.value).endswith("Python leads the steps. Remove checkpoint.")
     settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
     assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
     assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import LatticeField
+from coadjoint.derive.fields.profiles import check_profiles
 from coadjoint.derive.fields.rings import Rings
 from coadjoint.derive.fields.spectral import write_spectral
 from coadjoint.derive.records import Kept
@@ -83,8 +84,10 @@ def make_grid(equations: Equations) -> Grid:
 
     Raises:
         KernelArgumentError: The spec declares too few points for the differences.
+        DerivationError: A profile has no value at the first point.
     """
     point, spec = GenericPoint(equations), equations.spec
+    check_profiles(equations.setting)
     if point.space.size is not None:
         where = str(spec.path)
         check_least(spec.name, point.space.name, point.space.size, point.least, where=where)
