@@ -134,9 +134,7 @@ def test_there_is_no_start_where_a_formula_has_no_value():
     few = system.resize({"s": 32})
     assert not few.STATE.defaults
     for start in (lambda: few.simulate(None, (0, 1)), lambda: find_start(few, [])):
-        with pytest.raises(
-            KernelArgumentError, match="profile of m of kdv has no value"
-        ):
+        with pytest.raises(KernelArgumentError, match="profile of m of kdv has no value"):
             start()
     assert find_start(few, [("m[0]", [1.0])])[0] == find_start(few, [("", [1.0] * 32)])[0] == 1
     assert len(system.resize({"s": 33}).STATE.defaults) == 33
