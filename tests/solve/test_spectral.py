@@ -159,6 +159,29 @@ def test_fourier_derivatives_need_no_more_points_than_a_wave():
         few.with_derivatives("differences")
 
 
+@pytest.mark.parametrize("N", [12, 13])
+@pytest.mark.parametrize(
+    ("name", "total", "is_kept"),
+    [
+        ("kdv", "M", True),
+        ("kdv", "J", False),
+        ("spin_chain", "P", True),
+        ("spin_chain_chiral", "M", True),
+        ("sp2_strand", "p", True),
+    ],
+)
+def test_sums_are_kept_as_certificates_say(name, total, is_kept, N):
+    """Rates of sums along the motion at rough fields, by an exact slope of quadratic ones."""
+    system = importlib.import_module(f"coadjoint.systems.{name}").system.resize({"s": N})
+    system = system.with_derivatives("fourier")
+    state = np.random.default_rng(N).normal(size=system.STATE.size)
+    rate = system.rhs(state)
+    after, before = (system.observables(state + sign * rate)[None] for sign in (1, -1))
+    rows = np.atleast_1d(np.arange(after.shape[1])[system.OBSERVABLES.rows(total)])
+    sizes = np.abs(after[0, rows]) + np.abs(before[0, rows])
+    assert (np.abs(after - before)[0, rows] < 1e-10 * sizes).all() == is_kept
+
+
 @pytest.mark.parametrize(
     ("name", "sizes", "total"),
     [("kdv", {"s": 12}, "J"), ("euler_2d", {"x": 8, "y": 8}, "C")],
