@@ -15,7 +15,7 @@ from coadjoint.derive.fields.profiles import sample_profiles
 from coadjoint.derive.fields.stencils import stencil, width_of
 from coadjoint.derive.fields.torus import make_torus
 from coadjoint.derive.reference import Reference
-from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.errors import DerivationError, KernelArgumentError, ResourceError
 from coadjoint.exact import Field
 from coadjoint.prove import prove
 from coadjoint.spec import read_spec_text
@@ -284,11 +284,28 @@ def test_points_of_a_spec_beyond_the_memory_are_refused_where_it_is_read():
         read_spec_text(plane.replace("size = 32", f"size = {10**6}"), "euler_2d.toml")
 
 
+@pytest.mark.parametrize("pole", ["1/s", "1/(s - s)", "log(s)", "sqrt(s - L/2)"])
+def test_a_profile_without_a_value_at_the_first_point_is_refused(pole):
+    """With its line and its name; one with a pole elsewhere depends on the number of points."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    old = '"cos(2*pi*s/L)/3"'
+    line = text[: text.index(old)].count("\n") + 1
+    message = rf"^kdv\.toml:{line}: profiles\.m: the profile of m has no value at s = 0; expected"
+    with pytest.raises(DerivationError, match=message):
+        make_grid(derive(read_spec_text(text.replace(old, f'"{pole}"'), "kdv.toml")))
+    assert make_grid(derive(read_spec_text(text.replace(old, '"1/(s - 1)"'), "kdv.toml")))
+
+
 def test_a_grid_does_not_look_at_each_point(monkeypatch):
-    """Profiles are formulas: those of many points are asked for by nobody."""
-    monkeypatch.setattr(
-        profiles, "evaluate_profile", lambda *_: pytest.fail("a point is looked at")
-    )
+    """Profiles are formulas: their values at many points are asked for by nobody, but the first."""
+    evaluate, looked = profiles.evaluate_profile, list[Fraction]()
+
+    def count(spec, name, *parts):
+        looked.extend(parts)
+        return evaluate(spec, name, *parts)
+
+    monkeypatch.setattr(profiles, "evaluate_profile", count)
     text = shipped("kdv").path.read_text(encoding="utf-8")
     spec = read_spec_text(text.replace("size = 256", "size = 100000"), "kdv.toml")
     assert prove(spec).require().claims
+    assert looked == [0]

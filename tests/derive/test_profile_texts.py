@@ -10,8 +10,10 @@ from importlib import import_module
 import numpy as np
 import pytest
 
+from coadjoint.cli.simulate import find_start
 from coadjoint.derive.fields.profile_texts import write_profiles
 from coadjoint.derive.fields.profiles import evaluate_profile
+from coadjoint.errors import KernelArgumentError
 from coadjoint.spec import read_spec_text
 from coadjoint.systems import euler_2d, kdv, spin_chain
 from tests.specs import shipped
@@ -129,7 +131,12 @@ def test_there_is_no_start_where_a_formula_has_no_value():
 
     system = system._copy(system.index)
     system.profiles = type(system.profiles)(("L",), {"m": pole})
-    assert not system.resize({"s": 32}).STATE.defaults
+    few = system.resize({"s": 32})
+    assert not few.STATE.defaults
+    for start in (lambda: few.simulate(None, (0, 1)), lambda: find_start(few, [])):
+        with pytest.raises(KernelArgumentError, match="profile of m of kdv has no value"):
+            start()
+    assert find_start(few, [("m[0]", [1.0])])[0] == find_start(few, [("", [1.0] * 32)])[0] == 1
     assert len(system.resize({"s": 33}).STATE.defaults) == 33
 
 

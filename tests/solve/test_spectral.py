@@ -124,6 +124,9 @@ def test_generated_solvers_are_refused_with_the_reason(options):
         own.simulate(np.zeros(32), (0, 1), **options)
     found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
     assert not found.state.any()
+    with pytest.raises(KernelArgumentError, match=r"method 'midpoint' keeps none; .* series") as no:
+        own.simulate(np.zeros(32), (0, 1), method="midpoint", step=0.1, checkpoint="run.npz")
+    assert str(no.value).endswith("Python leads the steps. Remove checkpoint.")
     settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
     assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
     assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
@@ -154,6 +157,29 @@ def test_fourier_derivatives_need_no_more_points_than_a_wave():
         KernelArgumentError, match=r"is 3; expected .* at least 9, from which on its"
     ):
         few.with_derivatives("differences")
+
+
+@pytest.mark.parametrize("N", [12, 13])
+@pytest.mark.parametrize(
+    ("name", "total", "is_kept"),
+    [
+        ("kdv", "M", True),
+        ("kdv", "J", False),
+        ("spin_chain", "P", True),
+        ("spin_chain_chiral", "M", True),
+        ("sp2_strand", "p", True),
+    ],
+)
+def test_sums_are_kept_as_certificates_say(name, total, is_kept, N):
+    """Rates of sums along the motion at rough fields, by an exact slope of quadratic ones."""
+    system = importlib.import_module(f"coadjoint.systems.{name}").system.resize({"s": N})
+    system = system.with_derivatives("fourier")
+    state = np.random.default_rng(N).normal(size=system.STATE.size)
+    rate = system.rhs(state)
+    after, before = (system.observables(state + sign * rate)[None] for sign in (1, -1))
+    rows = np.atleast_1d(np.arange(after.shape[1])[system.OBSERVABLES.rows(total)])
+    sizes = np.abs(after[0, rows]) + np.abs(before[0, rows])
+    assert (np.abs(after - before)[0, rows] < 1e-10 * sizes).all() == is_kept
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,11 @@ def test_another_number_of_points_is_chosen_where_a_spec_is_loaded():
         (STRAND.replace(', "P"]', ']\ncasimirs = ["Xi1"]'), "order = 4", 'order = 4, ends = "free"', "Casimirs are claimed", "Remove them"),
         (STRAND, "[claims]", "[forces]\nOmega = \"-Omega\"\n\n[claims]", "[space] and [forces]", "Remove"),
         (STRAND, '"P"]', '{ claim = "P", where = ["Xi1"] }]', "level set", "Remove where"),
-        (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_ss, Xi_ss)/2", "Xi_ss", "Xi_s"),
+        (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_ss, Xi_ss)/2", "'Xi_ss' is a derivative of order 2, and fewer", "Write derivatives = 2 in [space]."),
+        (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_sssss, Xi)/2", "'Xi_sssss' is a derivative of order 5", "derivatives up to 4"),
+        (STRAND, "dot(Xi, diag(K)*Xi)/2", "dot(Xi_st, Xi)/2", "'Xi_st' is not declared", "Did you mean 'Xi_s'?"),
+        (KDV, "m^3/2 - c*m_s^2/2", "m^3/2 + c*m*m_ss/2", "'m_ss' is a derivative of order 2", "Write derivatives = 2 in [space]."),
+        (STRAND, "order = 4", 'order = "fourier"', "found 'fourier'; expected 2, 4, 6 or 8", 'derivatives="fourier"'),
         (STRAND, "Pi = \"vector(cos(2*pi*s/L), sin(2*pi*s/L)/2, 1)\"", 'Pi = "cos(s)"', "a scalar", "vector(a, b, c)"),
         (STRAND, "[profiles]\nPi", "[profiles]\nPhi", "there is no field 'Phi'", "Did you mean"),
         (STRAND, "[profiles]\nPi = \"vector(cos(2*pi*s/L)", "[profiles]\nPi = \"vector(cos(2*pi*s/Pi1)", "'Pi1' is a momentum", "parameters"),
@@ -140,6 +144,19 @@ def test_more_derivatives_are_named_if_they_are_declared():
         read(text)
     spec = read(text.replace("order = 4", "order = 4, derivatives = 2"))
     assert {each.name for each in spec.jets} == {"S_s", "S_ss"}
+
+
+def test_the_advice_about_derivatives_works():
+    """As many as are asked for are named then, by components, too."""
+    for name, order in (("m_ss", 2), ("m_ssss", 4)):
+        wrong = KDV.replace("m^3/2 - c*m_s^2/2", f"m^3/2 + c*m*{name}/2")
+        with pytest.raises(SpecError, match=rf"Write derivatives = {order} in \[space\]\."):
+            read(wrong)
+        assert read(wrong.replace("order = 6", f"order = 6, derivatives = {order}")).jets
+    with pytest.raises(SpecError, match=r"'w_xy' is a derivative of order 2, and fewer"):
+        read(PLANE.replace('"w^3"', '"w*w_xy"'))
+    with pytest.raises(SpecError, match=r"Write derivatives = 2 in \[space\]\."):
+        read(STRAND.replace("dot(Pi, Xi)", "Pi1*Xi1_ss"))
 
 
 def test_derivatives_take_part_in_units():

@@ -275,7 +275,11 @@ def find_start(
     system: System, given: Iterable[Assignment], parameters: Any = None, inputs: Any = None
 ) -> Any:
     """Where a run begins; on the constraints, if the user and the spec say nothing."""
+    from coadjoint.solve.family import check_profiles  # which loads systems
+
     given = list(given)
+    if all(name for name, _ in given):  # nobody gives the whole state
+        check_profiles(system, [name for name, _ in given])
     start = initial_state(system.STATE, given)
     declared = given or all(quantity.default for quantity in system.STATE.values())
     if "projection" not in system.functions or declared:

@@ -167,6 +167,7 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
     for each in grid.equations.exact.emitted:
         if each.kept is not Kept.ALWAYS:
             continue
+        yield from _about_fourier_sum(grid, each.name)
         if kept[each.name] is Kept.ALWAYS:
             method = "the variation of its rate over the points of an endless grid is 0"
             decision = Decision(verdict=Verdict.PROVED, method=method)
@@ -182,6 +183,21 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
             "conserved",
             partial(give, found),
         )
+
+
+def _about_fourier_sum(grid: Grid, name: str) -> Iterator[Examined]:
+    """That Fourier derivatives keep a sum; nothing where they need not."""
+    field, defects = grid.lattice.field, grid.sums.get(name, ())
+    if name not in grid.sums or not all(map(field.is_zero, defects)):
+        return
+    decision = decide_zero(list(defects), field)
+    method = (
+        f"{decision.method}: its rate is a sum of f(i) D_k[i, j] g(j) in which f(i) g(j) and "
+        "(-1)^k f(j) g(i) cancel but for functions of one point, and D_k, which takes constants "
+        "to 0, has the transpose (-1)^k D_k"
+    )
+    statement = f"{name} is conserved, at N points, with Fourier derivatives"
+    yield statement, "conserved", partial(give, replace(decision, method=method))
 
 
 def _about_jacobi(grid: Grid, where: str) -> Iterator[Examined]:

@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.system`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import count
@@ -407,6 +407,29 @@ class FamilySystem(System):
         driving = {"inputs": self.INPUTS, "noise": self.NOISE, "time": self.TIME}
         told += "".join(f"; {name} {', '.join(each)}" for name, each in driving.items() if each)
         return f"<System {self.name}: {told}>"
+
+
+def check_profiles(system: System, given: Iterable[str]) -> None:
+    """Each field that is not given has a value at each point at the beginning.
+
+    Args:
+        system: A System; one without profiles begins as others do.
+        given: Names of fields, or of their components, that are given.
+
+    Raises:
+        KernelArgumentError: A profile has no value at some point.
+    """
+    if not isinstance(system, FamilySystem) or system.profiles is None or lacks_size(system):
+        return
+    known = {*given}
+    for name, each in system.STATE.items():
+        lacking = each.default is None and name in system.profiles.formulas
+        if lacking and known.isdisjoint((name, *each.components)):
+            raise KernelArgumentError(
+                f"the profile of {name} of {system.name} has no value at some of its {system.size} "
+                f"points; expected a state, or a number of points at which it has values.",
+                found=name,
+            )
 
 
 def lacks_size(system: System) -> bool:

@@ -23,6 +23,7 @@ from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve.arrays import as_float64, check_rows, pack, tell_member
 from coadjoint.solve.choices import GENERATED, Choice
 from coadjoint.solve.costs import choose_order
+from coadjoint.solve.family import check_profiles
 from coadjoint.solve.preferences import Preferred, find_default, grant_wish, is_wish
 from coadjoint.solve.reconstruct import is_asked
 from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
@@ -120,6 +121,8 @@ def check_state(system: System, state: Any) -> Array:
         KernelArgumentError: Another shape, or a number that is not finite.
     """
     given = {} if state is None else state
+    if isinstance(given, Mapping):
+        check_profiles(system, given)
     packed = pack(given, system.STATE, "state", system.STATE.defaults)
     check_rows(packed, system.STATE, "state", system.name)
     if not packed.size:

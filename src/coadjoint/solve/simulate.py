@@ -234,9 +234,11 @@ def _check_alone(system: System, request: Request, obstacle: str) -> None:
     """
     if request.checkpoint is not None:
         reason = f": {obstacle}" if obstacle else ""
+        whose = "" if system.obstacle else " of SciPy"  # Python leads the steps of some systems
         raise KernelArgumentError(
-            f"checkpoint is given, and method {request.method!r} of SciPy keeps none; expected a "
-            f"generated solver{', which does not apply here' if obstacle else ''}{reason}.",
+            f"checkpoint is given, and method {request.method!r}{whose} keeps none; expected a "
+            f"generated solver{', which does not apply here' if obstacle else ''}{reason}. Remove "
+            "checkpoint.",
             found=str(request.checkpoint),
             reason=obstacle,
         )

@@ -161,11 +161,21 @@ def _fault(
         f"found {show_value(given)}",
         given,
         expected,
-        did_you_mean(given, re.findall("'([^']+)'", expected))
+        did_you_mean(given, re.findall("'([^']+)'", expected), _advise_order(present, given))
         if literal
         else _advise(present, given),
         kind=LimitError if limit else SpecError,
         limit=limit,
+    )
+
+
+def _advise_order(path: KeyPath, given: str) -> str:
+    """How Fourier derivatives are chosen, which differences of no order are."""
+    if path[:1] != ("space",) or path[-1] != "order" or "fourier" not in given.casefold():
+        return ""
+    return (
+        'Leave order out, and choose them when the system is loaded: derivatives="fourier", or '
+        "--derivatives fourier."
     )
 
 

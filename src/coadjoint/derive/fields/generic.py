@@ -9,7 +9,7 @@ Read next: `coadjoint.derive.fields.rings`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -302,6 +302,42 @@ class GenericPoint:
                     found.setdefault((i, j, term.order), []).append(left(0) * right(other))
                     found.setdefault((j, i, term.order), []).append(left(other) * right(0) * sign)
         return [self.lattice.field.sum(parts) for parts in found.values()]
+
+    def find_sum_defects(self, components: Iterable[str]) -> list[Element] | None:
+        """What vanishes if sums of densities are kept with all derivatives that sum by parts.
+
+        The rate of such a sum is that of terms ``f(i) D_k[i, j] g(j)``, with a matrix that has the
+        transpose (-1)^k D_k and takes constants to 0. So it is 0 where the sum of ``f(i) g(j)`` and
+        (-1)^k times the same with i and j exchanged is one of functions of i and of j.
+
+        Returns:
+            None where densities or the energy have derivatives, or a velocity is solved for.
+        """
+        values = [self.densities[name] for name in components]
+        state, field, lattice = self.setting.state, self.setting.field, self.lattice.field
+        named = frozenset[str]().union(*map(field.reach, values)) & self.jets.orders.keys()
+        if solved(self.spec) or not named <= {*state} or any(len(own) > 1 for own in self.slopes):
+            return None
+        _, place = self._place_exactly()
+        slopes = [own[0] if own else field.zero for own in self.slopes]
+        defects = list[Element]()
+        for value in values:
+            forms = dict[int, list[Element]]()
+            for a, entries in zip(state, self.operator, strict=True):
+                slope = field.derivative(value, a)
+                for entry, other in zip(entries, slopes, strict=True):
+                    for t in entry:
+                        f, g = place(slope * t.left), place(t.right * other)
+                        near, sign = min(t.order, 1), (-1) ** t.order
+                        both = f(0) * g(near) + f(near) * g(0) * sign
+                        forms.setdefault(t.order, []).append(both)
+            for order, parts in forms.items():
+                whole = lattice.sum(parts)
+                here, there = ([name_at(c, n) for c in state] for n in (0, 1))
+                slopes_here = lattice.gradient(whole, here if order else ())
+                mixed = [x for each in slopes_here for x in lattice.gradient(each, there)]
+                defects += mixed if order else [whole]
+        return defects
 
     @cached_property
     def exact_point(self) -> tuple[list[Element], dict[str, Element]]:

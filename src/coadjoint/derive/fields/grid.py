@@ -22,12 +22,13 @@ Read next: `coadjoint.prove.grids`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.lattice import LatticeField
+from coadjoint.derive.fields.profiles import check_profiles
 from coadjoint.derive.fields.rings import Rings
 from coadjoint.derive.fields.spectral import write_spectral
 from coadjoint.derive.records import Kept
@@ -58,6 +59,8 @@ class Grid:
         spectral: What is computed where derivatives are those of Fourier series; None with ends.
         defects: In the field of the lattice, what vanishes if the bracket is antisymmetric for all
             derivatives that sum by parts, those of Fourier series among them.
+        sums: Likewise, of each conserved density by its name what vanishes if these derivatives
+            keep its sum; nothing of one of which that is not asked.
         brackets: In this field, of two fields and how many points further the second one is, the
             bracket of both times the spacing.
     """
@@ -75,6 +78,7 @@ class Grid:
     ends: Mapping[int, tuple[Element, ...]]
     spectral: Spectral | None
     defects: tuple[Element, ...]
+    sums: Mapping[str, Sequence[Element]]
 
 
 @once
@@ -83,8 +87,10 @@ def make_grid(equations: Equations) -> Grid:
 
     Raises:
         KernelArgumentError: The spec declares too few points for the differences.
+        DerivationError: A profile has no value at the first point.
     """
     point, spec = GenericPoint(equations), equations.spec
+    check_profiles(equations.setting)
     if point.space.size is not None:
         where = str(spec.path)
         check_least(spec.name, point.space.name, point.space.size, point.least, where=where)
@@ -112,4 +118,15 @@ def make_grid(equations: Equations) -> Grid:
         ends=point.exact_ends,
         spectral=None if point.space.has_ends else write_spectral(point),
         defects=tuple(point.defects),
+        sums={} if point.space.has_ends else _list_sums(point),
     )
+
+
+def _list_sums(point: GenericPoint) -> dict[str, Sequence[Element]]:
+    """As `Grid.sums`."""
+    found = dict[str, Sequence[Element]]()
+    for each in point.equations.exact.emitted:
+        if each.kept is Kept.ALWAYS and each.name != "energy":
+            defects = point.find_sum_defects(each.components)
+            found |= {} if defects is None else {each.name: defects}
+    return found

@@ -13,7 +13,8 @@ from typing import Any, cast
 import mpmath
 
 from coadjoint.derive.interpret import Values, entries, interpret
-from coadjoint.derive.setting import assemble
+from coadjoint.derive.setting import Setting, assemble, fault
+from coadjoint.errors import DerivationError
 from coadjoint.exact import Field
 from coadjoint.spec import Spec
 
@@ -69,6 +70,24 @@ def evaluate_profile(spec: Spec, name: str, *parts: Fraction) -> tuple[Fraction,
         value = interpret(spec.profiles[name].tree, values, cast("Field", numbers))
         numbers_of: Any = entries(value)
         return tuple(Fraction(float(x)) for x in numbers_of)
+
+
+def check_profiles(setting: Setting) -> None:
+    """Each profile has a value at the first point, which all numbers of points have.
+
+    Raises:
+        DerivationError: One has none, as ``1/s``.
+    """
+    spec = setting.spec
+    assert spec.space is not None, spec.name
+    origin = [Fraction(0)] * len(spec.space.coordinates)
+    for name, formula in spec.profiles.items():
+        try:
+            evaluate_profile(spec, name, *origin)
+        except (DerivationError, ArithmeticError, ValueError, TypeError) as error:
+            where = " and ".join(f"{each} = 0" for each in spec.space.coordinates)
+            message = f"the profile of {name} has no value at {where}; expected one at each point."
+            raise fault(setting, formula, message, formula.text) from error
 
 
 def sample_profiles(spec: Spec) -> dict[str, tuple[tuple[Fraction, ...], ...]]:

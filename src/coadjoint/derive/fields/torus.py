@@ -29,6 +29,7 @@ from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import Jets, jets_of, solved
+from coadjoint.derive.fields.profiles import check_profiles
 from coadjoint.derive.fields.rings import make_bare, write_point
 from coadjoint.derive.records import Exact, Kept
 from coadjoint.derive.setting import fault, once
@@ -69,10 +70,12 @@ def make_torus(equations: Equations) -> TorusGrid:
     """A field at the points of a plane.
 
     Raises:
-        DerivationError: The Lagrangian has no derivatives of the stream function.
+        DerivationError: The Lagrangian has no derivatives of the stream function, or a profile has
+            no value at the first point.
         KernelArgumentError: The spec declares too few points.
     """
     made, spec = _Making(equations), equations.spec
+    check_profiles(equations.setting)
     for each in made.both:
         if each.size is not None:
             where = str(spec.path)

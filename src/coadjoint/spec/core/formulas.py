@@ -6,9 +6,10 @@ checked for names, shapes and size. Read next: `coadjoint.spec.core.reading`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Final, Protocol
 
 from coadjoint.errors import CoadjointError
 from coadjoint.spec.core.components import Named, Shape
@@ -95,6 +96,10 @@ ROLES = {
 }
 
 
+#: The highest derivative of a field that formulas may name.
+MOST_DERIVATIVES: Final = 4
+
+
 @dataclass(frozen=True)
 class Scope:
     """The names that one kind of formula may use.
@@ -105,6 +110,7 @@ class Scope:
         shapes: Shape of each name in scope, whole quantities and components.
         outside: Names that the spec declares and this kind of formula may not use, with their role.
         definitions: What may be expanded, by name.
+        coordinates: The coordinates of space along which fields have derivatives.
     """
 
     kind: str
@@ -112,6 +118,7 @@ class Scope:
     shapes: Mapping[str, Shape]
     outside: Mapping[str, str]
     definitions: Mapping[str, Definition] = field(default_factory=dict)
+    coordinates: frozenset[str] = frozenset()
 
 
 def make_scope(
@@ -135,7 +142,9 @@ def make_scope(
     outside: dict[str, str] = {}
     definitions: dict[str, Definition] = {}
     present: dict[str, None] = {}
+    coordinates = set[str]()
     for quantity in quantities:
+        coordinates |= {getattr(quantity, key, "") for key in ("coordinate", "second")} - {""}
         if isinstance(quantity, Definition):
             definitions[quantity.name] = quantity
             continue
@@ -150,7 +159,14 @@ def make_scope(
     plurals = [PLURALS[role] for role in roles]
     plurals += ["parameters", *(PLURALS[role] for role in present)]
     takes = " and ".join(filter(None, [", ".join(plurals[:-1]), plurals[-1]]))
-    return Scope(kind=kind, takes=takes, shapes=shapes, outside=outside, definitions=definitions)
+    return Scope(
+        kind=kind,
+        takes=takes,
+        shapes=shapes,
+        outside=outside,
+        definitions=definitions,
+        coordinates=frozenset(coordinates),
+    )
 
 
 def read_formula(
@@ -176,6 +192,7 @@ def read_formula(
         whole = expand(typed, scope.definitions, source.spent)
         tree = whole if members is None else write_out(whole, members, key)
         _check_roles(tree, scope)
+        _check_derivatives(tree, scope)
         shape = shape_of(tree, scope.shapes)
         check_size(tree, scope.shapes)
         if shape != () and not any_shape:
@@ -198,6 +215,21 @@ def _check_roles(tree: Node, scope: Scope) -> None:
             expected = f"{scope.kind} in terms of {scope.takes}"
             constant = "Put a parameter in its place." if role in DRIVING else ""
             hint = did_you_mean(node.name, scope.shapes, constant)
+            raise fault_at(node, problem, node.name, expected, hint)
+
+
+def _check_derivatives(tree: Node, scope: Scope) -> None:
+    """Refuse a derivative along space that is higher than those that have names, saying so."""
+    along = "|".join(map(re.escape, sorted(scope.coordinates)))
+    for node in walk(tree):
+        if not along or not isinstance(node, (Name, Index)) or node.name in scope.shapes:
+            continue
+        field, _, word = node.name.rpartition("_")
+        if field in scope.shapes and re.fullmatch(f"({along})+", word):
+            order = len(re.findall(along, word))
+            problem = f"{node.name!r} is a derivative of order {order}, and fewer are named"
+            hint = f"Write derivatives = {order} in [space]." if order <= MOST_DERIVATIVES else ""
+            expected = f"derivatives up to {MOST_DERIVATIVES} at the most"
             raise fault_at(node, problem, node.name, expected, hint)
 
 

@@ -19,7 +19,7 @@ from coadjoint.families import Index
 from coadjoint.sizes import check_declared_memory
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import did_you_mean, list_names
-from coadjoint.spec.core.formulas import Formula, read_fitting
+from coadjoint.spec.core.formulas import MOST_DERIVATIVES, Formula, read_fitting
 from coadjoint.spec.core.parts import Part
 from coadjoint.spec.core.reading import Naming, Reading, Table
 from coadjoint.spec.core.source import Source
@@ -65,8 +65,10 @@ class SpacePart(Part):
         description='"periodic" (the default), a circle; or "free" or "clamped" ends of a strand, '
         "with order = 2 or 4",
     )
-    derivatives: Annotated[int, Field(ge=1, le=4)] = Field(
-        1, description="the highest derivative along the coordinate that formulas name"
+    derivatives: Annotated[int, Field(ge=1, le=MOST_DERIVATIVES)] = Field(
+        1,
+        description="the highest derivative along the coordinate that formulas name: 1 (the "
+        "default) to 4",
     )
     unit: Unit = ""
 
