@@ -134,6 +134,15 @@ def test_slopes_of_energies_are_found_exactly():
     assert "omega = dh/dm" not in [line.text for line in spoiled.vectors]
 
 
+def test_linear_equations_stand_with_vectors_where_they_are_announced():
+    """Plain text has no components below equations by vectors."""
+    (motion,) = motion_sections(derive(shipped("double_spherical_pendulum")))
+    texts = [line.text for line in motion.vectors]
+    assert "those of v1, v2 in components, as the linear equations" in motion.law
+    assert any("dv1_1_dt" in text for text in texts)
+    assert any("dv2_3_dt" in text for text in texts)
+
+
 def test_scalars_stand_with_vectors_and_before_them():
     """Holm (2011), section 6.6, on Bargmann's group: mass times velocity, and tau = E/c."""
     (motion,) = motion_sections(derive(shipped("bargmann")))

@@ -109,7 +109,7 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
             lines += write_names(equations, list(rates.values()))
             if form is not None and vectors:
                 bare = {n: (rates[n], _write_motion(equations, n, rates[n])) for n in rates}
-                vectors += complete_vectors(equations, form, bare)
+                vectors += (*(solved or ()), *complete_vectors(equations, form, bare))
         if equations.spec.noise:
             law += "; the noise is in the sense of Stratonovich"
     return Section(
