@@ -161,9 +161,13 @@ def list_idle(section):
     return [left for left, *right in sides if right == [left]]
 
 
-@pytest.mark.parametrize("system", ["n_link_chain", "double_spherical_pendulum", "suslov"])
+@pytest.mark.parametrize(
+    "system", ["n_link_chain", "double_spherical_pendulum", "heisenberg_sub_riemannian"]
+)
 def test_no_line_says_that_something_is_itself(system):
-    """A rate that the kernel solves for is none of the lines of the last step."""
+    """Neither a rate that the kernel solves for, nor a velocity that constraints leave free."""
+    told = [word for each in sections(system).values() for word in each.words]
+    assert (("the other rates", "as the kernel solves for them") in told) == (system[0] == "n")
     assert not [line for each in sections(system).values() for line in list_idle(each)]
 
 

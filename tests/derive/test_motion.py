@@ -30,6 +30,14 @@ def test_a_law_names_what_follows(name):
     assert all("follow" not in part.law for part in (motion,))
 
 
+def test_no_line_of_a_motion_stands_twice():
+    """What a solve rests on tells what velocities are as well."""
+    (motion,) = motion_sections(derive(shipped("ball_in_sphere")))
+    texts = [line.text for line in motion.lines]
+    assert "_b1 = n3*r/a" in texts
+    assert len(texts) == len(set(texts))
+
+
 def test_long_linear_equations_are_left_to_the_steps(monkeypatch):
     """And the law says so."""
     equations = derive(shipped("chaplygin_sleigh"))
@@ -132,6 +140,16 @@ def test_slopes_of_energies_are_found_exactly():
     other = replace(equations.exact, energy=2 * equations.exact.energy)
     (spoiled,) = motion_sections(replace(equations, exact=other))
     assert "omega = dh/dm" not in [line.text for line in spoiled.vectors]
+
+
+def test_linear_equations_stand_with_vectors_where_they_are_announced():
+    """Plain text has no components below equations by vectors."""
+    (motion,) = motion_sections(derive(shipped("double_spherical_pendulum")))
+    texts = [line.text for line in motion.vectors]
+    assert "those of v1, v2 in components, as the linear equations" in motion.law
+    assert "minus the multipliers" in motion.law
+    assert any("dv1_1_dt" in text for text in texts)
+    assert any("dv2_3_dt" in text for text in texts)
 
 
 def test_scalars_stand_with_vectors_and_before_them():

@@ -292,8 +292,8 @@ def test_a_derivation_reads_like_a_book():
     latex = " ".join(line.latex for section in whole.sections for line in section.lines)
     html = " ".join(line.mathml for section in whole.sections for line in section.lines)
     assert r"\dot{\Gamma}_1 &=" in latex
-    assert r"b_1\,\dot{\Omega}_2" in latex
-    assert r"(B^T M B \dot\eta)_{1} &=" in latex
+    assert r"\tilde{b}_1\,\dot{\Omega}_2" in latex
+    assert r"(B^\top M B \dot\eta)_{1} &=" in latex
     assert "_b1" not in latex + html
     assert "dt}" not in latex
     assert "dOmega" not in html

@@ -146,7 +146,7 @@ def without_formulas(page, form):
             tags = {each.tag for each in ET.fromstring(found).iter()}
             assert tags <= {"math", "mrow", "mi", "mn", "mo", "mspace"}, found
         else:
-            safe = r"\$([\w ,()+={}-]|\\(,|(left|right|operatorname|mathrm|[lr]angle)\b))*\$"
+            safe = r"\$([\w ,()+={}-]|\\(,|(left|right|operatorname|mathrm|times|[lr]angle)\b))*\$"
             assert re.fullmatch(safe, found), found
     return re.sub(pattern, "", page)
 

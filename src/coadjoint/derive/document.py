@@ -292,8 +292,9 @@ def _section(equations: Equations, step: Step, names: Names | None = None) -> Se
     lines = list[Line]()
     for left, right in step.lines:
         written = write_element(field, right)
-        if written.latex == left.latex:  # a rate that the kernel solves for, by its name
-            words += (("the other rates", "as the kernel solves for them"),) * (not words)
+        if written.latex == left.latex:  # what has no other name, as what a kernel solves for
+            is_rate = left.text.endswith("/dt") and not words
+            words += (("the other rates", "as the kernel solves for them"),) * is_rate
         elif names is not None and left.text in declared:
             lines.append(equal(left, names.write(declared[left.text])))
         else:

@@ -17,7 +17,7 @@ from coadjoint.derive.generic import show_members
 from coadjoint.derive.lines import Line, Section, equal, formula_line
 from coadjoint.derive.mechanics.noise import write_moves
 from coadjoint.derive.mechanics.solver import Solve
-from coadjoint.derive.motion_names import complete_vectors, write_names
+from coadjoint.derive.motion_names import complete_vectors, measure, write_names
 from coadjoint.derive.records import is_of_kernel, rate, symbol
 from coadjoint.derive.vectors import VectorForm, vector_form
 from coadjoint.derive.vectors.vocabulary import value_shape
@@ -31,6 +31,8 @@ from coadjoint.spec.core.components import Shape
 
 #: Characters of text of linear equations beyond which they are left to the steps.
 LONGEST_SOLVE: Final = 1500
+#: Characters up to which they stand with equations by vectors, and not only with components.
+SHORT_SOLVE: Final = 800
 
 
 @dataclass(frozen=True)
@@ -104,12 +106,16 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
             left = [v for n, v in pairs if n not in rates and owners.get(n) in missing]
         solved = list(_write_solved(equations, left)) if left else None
         law = _say_where(vectors, missing, solved)
+        if any("_u1 " in line.text for line in solved or ()):
+            law += ", where _u1 and the like are minus the multipliers of constraints"
         lines += solved or []
         if equations.chart is None and not equations.spec.space:
-            lines += write_names(equations, list(rates.values()))
+            told = {line.text.partition(" = ")[0] for line in solved or ()}
+            lines += write_names(equations, list(rates.values()), told)
             if form is not None and vectors:
                 bare = {n: (rates[n], _write_motion(equations, n, rates[n])) for n in rates}
-                vectors += complete_vectors(equations, form, bare)
+                short = solved if solved and measure(solved) <= SHORT_SOLVE else ()
+                vectors += (*short, *complete_vectors(equations, form, bare))
         if equations.spec.noise:
             law += "; the noise is in the sense of Stratonovich"
     return Section(
@@ -151,7 +157,7 @@ def _write_solved(equations: Equations, rates: Iterable[Element]) -> list[Line]:
             return []
         else:
             lines += _write_rows(field, each)
-    return lines if sum(len(line.text) for line in lines) <= LONGEST_SOLVE else []
+    return lines if measure(lines) <= LONGEST_SOLVE else []
 
 
 def _list_solved(

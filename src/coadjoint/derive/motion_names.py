@@ -46,7 +46,7 @@ def write_names(
         slopes = zip(setting.conjugates, legendre(setting).momenta, strict=True)
         pairs = [(p, value / weight) for (_, p, weight), value in slopes]
     lines = [formula_line(setting.field, symbol(label), value) for label, value in pairs]
-    return lines if _measure(lines) <= LONGEST_COMPONENTS else []
+    return lines if measure(lines) <= LONGEST_COMPONENTS else []
 
 
 def complete_vectors(
@@ -64,7 +64,7 @@ def complete_vectors(
     bare = [v for v in spec.state if v.name in form.missing or not v.value_shape]
     further = [n for v in bare for n in v.components if n in rates]
     lines = [rates[n][1] for n in further]
-    if _measure(lines) > LONGEST_NAMES:
+    if measure(lines) > LONGEST_NAMES:
         further, lines = [], []
     reached = frozenset[str]().union(*(field.reach(rates[n][0]) for n in further))
     reached |= {n for line in form.lines for n in _list_names(line.right)}
@@ -81,7 +81,7 @@ def complete_vectors(
     values = [rates[n][0] for n in further]
     values += [field[n] for v in left for n in v.components if n not in told]
     named = write_names(equations, values, told)
-    if _measure(named) > LONGEST_NAMES:
+    if measure(named) > LONGEST_NAMES:
         others = (v for v in left if told.isdisjoint(v.components))
         named = [line for v in others for line in _bracket(equations, v)]
     return (*lines, *named)
@@ -103,7 +103,7 @@ def _whole(variable: Variable) -> Left:
     return name(variable.name, bold=len(variable.value_shape) == 1)
 
 
-def _measure(lines: Iterable[Line]) -> int:
+def measure(lines: Iterable[Line]) -> int:
     """Characters of text."""
     return sum(len(line.text) for line in lines)
 
