@@ -75,8 +75,24 @@ def change(old, new):
 
 CHAIN_OF_SPINS = shipped("spin_chain").path.read_text(encoding="utf-8")
 STRAND = "dot(Omega, diag(I)*Omega)/2 - dot(Xi, diag(K)*Xi)/2"
+#: A bead that touches a wall.
+BEAD = """
+title = "A bead"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate", default = -1 }
+p = { role = "momentum", of = "q", default = 1 }
+[hamiltonian]
+h = "p^2/2 + max(q, 0)^2*sqrt(max(q, 0))"
+"""
 #: A spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    (
+        BEAD,
+        [],
+        "Write max(x, 0)^(5/2) in the place of max(x, 0)^2*sqrt(max(x, 0)).",
+        [("max(q, 0)^2*sqrt(max(q, 0))", "max(q, 0)^(5/2)")],
+    ),
     # -- fields
     *(
         (

@@ -290,3 +290,20 @@ def test_smooth_sums_over_pairs_give_no_warning():
         warnings.simplefilter("error", coadjoint.KinkWarning)
         found = system.simulate(np.linspace(0.1, 1, 12), (0, 0.1), method="rk4", step=0.01)
         assert abs(found.drift["energy"]) < 1e-6
+
+
+#: Beads in a row that touch after Hertz, a chain of Nesterenko.
+BEADS = HEAD + 'h = "sum(i, p[i]^2/(2*k[i])) + sum(i, 2/5*max(q[i] - q[i+1], 0)^(5/2))"\n'
+
+
+def test_a_chain_of_beads_has_forces_after_hertz():
+    """``F = max(q[i] - q[i+1], 0)^(3/2)``, also where beads just touch, and no force beyond."""
+    source = np.random.default_rng(5)
+    q, p, k = source.normal(size=6), source.normal(size=6), source.uniform(1, 2, 6)
+    q[2] = q[1]
+    force = np.maximum(q[:-1] - q[1:], 0) ** 1.5
+    expected = [*(p / k), *(np.append(0, force) - np.append(force, 0))]
+    with load(BEADS) as system:
+        for target in ("numpy", "c"):
+            found = system.rhs([*q, *p], {"k": k}, target=target)
+            assert np.allclose(found, expected, rtol=1e-12, atol=1e-14), target

@@ -11,7 +11,8 @@ import pytest
 from scipy.optimize import brentq
 
 from coadjoint.declared import Quantity
-from coadjoint.derive import derive
+from coadjoint.derive import derive, interpret
+from coadjoint.errors import DerivationError
 from coadjoint.lower import kinks
 from coadjoint.lower.lowering import lower
 from coadjoint.prove.declaration import kernel_context
@@ -361,3 +362,40 @@ def test_a_run_that_was_broken_off_keeps_its_kinks(tmp_path, monkeypatch):
     found = system.simulate([0.5, 0], (0, 400), checkpoint=place, target="numpy")
     assert np.array_equal(found.kinks.rows, whole.kinks.rows)
     assert np.array_equal(found.state, whole.state)
+
+
+#: A bead that meets another one at rest, after Hertz.
+BEAD = """
+title = "A bead"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[hamiltonian]
+h = "p^2/2 + max(q, 0)^(5/2)"
+"""
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_bead_bounces_after_hertz(tmp_path, method):
+    """With E = 1/2 it is in touch for a time ``4/5 (1/2)^(2/5) B(2/5, 1/2)``, and flies back."""
+    system = system_of_spec(tmp_path, BEAD)
+    assert np.array_equal(system.rhs([[-1.0, 0.0, 4.0], [1.0] * 3])[1], [0.0, 0.0, -20.0])
+    touch = 0.8 * 0.5**0.4 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
+    step = {"step": 2.0**-10} if method == "rk4" else {}
+    found = system.simulate([-1, 1], (0, 4), method=method, **step)
+    assert found.status == "OK"
+    assert abs(found.final["p"] + 1) < 1e-6
+    assert abs(found.final["q"] + (4 - 1 - touch)) < 1e-6
+
+
+def test_powers_of_what_is_cut_off_need_no_positive_base(monkeypatch):
+    """Of ``max(x, 0)`` and ``abs(x)``, above 1; of others, and below, there is no real value."""
+    for written in ("max(q, 0)^(3/2)", "max(0, 1 - 2*q)^(7/3)", "abs(q + 1)^(5/2)"):
+        assert derive(spec(BEAD.replace("max(q, 0)^(5/2)", written)))
+    for written in ("max(q, 0)^(1/2)", "max(q, 1 - q^2)^(5/2)", "(q + max(q, 0))^(5/2)"):
+        with pytest.raises(DerivationError, match="not known to be positive"):
+            derive(spec(BEAD.replace("max(q, 0)^(5/2)", written)))
+    monkeypatch.setattr(interpret, "find_clamped", lambda base, field: None)
+    with pytest.raises(DerivationError, match="not known to be positive"):
+        derive(spec(BEAD))

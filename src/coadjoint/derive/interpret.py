@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from math import ceil
 from typing import Any, Final, cast
 
 from coadjoint.errors import DerivationError
@@ -274,6 +276,9 @@ def _power(base: Value, exponent: int, field: Field) -> Value:
 def _any_power(base: Element, exponent: Element, field: Field) -> Element:
     """A power with any exponent, of a base that is positive: ``exp(b*log(a))``.
 
+    ``max(x, 0)^(5/2)`` is ``max(x, 0)^2*exp(log(x^2)/4)``: its slope has a value on either side of
+    0, and so have its steps there, where a root of ``max(x, 0)`` has none.
+
     Raises:
         DerivationError: The base is not known to be positive.
     """
@@ -282,6 +287,10 @@ def _any_power(base: Element, exponent: Element, field: Field) -> Element:
     number = field.as_number(exponent)
     if number is not None and number.denominator == 1:
         return cast(Element, _power(base, int(number), field))
+    if number is not None and number > 1 and (clamped := find_clamped(base, field)) is not None:
+        whole = ceil(number) - 1
+        rest = (number - whole) / 2 * field.call("log", clamped.inside**2)
+        return base**whole * field.call("exp", rest)
     if sign(field, base) != 1:
         raise DerivationError(
             f"the base of a power with the exponent {element_text(field, exponent)} is "
@@ -292,6 +301,36 @@ def _any_power(base: Element, exponent: Element, field: Field) -> Element:
     if number is not None and number.denominator == 2:
         return cast(Element, _power(field.call("sqrt", base), int(2 * number), field))
     return field.call("exp", exponent * field.call("log", base))
+
+
+@dataclass(frozen=True)
+class Clamped:
+    """``max(x, 0)`` or ``abs(x)``.
+
+    Attributes:
+        inside: The x.
+        is_cut: Whether it is 0 where x is negative.
+    """
+
+    inside: Element
+    is_cut: bool
+
+
+def find_clamped(base: Element, field: Field) -> Clamped | None:
+    """A base as ``max(x, 0)`` or ``abs(x)``; None where it is something else."""
+    for name in sorted(field.names_in(base) & field.adjoined.keys()):
+        if field.adjoined[name].function != "sign":
+            continue
+        try:
+            parts = field.coefficients(base, name)
+        except ValueError:
+            continue
+        is_cut = 0 in parts
+        inside = 2 * parts[0] if is_cut else parts.get(1, field.zero)
+        size = _absolute(inside, field)
+        if field.is_zero(base - ((inside + size) / 2 if is_cut else size)):
+            return Clamped(inside, is_cut)
+    return None
 
 
 def _absolute(value: Element, field: Field) -> Element:

@@ -18,10 +18,11 @@ from typing import Any, Protocol, TypeVar, cast
 
 from coadjoint.algebra import LieAlgebra, Representation
 from coadjoint.algebra.matrices import SparseMatrix, size
-from coadjoint.derive.interpret import Value, entries, interpret
+from coadjoint.derive.interpret import Value, entries, find_clamped, interpret
 from coadjoint.derive.room import count_calls, count_room
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Condition, Element, Field, Region, dense
+from coadjoint.exact.text import element_text
 from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import FORMS
@@ -222,13 +223,36 @@ class Setting:
     def lagrangian(self) -> Element:
         """The declared Lagrangian, where the reader asks for one."""
         assert self.spec.lagrangian is not None, "the reader asks for a Lagrangian on this route"
-        return self.formula(self.spec.lagrangian)
+        return self._read_energy(self.spec.lagrangian)
 
     @cached_property
     def hamiltonian(self) -> Element:
         """The declared Hamiltonian, where the reader asks for one."""
         assert self.spec.hamiltonian is not None, "the reader asks for a Hamiltonian on this route"
-        return self.formula(self.spec.hamiltonian)
+        return self._read_energy(self.spec.hamiltonian)
+
+    def _read_energy(self, formula: Formula) -> Element:
+        """The value of a formula whose slopes are asked for.
+
+        Raises:
+            DerivationError: It has the root of ``max(x, 0)``, which is 0 where x is negative: its
+                slope has no value there.
+        """
+        field, value = self.field, self.formula(formula)
+        for name in sorted(field.functions_in(value)):
+            known = field.adjoined[name]
+            if known.function != "sqrt" or field.is_zero(known.argument):
+                continue
+            clamped = find_clamped(known.argument, field)
+            if clamped is not None and clamped.is_cut:
+                inside = element_text(field, clamped.inside)
+                problem = (
+                    f"sqrt(max(x, 0)) has no slope where x = {inside} is 0 or "
+                    "less, and the equations of motion need it; expected a power. Write "
+                    "max(x, 0)^(5/2) in the place of max(x, 0)^2*sqrt(max(x, 0))."
+                )
+                raise fault(self, formula, problem, formula.text)
+        return value
 
     def elements(self, names: Sequence[str]) -> tuple[Element, ...]:
         """The symbols of several names."""

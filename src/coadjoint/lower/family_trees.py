@@ -92,14 +92,16 @@ class Inserting:
         return below == divisor and other not in (node, self.graph.negate(node))
 
     def _power(self, factor: Tree) -> int:
-        """A factor, of which the exponent is positive and a multiple of 1/2."""
+        """A factor, of which the exponent is positive."""
         base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
         if exponent == 1:
             return self.node(factor)
-        assert (2 * exponent).is_Integer, factor
+        graph, node = self.graph, self.node(base)
+        if not (2 * exponent).is_Integer:
+            power = graph.multiply(self.node(exponent), graph.call("log", node))
+            return graph.call("exp", power)
         whole, half = divmod(int(2 * exponent), 2)
-        node = self.node(base)
-        return self.graph.product([node] * whole + [self.graph.call("sqrt", node)] * half)
+        return graph.product([node] * whole + [graph.call("sqrt", node)] * half)
 
 
 def _as_fraction(number: Tree) -> Fraction:
@@ -117,8 +119,7 @@ def _split(tree: Tree) -> tuple[Fraction, tuple[Tree, ...], tuple[Tree, ...]]:
     above, below = list[Tree](), list[Tree]()
     for factor in sympy.Mul.make_args(tree):
         base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
-        if base.is_Rational or base.is_NumberSymbol:
-            assert exponent.is_Integer, factor
+        if (base.is_Rational or base.is_NumberSymbol) and exponent.is_Integer:
             number *= _as_fraction(base) ** int(exponent)
         elif exponent.is_negative:
             below.append(base**-exponent)
