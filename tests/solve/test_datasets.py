@@ -85,6 +85,7 @@ def test_points_of_a_field_are_along_space():
     wave = kdv.simulate(None, (0, 0.01), samples=3)
     assert wave.to_xarray()["m"].dims == ("s", "time")
     assert "s" in wave
+    assert wave.to_xarray()["s"].units == wave.unit("s") == "1"
     assert "s" not in made()
     plane = euler_2d.simulate(None, (0, 0.1), samples=3).to_xarray()
     assert plane["w"].dims == ("x", "y", "time")

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from coadjoint.cli.simulate import find_start
-from coadjoint.solve.illustrate import _take_colours, describe
+from coadjoint.solve.illustrate import _has_colours_of_values, _take_colours, describe
 from coadjoint.solve.panels import COLOURS
+from coadjoint.solve.plot import draw
 from coadjoint.systems import (
     chaplygin_ball,
     euler_disk,
+    kdv,
     kepler,
     knife_edge_cvt,
     n_body,
@@ -53,6 +55,24 @@ def test_a_time_without_a_unit_is_a_number():
         find_start(knife_edge_cvt.system, ()), (0, 1), samples=20, progress=False
     )
     assert "over a time of 1, by" in describe(motion)
+
+
+def test_a_caption_tells_how_far_a_motion_came_and_why_it_stopped():
+    """Not how long it should have been."""
+    motion = rigid_body.simulate([1, 0.3, -0.8], (0, 4), samples=401, max_steps=3, progress=False)
+    assert motion.status == "MAX_STEPS"
+    assert f"over {motion.time_reached:.3g} s, by" in describe(motion)
+    assert "largest number of steps" in describe(motion)
+    whole = rigid_body.simulate([1, 0.3, -0.8], (0, 4), samples=41, progress=False)
+    assert "over 4 s, by" in describe(whole)
+    assert "stops" not in describe(whole)
+
+
+def test_values_as_colours_have_more_colours():
+    """Bars of a field would have steps; a path on a sphere has no such bar."""
+    wave = kdv.simulate(None, (0, 0.01), samples=3, progress=False)
+    assert _has_colours_of_values(draw(wave))
+    assert not _has_colours_of_values(draw(rigid_body.simulate([1, 0.3, -0.8], (0, 4), samples=9)))
 
 
 def test_lines_keep_their_colours_among_those_of_a_surface():

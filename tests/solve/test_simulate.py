@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.systems import chaplygin_sleigh, heavy_top, kirchhoff, rigid_body
+from coadjoint.systems import chaplygin_sleigh, heavy_top, kirchhoff, rigid_body, toda_lattice
 from tests.solve.systems import EMPTYING, POLE, STIFF, build
 
 #: Local errors of 1e-10 per step add up to less than this over the times below.
@@ -97,6 +97,9 @@ def test_a_start_that_is_left_out_is_that_of_the_spec():
         chaplygin_sleigh.rhs(named)
     with pytest.raises(KernelArgumentError, match="state lacks Pi1, Pi2, Pi3, Gamma1"):
         heavy_top.simulate(None, (0, 1))
+    with pytest.raises(KernelArgumentError, match=r"lacks q\[0\], .* and 188 more;") as caught:
+        toda_lattice.simulate(None, (0, 1))
+    assert len(caught.value.parts["found"]) == 200
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: Names of what is missing that a message lists at the most.
+MOST_NAMES = 12
+
 
 def check_call(
     system: System,
@@ -362,8 +365,9 @@ def _assemble(
     parts = {**defaults, **parts}
     missing = [component for component in quantities.components if component not in parts]
     if missing:
+        more = f" and {len(missing) - MOST_NAMES} more" * (len(missing) > MOST_NAMES)
         raise KernelArgumentError(
-            f"{name} lacks {', '.join(missing)}; expected a value of each. "
+            f"{name} lacks {', '.join(missing[:MOST_NAMES])}{more}; expected a value of each. "
             f"Pass them by name, e.g. {{{missing[0]!r}: 1.0}}.",
             found=missing,
         )

@@ -154,7 +154,7 @@ def _find_chain(solution: Solution, system: FamilySystem) -> Iterator[_Found]:
 
 def _find_field(solution: Solution, system: FamilySystem) -> Iterator[_Found]:
     """A vector of the same constant length at all points of a field."""
-    if not system.spheres or not system.length:
+    if not system.spheres or not system.lengths:
         return
     for name, quantity in system.STATE.items():
         if quantity.shape != (3, system.size):

@@ -103,18 +103,16 @@ def _add_space(
     if not isinstance(system, FamilySystem) or system.index.of_rows:
         return {}
     places = system.find_coordinates(solution.parameters)
+    sizes: dict[str, int | None] = {system.index.name: system.size}
     if system.torus is not None:
         sizes = dict(zip(system.torus.coordinates, system.torus.sizes, strict=True))
-        lengths = dict(zip(sizes, system.torus.lengths, strict=True))
-    else:
-        sizes, lengths = {system.index.name: system.size}, {system.index.name: system.length}
     found = {}
     for name, size in sizes.items():
         assert size is not None, system.name
         axis = name + "_" * (name in taken)
         found[axis] = size
         if name in places:
-            unit = system.PARAMETERS[lengths[name]].unit
+            unit = solution.unit(name)
             coordinates[axis] = (axis, places[name], {"units": unit})
         elif system.counted == "members":
             numbers = np.arange(size) + system.index.first_name

@@ -286,13 +286,15 @@ class FamilySystem(System):
         return "points" if is_field else "members"
 
     @property
-    def length(self) -> str:
-        """The parameter that is the length of the circle or line of fields; "" without one."""
-        lengths = (
+    def lengths(self) -> dict[str, str]:
+        """Of fields along a circle or a line, its length by the name of the coordinate."""
+        if self.torus is not None:
+            return dict(zip(self.torus.coordinates, self.torus.lengths, strict=True))
+        known = (
             *(self.profiles.lengths if self.profiles else ()),
             *(each.length for each in (self.spectral, self.symbol, *self.connections) if each),
         )
-        return "" if self.torus is not None or not lengths else lengths[0]
+        return {self.index.name: known[0]} if known else {}
 
     def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Where the points of fields stand, in units of the lengths, by the coordinates' names.
@@ -305,13 +307,13 @@ class FamilySystem(System):
         """
         import numpy as np
 
-        if not self.length:
-            return {}
-        lengths = np.unique(parameters[self.PARAMETERS.rows(self.length)])
-        if len(lengths) != 1:
-            return {}
-        places = [place for (place,) in self._list_places([float(lengths[0])])]
-        return {self.index.name: np.array(places)}
+        found = {}
+        for name, length in self.lengths.items():
+            lengths = np.unique(parameters[self.PARAMETERS.rows(length)])
+            if len(lengths) != 1:
+                return {}
+            found[name] = np.array([p for (p,) in self._list_places([float(lengths[0])])])
+        return found
 
     def _copy(self, index: Index, **changed: Any) -> Self:
         """The same for another index, and what else is changed."""

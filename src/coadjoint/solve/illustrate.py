@@ -26,6 +26,13 @@ RESOLUTION = 100
 #: Colours of it: with fewer, time along a path is seen in steps; 256 take a third more room, which
 #: colours over time and space need, since their bars would have steps.
 COLOURS, MANY_COLOURS = 64, 256
+#: Why a motion ends before its time, by its status.
+ENDS = {
+    "MAX_STEPS": "It stops at the largest number of steps.",
+    "STEP_UNDERFLOW": "It stops where no step is small enough.",
+    "NONFINITE": "It stops where its rates are not finite.",
+    "DOMAIN": "It stops where the system is no longer defined.",
+}
 
 
 def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
@@ -71,7 +78,8 @@ def _has_colours_of_values(figure: Any) -> bool:
     """Whether values over time or over space are drawn as colours."""
     from matplotlib.collections import QuadMesh
 
-    return any(isinstance(each, QuadMesh) for axes in figure.axes for each in axes.collections)
+    shown = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    return any(isinstance(each, QuadMesh) for axes in shown for each in axes.collections)
 
 
 def _take_colours(place: io.BytesIO, count: int = COLOURS) -> bytes:
@@ -113,6 +121,8 @@ def describe(solution: Solution, *others: Solution) -> str:
             "Each has a colour of its own."
         )
     lead = f"A motion with the default parameters over {span}, by the generated code."
+    if solution.status in ENDS:
+        lead += f" {ENDS[solution.status]}"
     return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
 
 

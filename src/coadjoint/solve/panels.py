@@ -139,7 +139,7 @@ def place_rows(solution: Solution) -> tuple[Array, str]:
     if places is None:
         counted = "member" if system.counted == "members" else "point"
         return np.arange(system.size, dtype=float), counted
-    unit = unit_label(system.PARAMETERS[system.length].unit)
+    unit = unit_label(solution.unit(system.index.name))
     return places, f"{system.index.name} {unit}".strip()
 
 
@@ -151,7 +151,7 @@ def _list_density(solution: Solution) -> Iterator[Rows]:
     density = find_densities(solution).get("energy")
     if density is None or not isinstance(system, FamilySystem):
         return
-    units = (system.OBSERVABLES["energy"].unit, system.PARAMETERS[system.length].unit)
+    units = (solution.unit("energy"), solution.unit(system.index.name))
     unit = "/".join(each for each in units if each != "1") if units[0] != "1" else ""
     unit = f"1/{units[1]}" if units[0] == "1" != units[1] else unit
     places, axis = place_rows(solution)

@@ -225,12 +225,14 @@ class Solution:
         )
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity or component, or of the time.
+        """The unit of a quantity or component, of the time, or of places along space.
 
         ``"1"`` if it is dimensionless, ``""`` if the spec does not tell.
         """
         if name in ("t", "time"):
             return self.system.unit_of_time
+        if name in self.system.lengths:
+            return str(self.system.PARAMETERS[self.system.lengths[name]].unit)
         return next(
             str(quantities.of_component(name).unit_of(name))
             for quantities, _ in self._tables

@@ -132,6 +132,11 @@ class System(Functions):
             found=list(sizes),
         )
 
+    @property
+    def lengths(self) -> dict[str, str]:
+        """The parameters that are lengths of space, by the coordinates of fields; none without."""
+        return {}
+
     def find_coordinates(self, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Where the points of fields stand, by the names of coordinates; none of what is no field.
 
