@@ -22,7 +22,7 @@ TODA = (derivations_folder() / "toda_lattice.toml").read_text()
         (HEAVY, NOISY, {*NOISY}),
         (CUBIC, NOISY, {"heun", "midpoint", "coadjoint_mean"}),
         (SHAKEN, NOISY, {"heun", "midpoint"}),
-        (SPRINGS, KEEPING, {"midpoint6"}),
+        (SPRINGS, KEEPING, {"discrete_gradient"}),
         (TODA, KEEPING, {"midpoint4", "splitting4"}),
         (VORTICES, KEEPING, {"midpoint"}),
     ],

@@ -257,7 +257,6 @@ SPOILED_STEPS = [
     ("sweep < 100", "sweep < 3", "midpoint"),
     ("++block->made[l];\n                const int small", "const int small", "midpoint"),
     ("block->accepted[l] && block->finite[l]", "block->accepted[l]", "midpoint"),
-    ("block->accepted[l] ? block->end[n + l] : x[n + l]", "block->end[n + l]", "midpoint"),
 ]
 
 
