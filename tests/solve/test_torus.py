@@ -223,3 +223,20 @@ def test_the_system_is_imported_without_what_few_runs_need():
     assert "32 x 32 points" in told
     assert {"coadjoint.solve.torus"} <= {*modules.split()}
     assert not {"numpy", "pydantic", "sympy", "scipy"} & {*modules.split()}
+
+
+def test_an_event_names_a_point_as_rows_do():
+    """Counted from 0 along both coordinates; a point that is none is refused."""
+    system = euler_2d.system.resize({"x": 16, "y": 12})
+    run = system.simulate(None, (0, 1), samples=9, method="scipy:DOP853", rtol=1e-9)
+    for place in ("w[3,5]", "w[0, 1]", "w[15,11]"):
+        row = system.STATE.rows(place.replace(" ", ""))
+        level = float(np.mean(run.state[row]))
+        options = {"samples": 2, "method": "scipy:DOP853", "rtol": 1e-9}
+        found = system.simulate(None, (0, 1), events=[f"{place} = {level!r}"], **options)
+        (event,) = found.events.values()
+        assert len(event.time) > 0
+        np.testing.assert_allclose(event.state[row], level, rtol=1e-7)
+    for place in ("w[16,0]", "w[0,12]", "w[3]"):
+        with pytest.raises(KernelArgumentError, match=r"no member .* 0, 0 to 15, 11"):
+            system.simulate(None, (0, 1), events=[f"{place} = 0"])

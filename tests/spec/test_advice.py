@@ -839,6 +839,7 @@ ELSEWHERE = {
     "Declare an angle, as theta = ": "test_followed.py",
     "Leave sizes out, or declare [index].": "test_windows.py",
     'Write [space] and below it s = { length = "L" }.': "test_space.py",
+    "Write derivatives = ": "test_space.py",
     "Remove the others.": "test_space.py",
     "Write x and y, so that w_xxy is a derivative.": "test_space.py",
     "Remove central.": "test_space.py",

@@ -216,6 +216,8 @@ def _list_members(quantities: Iterable[Any]) -> dict[str, Rows]:
 
     found: dict[str, Rows] = {}
     for each in quantities:
+        if each.shape and each.components[0].endswith("[0,0]"):  # of a plane, one component
+            found.setdefault(each.name, Rows(each.name, numbers=2))
         if each.shape and each.components[0].endswith("[0]"):
             found.setdefault(each.name, Rows(each.name))
             firsts = each.components[:: each.shape[-1]]

@@ -37,10 +37,12 @@ class Rows:
     Attributes:
         quantity: The quantity of all members that it belongs to.
         place: Which component it is, counted from 0; empty for all.
+        numbers: How many numbers a member has: two of a point of a plane, ``w[3, 5]``.
     """
 
     quantity: str
     place: tuple[int, ...] = ()
+    numbers: int = 1
 
 
 class Formula:
@@ -118,20 +120,26 @@ def _place_members(
 
 def _list_rows(node: tree.Index, rows: Rows, whole: Shape) -> tree.Node:
     """A component of a member, or a vector or matrix of them."""
-    (*shape, count), (member, *component) = whole, node.indices
-    if not 0 <= member < count:
-        problem = f"there is no member {member} of {node.name}"
-        raise fault_at(node, problem, expected=f"members 0 to {count - 1}")
+    shape, counts = whole[: -rows.numbers], whole[-rows.numbers :]
+    members, component = node.indices[: rows.numbers], node.indices[rows.numbers :]
+    told = ", ".join(map(str, members))
+    if len(members) < rows.numbers or any(
+        not 0 <= n < count for n, count in zip(members, counts, strict=True)
+    ):
+        problem = f"there is no member {told} of {node.name}"
+        most = ", ".join(str(count - 1) for count in counts)
+        first = ", ".join("0" for _ in counts)
+        raise fault_at(node, problem, expected=f"members {first} to {most}")
     given = (*rows.place, *(index - 1 for index in component))
     if len(given) > len(shape) or any(not 0 <= k < n for k, n in zip(given, shape, strict=False)):
         own = tuple(shape[len(rows.place) :])
-        problem = f"{node.name}[{member}] is {words(own)} and has no such component"
+        problem = f"{node.name}[{told}] is {words(own)} and has no such component"
         raise fault_at(node, problem, expected="components counted from 1")
     start, end = node.start, node.end
 
     def build(above: tuple[int, ...]) -> tree.Node:
         if len(above) == len(shape):
-            indices = tuple(index + 1 for index in (*above, member))
+            indices = tuple(index + 1 for index in (*above, *members))
             return tree.Index(name=rows.quantity, indices=indices, start=start, end=end)
         parts = tuple(build((*above, k)) for k in range(shape[len(above)]))
         function = "vector" if len(above) == len(shape) - 1 else "rows"
