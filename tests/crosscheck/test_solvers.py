@@ -1,5 +1,7 @@
 """The ladder of solvers: good ones pass, and each kind of spoiled one is caught by its rung."""
 
+import math
+import re
 from dataclasses import replace
 from decimal import Decimal
 from functools import cache
@@ -32,6 +34,7 @@ from coadjoint.crosscheck.solver_steps import (
 from coadjoint.crosscheck.solver_text import SolverTexts, check_solver_texts
 from coadjoint.crosscheck.solvers import _list_functions, check_solvers
 from coadjoint.crosscheck.subject import Subject
+from coadjoint.declared import Bound
 from coadjoint.derive import derive
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
@@ -859,3 +862,32 @@ def test_steps_near_constraints_are_compared_where_rates_have_kinks(monkeypatch)
     monkeypatch.setattr(solver_checks, "_list_functions", shorten)
     with pytest.raises(CrossCheckError, match="rung 4"):
         verify()
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "said"),
+    [
+        (
+            "rolling_apart",
+            "contact",
+            "the body is too large .* Take a smaller body",
+        ),
+        ("inside", "condition", "is not above 0; .* Give defaults at which it is"),
+    ],
+)
+def test_a_start_outside_of_the_domain_is_told(name, kind, said):
+    """Where no step can be compared it is why; a start inside is no reason."""
+    row, none = [-1.0], SimpleNamespace(values=list)
+    bounds = (Bound("y", "condition", True, ()), Bound(name, kind, True, ()))
+    own = SimpleNamespace(name="own", DOMAIN=bounds, STATE=none, PARAMETERS=none)
+    outside = SimpleNamespace(
+        programs={"domain": SimpleNamespace(state=())},
+        system=own,
+        points=SimpleNamespace(driving={}),
+        evaluate=lambda *given: np.array([[1.0], row]),
+    )
+    assert re.search(said, solver_steps.explain_start(outside))
+    for row[0] in (math.nan, 0.0):
+        assert solver_steps.explain_start(outside)
+    row[0] = 0.5
+    assert not solver_steps.explain_start(outside)

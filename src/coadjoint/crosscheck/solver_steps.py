@@ -39,6 +39,9 @@ from coadjoint.crosscheck.solver_exact import (
     find_steps,
 )
 from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, NEWTON, ORDER, list_choices
+from coadjoint.crosscheck.subject import Subject
+from coadjoint.errors import CrossCheckError
+from coadjoint.solve.domain import explain_bound
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
 
 #: Members of a run: more than lanes, and no multiple of them.
@@ -162,8 +165,41 @@ def _measure(
                     )
                 worst = max(worst, k)
     if not compared:
+        problem = explain_start(solvers.subject)
+        if problem:
+            raise CrossCheckError(problem, rung=4, system=solvers.subject.system.name)
         raise solvers.failure(4, f"no step of {method} was compared with 60 digits")
     return Figures(worst, 0.0, compared)
+
+
+def explain_start(subject: Subject) -> str:
+    """What is wrong with a declared start outside of the domain; "" where it is inside.
+
+    Far from it random points may be inside, and hardly any step from these is.
+    """
+    system = subject.system
+    tables = {"state": system.STATE, "parameters": system.PARAMETERS}
+    begin = {
+        name: np.concatenate(
+            [[], *(q.default or [0.0] * len(q.components) for q in table.values())]
+        )
+        for name, table in tables.items()
+    }
+    if "domain" not in subject.programs:
+        return ""
+    rows = len(subject.programs["domain"].state)
+    driving = {name: np.zeros((count, 1)) for name, count in subject.points.driving.items()}
+    start = {name: values[:, np.newaxis] for name, values in begin.items()} | driving
+    values = subject.evaluate("domain", Batch({**start, "state": start["state"][:rows]}), "numpy")
+    for bound, value in zip(system.DOMAIN, values[:, 0].tolist(), strict=True):
+        if not (value > 0 or (value == 0 and not bound.strict)):
+            problem, advice = explain_bound(bound)
+            return (
+                f"rung 4: {system.name}: the declared start is outside of the domain, and no step "
+                f"was found that could be compared: {problem}; expected a start inside. "
+                f"{advice[0].upper()}{advice[1:]}."
+            )
+    return ""
 
 
 def _is_whole(ensemble: Ensemble, member: int) -> bool:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from coadjoint.declared import Bound
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
 
@@ -48,6 +49,14 @@ _SMALLER = (
     "take a smaller body, as a ball whose radius is less than the radii of curvature of the "
     "surface there, a wider surface, or a state on the other side of it"
 )
+
+
+def explain_bound(bound: Bound) -> tuple[str, str]:
+    """What is wrong where a bound does not hold, and what to do, in a system at large."""
+    if bound.kind == "contact":
+        return _CONTACT[bound.name][0].removesuffix(","), _SMALLER
+    what = f"the {bound.label} is not {'above 0' if bound.strict else '0 or more'}"
+    return what, "give defaults at which it is"
 
 
 @dataclass(frozen=True)
