@@ -85,8 +85,29 @@ p = { role = "momentum", of = "q", default = 1 }
 [hamiltonian]
 h = "p^2/2 + max(q, 0)^2*sqrt(max(q, 0))"
 """
+#: Shortest curves of Heisenberg's group, whose third velocity costs nothing.
+HEISENBERG = """
+title = "Heisenberg's group"
+routes = ["euler-poincare"]
+[algebra]
+name = "h(1)"
+[variables]
+xi = { role = "velocity" }
+mu = { role = "momentum" }
+[lagrangian]
+l = "(xi1^2 + xi2^2)/2"
+"""
 #: A spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
+    (
+        HEISENBERG,
+        [],
+        "write [constraints] with xi3 == 0 and variational = true, and take the route lie-poisson.",
+        [
+            ("euler-poincare", "lie-poisson"),
+            ("[lagrangian]", '[constraints]\nflat = "xi3 == 0"\nvariational = true\n[lagrangian]'),
+        ],
+    ),
     (
         BEAD,
         [],

@@ -110,9 +110,73 @@ def of_unit(text):
     return write(MOMENTUM, f'{MOMENTUM}, unit = "{text}"')
 
 
+#: Masses that the next one pulls, also the last one.
+PUSHED = """
+title = "A row of masses"
+routes = ["canonical"]
+[index]
+i = { size = 5 }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[hamiltonian]
+h = "sum(i, p[i]^2/2)"
+[forces]
+p = "q[i+1] - q[i]"
+"""
+NOISY_VELOCITY = """
+title = "A ball that turns"
+routes = ["nonholonomic"]
+[algebra]
+name = "so(3)"
+[variables]
+Omega = { role = "velocity" }
+[lagrangian]
+l = "dot(Omega, Omega)/2"
+[noise]
+dW = "Omega1"
+"""
+#: A top on a submanifold of which one component is told.
+RESTRICTED = """
+title = "A top"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum" }
+Gamma = { role = "advected", representation = "vector" }
+[hamiltonian]
+h = "dot(Pi, Pi)/2 + Gamma3"
+[reduction]
+section = { Pi1 = "Gamma1" }
+where = ["Pi1 - Gamma1"]
+"""
+
 #: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
 ADVICE = [
     *INDEXED,
+    (
+        RESTRICTED,
+        [],
+        "A section gives whole variables: write all components as one vector.",
+        [('Pi1 = "Gamma1"', 'Pi = "vector(Gamma1, Gamma2, Gamma3)"')],
+    ),
+    (
+        PUSHED,
+        [],
+        "A ring has such a neighbour: write periodic = true in [index] i.",
+        write("size = 5", "size = 5, periodic = true"),
+    ),
+    (
+        NOISY_VELOCITY,
+        [],
+        "Declare momenta and take a route that moves them, or remove [noise].",
+        [
+            ("nonholonomic", "euler-poincare"),
+            ("[lagrangian]", 'Pi = { role = "momentum" }\n[lagrangian]'),
+            ('"Omega1"', '"Pi1"'),
+        ],
+    ),
     # -- units
     (
         RIGID_BODY,

@@ -155,7 +155,10 @@ def _find_obstacles(file: Any, route: str) -> Iterator[_Obstacle]:
                 {"constraints"} if start.is_hamiltonian else set()
             )
         if table.acts and getattr(file, table.key) and table.key not in options:
-            yield _Obstacle(f"does not accept [{table.key}]", cure=f"remove [{table.key}]")
+            cure = f"remove [{table.key}]"
+            if table.key == "noise" and start.in_frame:
+                cure = f"declare momenta and take a route that moves them, or {cure}"
+            yield _Obstacle(f"does not accept [{table.key}]", cure=cure)
 
 
 def _moves_first_order(route: Route) -> bool:

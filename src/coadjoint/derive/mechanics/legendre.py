@@ -341,6 +341,10 @@ def _singular(setting: Setting, matrix: Matrix, names: list[str]) -> DerivationE
         remedy += f"{' and '.join(names)}.{tell_constraints(mechanics(setting))}"
         if setting.spec.algebra is None:
             remedy += " Or take the route first-order, without the momenta that these are of."
+        elif setting.spec.having_role("momentum") and not setting.spec.constraints:
+            zero = ", ".join(f"{name} == 0" for name in names)
+            remedy += " Or, of curves that are shortest within constraints, write [constraints] "
+            remedy += f"with {zero} and variational = true, and take the route lie-poisson."
     else:
         problem = "the Legendre transform may be invertible nowhere: no point was found at which "
         problem += f"{what} is certainly not 0"

@@ -331,7 +331,12 @@ def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Membe
     if at is None:
         problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
         expected = f"members {members.first} to {members.last}"
-        raise fault_at(node, problem, str(numbers[0]), expected, _tell_count(members))
+        hint = _tell_count(members)
+        if isinstance(node, Member) and node.index:  # of member i, and so of each
+            problem = f"{name}[{node.index}{node.shift:+d}] lies beyond the end of the chain"
+            problem += " for some members"
+            hint = f"A ring has such a neighbour: write periodic = true in [index] {members.index}."
+        raise fault_at(node, problem, str(numbers[0]), expected, hint)
     own = member_name(name, at + (0 if members.from_zero else members.first))
     if numbers[1:]:
         return Index(name=own, indices=numbers[1:], within=node.within, **where)

@@ -105,6 +105,8 @@ def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]
         problem = f"{name!r} {kind}"
         expected = f"one of {list_names(n for n, v in known.items() if not v.form)}"
         hint = did_you_mean(name, known)
+        if any(name in variable.components for variable in known.values()):
+            hint = "A section gives whole variables: write all components as one vector."
         raise reading.at_key(("reduction", "section", name), problem, name, expected, hint)
 
 
