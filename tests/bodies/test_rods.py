@@ -323,6 +323,7 @@ WHOLE = (
         '[definitions]\nOmega = "vector(xi[1], xi[2], xi[3])"\nv = "vector(xi[4], xi[5], xi[6])"\n',
     ),
     ("dot(Pi, k) + dot(P, e)", "dot(mu, X)"),
+    ('Pi = "vector(0, 0, 0)"\nP  = "vector(0, 0, 0)"\n', 'mu = "vector(0, 0, 0, 0, 0, 0)"\n'),
 )
 
 

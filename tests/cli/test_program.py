@@ -77,7 +77,7 @@ def test_wrong_input_exits_with_2_and_names_itself(run, words, offending):
 
 def test_unknown_system_suggests_the_nearest(run):
     """The message names what there is."""
-    assert "Did you mean 'heavy_top'?" in run("show", "heavy_tpo").stderr
+    assert "Did you mean 'heavy_top'" in run("show", "heavy_tpo").stderr
 
 
 def test_streams_are_kept_apart(process):

@@ -208,7 +208,7 @@ MUTANTS = (
         "solve/strands",
         "_magnus: rewrite last - first -> first - last",
         "_magnus: rewrite b + two -> b - two",
-        "transport: rewrite step @ frames[n] -> frames[n] @ step",
+        "_multiply: rewrite step @ frames[n] -> frames[n] @ step",
         tests=("tests/solve/test_strands.py -k 'solves or order'",),
     ),
     *of("algebra/matrices", "commutator: flip 1"),

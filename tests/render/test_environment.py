@@ -34,7 +34,12 @@ def test_every_kernel_template_is_rendered():
     methods = (*STRUCTURED.values(), *PLAIN.values())
     parts = {header.TEMPLATE} | {f"c/methods/{each.file}.c.j2" for each in methods}
     parts |= {"c/methods/lie_poisson.c.j2", "c/methods/isospectral_midpoint.c.j2"}
-    parts |= {"c/methods/dop853_tables.c.j2", "c/methods/gauss_tables.c.j2", "c/normals.c.j2"}
+    parts |= {
+        "c/methods/dop853_tables.c.j2",
+        "c/methods/gauss_tables.c.j2",
+        "c/normals.c.j2",
+        "c/head.j2",
+    }
     parts |= {"c/methods/sequence.c.j2", "c/methods/gradients.c.j2", "c/methods/spheres.c.j2"}
     own = ("steps", "gradients", "kinks")  # of family_solver.c.j2
     parts |= {f"c/methods/family_{each}.c.j2" for each in own}

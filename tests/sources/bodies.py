@@ -244,15 +244,14 @@ def so_n_rates(state: Vector, parameters: Vector) -> list[Any]:
 
 
 def so_n_observables(state: Vector, parameters: Vector) -> dict[str, Any]:
-    """``-tr(M Omega)/4``, the sum of squares, ``tr M^4`` up to n = 6 and the Pfaffian for n = 6."""
+    """``-tr(M Omega)/4``, the sum of squares, ``tr M^4`` and the Pfaffian for n = 6."""
     size, velocity = len(parameters), so_n_velocity(state, parameters)
     M = antisymmetric(state, size)
     found = {
         "energy": sum(m * w for m, w in zip(state, velocity, strict=True)) / 2,
         "casimir1": sum(m**2 for m in state),
+        "casimir2": sum(x**2 for row in product(M, M) for x in row),
     }
-    if size < 8:
-        found["casimir2"] = sum(x**2 for row in product(M, M) for x in row)
     if size == 6:
         found["casimir3"] = pfaffian(M)
     return found

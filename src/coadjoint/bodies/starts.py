@@ -84,7 +84,7 @@ def find_starts(strand: Strand, bodies: int) -> Starts:
         if each.name in spec.profiles
     }
     if strand.strain.name not in spec.profiles:
-        return Starts(fields)
+        return Starts(fields=fields)
     links = bodies - 1 if space.ends == "free" else pieces  # a free chain has one less than a ring
     frames, rise = _find_frames(strand, pieces, links, first)[:, :3], 0.0
     one = np.eye(*frames[0].shape)
@@ -95,14 +95,14 @@ def find_starts(strand: Strand, bodies: int) -> Starts:
         hint = f'Or write ends = "free" or "clamped" in [space], {space.name}.'
         raise refuse(spec, problem, expected, hint)
     if gap > CLOSED:
-        return Starts(fields, None, gap)
+        return Starts(fields=fields, gap=gap)
     if strand.is_rod and not space.has_ends:
         frames, rise = _straighten(frames, _length_of(strand))
     if np.abs(frames - one).max() <= CLOSED:
-        return Starts(fields, rise=rise)
+        return Starts(fields=fields, rise=rise)
     if is_clamped:
-        return Starts(fields, frames[1:-1], wall=frames[-1])
-    return Starts(fields, frames[:bodies], rise=rise)
+        return Starts(fields=fields, attitudes=frames[1:-1], wall=frames[-1])
+    return Starts(fields=fields, attitudes=frames[:bodies], rise=rise)
 
 
 def _straighten(frames: Array, length: float) -> tuple[Array, float]:

@@ -217,6 +217,8 @@ def find_series_obstacle(
     if isinstance(system, FamilySystem):
         if stepwise and stepwise != system.stepwise:
             return f"it needs rates of all orders, and {stepwise}"
+        if is_auto and "kinks" in system.functions and system.series.value("BRANCHES"):
+            return "its rates have roots at kinks, and at a kink no series"
         order = choose_order(rtol, of_waves=is_of_waves(system))
         return tell_series_obstacle(system, order, members, is_auto=is_auto)
     return f"it needs rates of all orders, and {stepwise}" if stepwise else ""

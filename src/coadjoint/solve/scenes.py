@@ -120,7 +120,8 @@ def _find_links(solution: Solution) -> Paths | None:
     angles, lengths, names, unit = pendulum
     turned = np.stack([np.asarray(solution[name]) for name in angles])  # (links, T)
     ends = lengths[:, None, None] * np.stack([np.sin(turned), -np.cos(turned)], axis=1)
-    return Paths(names, unit, np.cumsum(ends, axis=0), labels=angles, linked=True)
+    masses = np.cumsum(ends, axis=0)
+    return Paths(names=names, unit=unit, members=masses, labels=angles, linked=True)
 
 
 def _find_orbit(solution: Solution) -> Paths | None:
@@ -135,7 +136,7 @@ def _find_orbit(solution: Solution) -> Paths | None:
     steps = np.diff(size)
     one_way = bool((steps >= 0).all() or (steps <= 0).all())
     radii = (float(size[0]), float(size[-1])) if one_way and size.min() > 0 else ()
-    return Paths(quantity.components, quantity.unit, values[None], radii=radii)
+    return Paths(names=quantity.components, unit=quantity.unit, members=values[None], radii=radii)
 
 
 def _is_central(solution: Solution, name: str) -> bool:
@@ -263,7 +264,8 @@ def _find_members(solution: Solution) -> tuple[Sphere, ...]:
         if quantity.shape == (3, system.size) and _have_one_length(paths):
             first = system.index.first_name
             labels = tuple(f"{name}[{first + n}]" for n in range(system.size))
-            return (Sphere(symbol_label(name), quantity.unit, paths, labels),)
+            symbol = symbol_label(name)
+            return (Sphere(symbol=symbol, unit=quantity.unit, paths=paths, labels=labels),)
     return ()
 
 
@@ -281,7 +283,7 @@ def _find_halves(solution: Solution) -> tuple[Sphere, ...]:
         if not (_have_one_length(path[None]) and _moves(path)):
             return ()
         symbol = f"{symbol_label(first.name)} {sign} {symbol_label(second.name)}"
-        spheres.append(Sphere(symbol, first.unit, path[None]))
+        spheres.append(Sphere(symbol=symbol, unit=first.unit, paths=path[None]))
     return tuple(spheres)
 
 
