@@ -595,11 +595,9 @@ MUTANTS = (
     ),
     *of(
         "prove/declaration",
-        "find_connections: flip field",
-        "find_connections: omit field",
-        "find_connections: omit value",
+        "_tell_matrix: omit part",
+        "_tell_matrix: omit value",
         "find_connections: rewrite spec.lax is not None and _1 -> spec.lax is not None",
-        "find_connections: rewrite all(_1) -> True",
         "find_connections: use setting for spec in invariance",
         "find_connections: rewrite spec.invariance -> 'right'",
         "find_connections: rewrite size(matrices) -> len(matrices)",

@@ -116,7 +116,8 @@ def read_strand(spec: Spec) -> Strand:
     moved = {name for each in (*momenta, *advected) for name in each.components}
     _check_names(spec, field, energy, (*moved, *strain.components))
     monomials = dict(_list_monomials(spec, field, energy, strain.components))
-    own = monomials.pop((0,) * len(strain.components), field.zero)
+    still = (0,) * len(strain.components)
+    own = monomials.pop(still, field.zero)
     together = {n for factor in monomials.values() for n in field.reach(factor) & moved}
     if together:
         is_of_momenta = together & {name for each in momenta for name in each.components}
@@ -125,7 +126,7 @@ def read_strand(spec: Spec) -> Strand:
         hint = f"{kind.capitalize()} are those of bodies, and strains stand between them."
         raise refuse(spec, problem, f"a function of {kind} and one of strains, added", hint)
     if monomials and (constant := _find_constant(spec, field, own, sorted(moved))):
-        monomials[(0,) * len(strain.components)] = constant
+        monomials[still] = constant
         own -= constant
     return Strand(
         spec=spec,
