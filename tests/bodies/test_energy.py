@@ -173,7 +173,7 @@ def test_the_certificate_proves_jacobi_and_the_total_momentum(old, new, holds):
 
 
 def test_a_right_invariant_chain_keeps_momenta_in_body_axes():
-    """And vectors that it advects; in axes of space momenta change: claimed, they are refuted."""
+    """In axes of space they change: claimed, they are refuted."""
     alike = (STIFF, "- dot(Xi, Xi)/2")
     text, total = write_lattice(strand(('"left"', '"right"'), alike), 16), "transpose(R[i])*Pi[i]"
     for old, new, verdict in (("", "", "proved"), (total, "R[i]*Pi[i]", "refuted")):
@@ -182,6 +182,10 @@ def test_a_right_invariant_chain_keeps_momenta_in_body_axes():
         claims = prove_claims(declared).claims
         (kept,) = (each.verdict for each in claims if each.statement.startswith("J is conserved"))
         assert kept == verdict
+
+
+def test_vectors_that_a_right_invariant_chain_advects_stay_in_body_axes():
+    """Each is proved to, by its components."""
     tops = lattice_of(strand(('"left"', '"right"'), *TOPS), 4)
     certificate = prove_claims(tops)
     assert certificate.holds, str(certificate)
