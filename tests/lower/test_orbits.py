@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from coadjoint.lower import orbits
 from coadjoint.lower.orbits import find_spheres, is_bracket, stays_on_orbits
 from coadjoint.lower.program import Add, Divide, Multiply, Negate, Symbol
 from coadjoint.methods import ACTION, STRUCTURED, Sphere, list_structured
@@ -46,11 +47,19 @@ def test_spheres_are_those_of_the_algebra(system):
         ("quadrotor", "thrust"),
         ("stochastic_rigid_body", "noise"),
         ("chaplygin_ball", "constraints"),
+        ("suslov_so5", "a linear bracket without the identity of Jacobi"),
     ],
 )
 def test_other_motions_do_not_stay_on_orbits(system, why):
-    """Neither where something is added to the bracket, nor where it is not linear."""
+    """Neither where something is added to the bracket, nor where no Lie algebra has it."""
     assert not stays_on_orbits(lowered(system)), why
+
+
+def test_the_identity_of_jacobi_alone_refuses_a_bracket(monkeypatch):
+    """Of linear almost-Poisson brackets one has it, `chaplygin_sleigh`, and one has not."""
+    assert stays_on_orbits(lowered("chaplygin_sleigh"))
+    monkeypatch.setattr(orbits, "_is_of_lie_algebra", lambda programs: True)
+    assert stays_on_orbits(lowered("suslov_so5"))
 
 
 @pytest.mark.parametrize("system", ["euler_disk", "rattleback", "kepler", "guiding_centre"])

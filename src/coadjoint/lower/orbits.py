@@ -55,7 +55,41 @@ def stays_on_orbits(programs: Mapping[str, Program]) -> bool:
     Args:
         programs: The functions of a kernel by name.
     """
-    return {*ACTION} <= programs.keys() and _is_linear(programs) and is_bracket(programs)
+    if not ({*ACTION} <= programs.keys() and _is_linear(programs) and is_bracket(programs)):
+        return False
+    return _is_of_lie_algebra(programs)
+
+
+def _is_of_lie_algebra(programs: Mapping[str, Program]) -> bool:
+    """Whether a linear bracket obeys the identity of Jacobi, at a point modulo primes.
+
+    Those of motions with constraints may not, and then there is no group that acts. The product of
+    vectors is ``[v, w]_k = v . L(e_k) w``, L the tensor, so that x of it is ``v . L(x) w``.
+    """
+    bracket, state = programs["bracket_vector"], programs["rhs"].state
+    places, turned = range(len(state)), bracket.state[len(state) :]
+    others = {*bracket.names} - {*state, *turned}
+    drawn = {letter: [f"{letter}[{k}]" for k in places] for letter in "xuvw"}
+
+    def find(at: dict[str, Residue], number: Callable[..., Residue]) -> Iterator[Residue]:
+        x, u, v, w = ([at[name] for name in names] for names in drawn.values())
+        given = {name: at[name] for name in others}
+        units = [[number(int(k == place)) for k in places] for place in places]
+
+        def act(point: Sequence[Residue], on: Sequence[Residue]) -> list[Residue]:
+            names = dict(zip((*state, *turned), (*point, *on), strict=True))
+            return list(run(bracket, given | names, number, call_modulo))
+
+        def multiply(one: Sequence[Residue], other: Sequence[Residue]) -> list[Residue]:
+            return [dot(one, act(unit, other)) for unit in units]
+
+        def dot(one: Sequence[Residue], other: Sequence[Residue]) -> Residue:
+            return sum((a * b for a, b in zip(one, other, strict=True)), number(0))
+
+        cycle = ((u, v, w), (v, w, u), (w, u, v))
+        yield sum((dot(a, act(x, multiply(b, c))) for a, b, c in cycle), number(0))
+
+    return vanish(find, [*others, *(name for names in drawn.values() for name in names)])
 
 
 def _is_linear(programs: Mapping[str, Program]) -> bool:
