@@ -122,7 +122,8 @@ def go_back(runs: Runs, method: str, signs: Any) -> tuple[float, float]:
             state, (start, start + longest), method=method, step=runs.step, samples=1,
             target=runs.find_target(method), progress=False,
         )  # fmt: skip
-        state = signs[:, np.newaxis] * found.state[..., -1]
+        ended = np.where(np.asarray(found.status) == "OK", found.state[..., -1], np.nan)
+        state = signs[:, np.newaxis] * ended
         sizes.append(np.abs(state).max(axis=0))
     off = np.abs(state - runs.states).max(axis=0) / sizes[0]
     return float(np.nanmax(off)), float(np.nanmax(sizes / sizes[0]))

@@ -18,6 +18,7 @@ from coadjoint.systems import (
     euler_disk,
     hunter_saxton,
     rigid_body,
+    rolling_ellipsoid,
     so8_body,
     stochastic_rigid_body,
     suslov,
@@ -181,3 +182,17 @@ def test_fields_with_conditions_begin_where_these_hold(system):
     anywhere = runs.states + 0.01 * np.random.default_rng(1).uniform(size=runs.states.shape)
     with pytest.raises(KernelArgumentError):
         runs.run("midpoint", runs.step, 1, anywhere)
+
+
+def test_members_that_leave_the_domain_tell_no_order():
+    """They end where they leave it, between steps, which would be read as an order of 4."""
+    system = rolling_ellipsoid.system
+    runs = self_check.Runs(system, 4)
+    drawn = runs._draw([np.array(self_check._fill(each)) for each in system.STATE.values()])
+    given = {"method": "rk4", "step": runs.step, "samples": 1, "target": "numpy"}
+    found = system.simulate(drawn, (0, 8 * runs.step), progress=False, **given)
+    left = np.asarray(found.status) != "OK"
+    assert left.any()
+    assert np.isfinite(found.state[..., -1]).all()
+    assert np.array_equal(np.isnan(runs.run("rk4", runs.step, 8, drawn)).all(axis=0), left)
+    np.testing.assert_array_equal(runs.states, drawn[:, ~left])

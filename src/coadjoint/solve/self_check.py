@@ -242,9 +242,9 @@ class Runs:
         return np.stack([np.asarray(turn(state, e, **self.at)) for e in np.eye(len(state))], axis=1)
 
     def run(self, method: str, step: float, count: int, states: Array) -> Array:
-        """States after so many steps; NaN where they were not reached."""
+        """States after so many steps; NaN where they were not reached, as beyond the domain."""
         found = self._simulate(method, step, count, states, samples=1)
-        return np.asarray(found.state[..., -1])
+        return np.where(np.asarray(found.status) == "OK", found.state[..., -1], np.nan)
 
     def follow_paths(self, method: str, part: int) -> Array:
         """Ends of paths of one noise by steps of a part of the step, a quarter at the least."""
