@@ -177,6 +177,8 @@ def explain_start(subject: Subject) -> str:
 
     Far from it random points may be inside, and hardly any step from these is.
     """
+    if "domain" not in subject.programs:
+        return ""
     system = subject.system
     tables = {"state": system.STATE, "parameters": system.PARAMETERS}
     begin = {
@@ -185,8 +187,6 @@ def explain_start(subject: Subject) -> str:
         )
         for name, table in tables.items()
     }
-    if "domain" not in subject.programs:
-        return ""
     rows = len(subject.programs["domain"].state)
     driving = {name: np.zeros((count, 1)) for name, count in subject.points.driving.items()}
     start = {name: values[:, np.newaxis] for name, values in begin.items()} | driving

@@ -237,7 +237,7 @@ def _split_word(base: str) -> tuple[str, list[str]]:
 def _write_below(words: str) -> Written:
     """What a word below a letter is, which may be a velocity or momentum of an angle itself.
 
-    Letters alone, as of derivatives, stand beside each other: ``psi_x_x``.
+    Letters alone, as of a second derivative by x, stand beside each other.
     """
     if re.fullmatch("[A-Za-z](_[A-Za-z])+", words):
         letters = words.split("_")

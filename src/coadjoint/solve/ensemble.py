@@ -364,7 +364,7 @@ class Ensemble:
     def _take_left(
         self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
     ) -> None:
-        """Keep what a step that was accepted leaves, and count sweeps, in vain or not.
+        """Keep what a step that was accepted leaves, and count the sweeps of all steps.
 
         What moves a state onto constraints is no rounding, and there the sums begin anew.
         """

@@ -272,8 +272,8 @@ def _draw_fan(axes: Any, solution: Solution, name: str) -> None:
 
 def _add_bar(axes: Any, colours: Any, label: str) -> None:
     """What colours mean, in the margin at the right."""
-    beside = axes.inset_axes((1.015, 0.0, 0.018, 1.0))
-    bar = axes.figure.colorbar(colours, cax=beside)
+    margin = axes.inset_axes((1.015, 0.0, 0.018, 1.0))
+    bar = axes.figure.colorbar(colours, cax=margin)
     bar.set_label(label, fontsize=8, rotation=0, ha="left", va="center")
     bar.ax.tick_params(labelsize=7)
     bar.ax.yaxis.get_major_locator().set_params(nbins=4)

@@ -405,7 +405,7 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
         longer = runs.run(method.name, first * 2**power, count >> power, runs.states)
         ends = [longer, *ends[:2]]
         order, _ = _compare(ends)
-        if order is not None:  # steps that are too long say nothing: a fault would have been seen
+        if order is not None:  # shorter steps of a lower order would have left more than roundings
             return (order if order > method.order - SHY else None), True
     for part in LATER:
         if order is None or order > method.order - SHY:
