@@ -627,9 +627,9 @@ MUTANTS = (
     ),
     *of(
         "solve/methods/lie_poisson",
-        "keep_offset: rewrite first - kept[1] -> first",
-        "continue_offset: rewrite first + second -> first",
-        tests=("tests/solve/test_clock.py -k 'differences or last_ones'",),
+        "keep_offset: rewrite kept[:-1] -> kept[1:]",
+        "continue_offset: rewrite last - before -> last + before",
+        tests=("tests/solve/test_clock.py -k 'last_three or last_ones'",),
     ),
     *of(
         "algebra/planes",

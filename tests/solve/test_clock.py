@@ -13,6 +13,7 @@ from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.methods.gauss import Gauss
 from coadjoint.solve.methods.lie_poisson import (
+    continue_offset,
     EXACT,
     FEW_ROWS,
     FREE,
@@ -125,14 +126,16 @@ def test_searches_begin_where_the_last_ones_lead() -> None:
     assert abs(cold - warm).max() < 4e-16
 
 
-def test_differences_are_those_of_the_offsets() -> None:
-    """0 and 1 are no differences; from the third offset on there are two of them."""
+def test_the_last_three_offsets_are_kept_and_continued() -> None:
+    """The newest one first; from the third one on the next is that of their parabola."""
     kept = np.zeros((3, 1, 1))
-    rows = []
+    rows, following = [], []
     for value in (2.0, 5.0, 9.0, 14.0):
         kept = keep_offset(kept, np.full((1, 1), value)).reshape(kept.shape)
         rows.append(kept.ravel().tolist())
-    assert rows == [[2, 0, 0], [5, 3, 0], [9, 4, 1], [14, 5, 1]]
+        following.append(float(continue_offset(kept)[0, 0]))
+    assert rows == [[2, 0, 0], [5, 2, 0], [9, 5, 2], [14, 9, 5]]
+    assert following[2:] == [14.0, 20.0]
 
 
 def test_a_compensated_sum_is_that_of_fractions() -> None:

@@ -136,6 +136,28 @@ def test_a_member_has_the_same_bits_in_any_company(target):
     assert np.array_equal(whole[:, 7], alone)
 
 
+@pytest.mark.parametrize("method", ["midpoint", "spherical_midpoint", "gauss4"])
+def test_steps_by_as_many_sweeps_as_most_have_the_same_bits(method):
+    """Of bodies of which some need many more than others, through changes of what most need.
+
+    C sweeps on after the sweep that changes nothing, and makes some steps again whose sweeps were
+    too few. Shorter steps need less, so that it has to come down, and counts show that it does.
+    """
+    start = TURNING[:, np.newaxis] * np.linspace(0.1, 1.4, 70)
+    more = {}
+    for step, count in ((0.125, 700), (0.0078125, 1500)):
+        options = {"method": method, "step": step, "samples": 7}
+        one, other = (
+            rigid_body.simulate(start, (0, step * count), FREE, target=t, **options)
+            for t in ("c", "numpy")
+        )
+        assert (one.status == "OK").all()
+        assert np.array_equal(one.state, other.state)
+        assert (one.sweeps >= other.sweeps).all()
+        more[step] = float(np.max(one.sweeps / other.sweeps.max()))
+    assert max(more.values()) < 1.25
+
+
 def test_a_step_that_is_not_solved_ends_its_member_alone():
     """The member that turns fast has no solution that sweeps find; the others come to the end."""
     start = TURNING[:, np.newaxis] * np.array([1.0, 40.0, 0.5])

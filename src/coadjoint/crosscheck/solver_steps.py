@@ -325,7 +325,9 @@ def check_bits(
                 raise solvers.failure(
                     5, f"{method}: {name} has the shape {one.shape} in NumPy, {other.shape} in C"
                 )
-            different = np.argwhere(find_differing_bits(one, other))
+            # C may sweep on after the sweep that changes nothing, and counts that
+            differs = other < one if name == "sweeps" else find_differing_bits(one, other)
+            different = np.argwhere(differs)
             if len(different):
                 place = tuple(different[0].tolist())
                 raise solvers.failure(

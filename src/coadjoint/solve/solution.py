@@ -142,7 +142,10 @@ class Solution:
 
     @property
     def sweeps(self) -> Any:
-        """Sweeps that solved implicit steps, of a batch an array; None of explicit ones."""
+        """Sweeps of implicit steps, of a batch an array; None of explicit ones.
+
+        Members that C computes together may have some more than each of them needs.
+        """
         return None if self.course.sweeps is None else self.course.sweeps[()]
 
     @property

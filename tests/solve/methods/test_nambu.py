@@ -81,10 +81,10 @@ def test_other_methods_move_them(quartic):
 
 @pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 def test_c_and_numpy_have_the_same_bits(quartic):
-    """Of all states at samples."""
+    """Of all states at samples; C may go on after the sweep that changes nothing."""
     one, other = (follow(quartic, "nambu_gradient", target) for target in ("c", "numpy"))
     assert np.array_equal(one.state, other.state)
-    assert one.sweeps == other.sweeps > 80
+    assert 13 * one.steps > one.sweeps >= other.sweeps > 80
 
 
 @pytest.mark.parametrize(("method", "order"), [("nambu_gradient", 2), ("nambu_gradient4", 4)])

@@ -9,7 +9,7 @@ number of the step. Newton's method takes the place of sweeps alone where it is 
 (`coadjoint.solve.methods.newton`, and for equal members `coadjoint.solve.methods.bands` and
 `coadjoint.solve.methods.krylov`). What a
 step leaves for the next one stands in its memory: rows of what rounding took of the state, and for
-each search the last offset of the middle from the state with its first and second difference.
+each search the last offsets of the middle from the state, the newest one first.
 Comes in: where members are. Goes out: where a step of each leads.
 Read next: `coadjoint.solve.methods.coadjoint_mean`.
 """
@@ -314,7 +314,7 @@ def split_memory(memory: Array, rows: int) -> list[Array]:
 
 
 def continue_offset(kept: Array) -> Array:
-    """The next value of a sequence whose third differences are zero, by its last differences.
+    """The next value of a sequence whose third differences are zero, from its last three.
 
     >>> kept = np.zeros((TERMS, 1, 1))
     >>> for value in (1.0, 4.0, 9.0):
@@ -322,12 +322,10 @@ def continue_offset(kept: Array) -> Array:
     >>> float(continue_offset(kept)[0, 0])
     16.0
     """
-    offset, first, second = kept
-    return np.asarray(offset + (first + second))
+    last, before, first = kept
+    return np.asarray(first + 3.0 * (last - before))
 
 
 def keep_offset(kept: Array, offset: Array) -> Array:
-    """What is kept of a search that ended at an offset: of none before there are no differences."""
-    first = np.where(kept[0] == 0.0, 0.0, offset - kept[0])
-    second = np.where(kept[1] == 0.0, 0.0, first - kept[1])
-    return np.concatenate([offset, first, second])
+    """What is kept of searches after one that ended at an offset; it is 0 of those before all."""
+    return np.concatenate([offset, *kept[:-1]])
