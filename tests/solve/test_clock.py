@@ -13,12 +13,12 @@ from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.methods.gauss import Gauss
 from coadjoint.solve.methods.lie_poisson import (
-    continue_offset,
     EXACT,
     FEW_ROWS,
     FREE,
     Search,
     Sweep,
+    continue_offset,
     keep_offset,
 )
 from coadjoint.solve.methods.midpoint import Midpoint
