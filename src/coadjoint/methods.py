@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from coadjoint.limits import C_STATEMENTS
 
-#: What is kept of each search for the next step: an offset and its first two differences.
+#: How many of its last offsets each search keeps for the next step.
 TERMS: Final = 3
 #: The method that is the motion itself, to rounding: its order is that of what its series leave
 #: out, in parts of a step, and no run shows it.
