@@ -153,7 +153,7 @@ def test_steps_by_as_many_sweeps_as_most_have_the_same_bits(method):
         )
         assert (one.status == "OK").all()
         assert np.array_equal(one.state, other.state)
-        assert (one.sweeps >= other.sweeps).all()
+        assert (one.sweeps >= other.sweeps - one.steps).all()
         more[step] = float(np.max(one.sweeps / other.sweeps.max()))
     assert max(more.values()) < 1.25
 

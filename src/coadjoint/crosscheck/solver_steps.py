@@ -43,6 +43,7 @@ from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.domain import explain_bound
 from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
+from coadjoint.solve.methods.lie_poisson import EXACT
 
 #: Members of a run: more than lanes, and no multiple of them.
 MEMBERS: Final = 13
@@ -325,8 +326,10 @@ def check_bits(
                 raise solvers.failure(
                     5, f"{method}: {name} has the shape {one.shape} in NumPy, {other.shape} in C"
                 )
-            # C may sweep on after the sweep that changes nothing, and counts that
-            differs = other < one if name == "sweeps" else find_differing_bits(one, other)
+            differs = find_differing_bits(one, other)
+            if name == "sweeps":  # C asks other ones whether they change something, and seldomer
+                steps = found["numpy"]["steps"]
+                differs = (other < one - steps) | (other > one + EXACT * (steps + 1))
             different = np.argwhere(differs)
             if len(different):
                 place = tuple(different[0].tolist())

@@ -138,7 +138,7 @@ def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
     pairs.append((found.out, expected.out))
     pairs += [(found.list_met(), expected.list_met())]
     if exact:
-        for name in ("late", "memory", "sweeps"):
+        for name in ("late", "memory"):
             if getattr(found, name) is not None:
                 pairs.append((getattr(found, name), getattr(expected, name)))
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)

@@ -81,10 +81,10 @@ def test_other_methods_move_them(quartic):
 
 @pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 def test_c_and_numpy_have_the_same_bits(quartic):
-    """Of all states at samples; C may go on after the sweep that changes nothing."""
+    """Of all states at samples; each asks other sweeps whether they change something."""
     one, other = (follow(quartic, "nambu_gradient", target) for target in ("c", "numpy"))
     assert np.array_equal(one.state, other.state)
-    assert 13 * one.steps > one.sweeps >= other.sweeps > 80
+    assert abs(int(one.sweeps) - int(other.sweeps)) < 2 * one.steps < other.sweeps
 
 
 @pytest.mark.parametrize(("method", "order"), [("nambu_gradient", 2), ("nambu_gradient4", 4)])
