@@ -5,19 +5,24 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.derive.fields import generic, hamiltonian
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.grid import make_grid
+from coadjoint.derive.fields.hamiltonian import field_equations
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Term
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.errors import ClaimError
 from coadjoint.prove import Verdict, prove
+from coadjoint.prove import fields as claims_of_fields
 from coadjoint.prove.fields import (
+    about_fields,
     decide_density,
     decide_jacobi,
     decide_skew,
 )
 from coadjoint.prove.grids import about_grid
+from coadjoint.prove.zero import decide_zero
 from coadjoint.spec import read_spec_text
 from tests.fields import grid_of
 from tests.specs import emitted, shipped
@@ -89,13 +94,29 @@ def test_a_wrong_sign_of_one_derivative_breaks_antisymmetry():
     assert "{Pi1, Xi1}" in found.method
 
 
-def test_wrong_signs_of_both_derivatives_are_another_poisson_bracket():
-    """The cocycle may have any factor; compatibility alone, another route, refutes the motion."""
-    operator, jets = bracket_of("spin_chain")
-    spoiled = spoil(operator, [(0, 1), (1, 0)], 1)
-    assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
-    assert decide_jacobi(spoiled, jets).verdict is Verdict.PROVED
-    assert spoiled != operator
+@pytest.mark.parametrize("spoiled", [False, True])
+def test_wrong_signs_of_both_derivatives_are_refuted_by_compatibility_alone(monkeypatch, spoiled):
+    """The cocycle may have any factor: the bracket stays one, and its motion keeps the energy.
+
+    But Xi_t - Omega_s is no more what mixed derivatives of g leave of it, of which the route over
+    the group knows, and so the holonomy of Xi.
+    """
+    operator, right = bracket_of("spin_chain")[0], emitted("spin_chain", "hamilton-pontryagin")
+    operator = spoil(operator, [(0, 1), (1, 0)], 1) if spoiled else operator
+    for module in (hamiltonian, claims_of_fields, generic):
+        monkeypatch.setattr(module, "field_operator", lambda _: operator)
+    wrong = field_equations(right.setting, "lie-poisson")
+    refuted = list[str]()
+    for statement, _, decide in about_fields((wrong, right)):
+        found = decide()
+        decision = decide_zero(found, right.setting.field) if isinstance(found, list) else found
+        if getattr(decision, "verdict", Verdict.PROVED) is not Verdict.PROVED:
+            refuted.append(statement)
+    compatible = [
+        "the route hamilton-pontryagin gives the same motion and energy as lie-poisson",
+        "the trace of the holonomy of dpsi/ds = psi Xi around the circle is conserved",
+    ]
+    assert refuted == compatible * spoiled
 
 
 def test_the_bracket_of_the_circle_needs_its_factor_two():
@@ -200,6 +221,64 @@ def test_the_lengths_of_spins_are_a_casimir_and_others_are_not():
 # -- on a grid ----------------------------------------------------------------------------
 
 
+#: Each point moves by the group of scalings and shifts, and by no other point.
+SCALED = """
+title   = "Momenta of scalings and shifts"
+source  = "by hand"
+license = "BSD-3-Clause"
+routes  = ["lie-poisson"]
+
+[space]
+s = { length = "L", size = 32, order = 4 }
+
+[algebra]
+name       = "aff(1)"
+invariance = "left"
+
+[variables]
+S = { role = "momentum" }
+
+[parameters]
+c = { default = 2 }
+L = { positive = true, default = 20 }
+
+[hamiltonian]
+h = "c*S1"
+
+[observables]
+Q = { expression = "log(S2)" }
+
+[claims]
+conserved = ["energy", "Q"]
+"""
+
+
+def test_what_grows_by_a_constant_is_not_conserved():
+    """{S1, S2} = -S2, so that S2_t = c S2 and log(S2) grows everywhere at the rate c.
+
+    A constant has no variation, but the integral c L, and the sum c N over the points.
+    """
+    equations = derive(read_spec_text(SCALED, "scaled.toml"))
+    field = equations.setting.field
+    assert equations.exact.rates[1] == field["c"] * field["S2"]
+    found = decide_density(equations, equations.exact.emitted[1].values)
+    assert found.verdict is Verdict.REFUTED
+    assert found.method.endswith("of its rate for fields that do not depend on space")
+    assert not [s for s in statements(make_grid(equations)) if s.startswith("Q ")]
+
+
+def test_a_rate_without_flux_is_none_of_a_constant():
+    """Of log(S2) it is S2_s with h = S1 S2_s.
+
+    With h = c S1 S2_s/S2 it is c times the derivative of log(S2), which no homotopy finds.
+    """
+    for h, flux in (("S1*S2_s", "the flux -S2"), ("c*S1*S2_s/S2", "a flux, since")):
+        equations = derive(read_spec_text(SCALED.replace("c*S1", h), "scaled.toml"))
+        found = decide_density(equations, equations.exact.emitted[1].values)
+        assert found.verdict is Verdict.PROVED
+        assert flux in found.method
+
+
 def statements(grid):
     """What is said of a grid, with what decides it."""
     return {statement: decide() for statement, _, decide in about_grid(grid)}
@@ -243,6 +322,16 @@ def test_a_bracket_with_products_differentiated_loses_the_energy():
     found = statements(replace(grid, brackets=brackets))
     (energy,) = (d for s, d in found.items() if s.startswith("the energy") and "differences" in s)
     assert energy.verdict is Verdict.REFUTED
+
+
+def test_another_antisymmetric_bracket_is_not_that_of_the_rings():
+    """Twice the bracket is antisymmetric, too, and so is none; the matrices of rings are others."""
+    grid = grid_of("kdv")
+    twice = {key: 2 * x for key, x in grid.brackets.items()}
+    for brackets in (twice, {}):
+        found = statements(replace(grid, brackets=brackets))
+        (same,) = (d for s, d in found.items() if "generic point" in s)
+        assert same.verdict is Verdict.REFUTED
 
 
 def test_fourier_derivatives_keep_the_energy_by_a_bracket_whose_terms_balance():
