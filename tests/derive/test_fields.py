@@ -53,6 +53,10 @@ def test_a_part_of_degree_zero_is_not_integrated():
     jets = jets_of_u()
     assert jets.integrate(jets.field["u_s"] / jets.field["u"]) is None
     assert jets.integrate(1 / (1 + jets.field["u"] ** 2)) is None
+    rows = list_rows("w", ["x", "y"], 2)
+    plane = Jets(Field([*(x for row in rows for x in row), DEGREE]), {"w": rows})
+    w, *slopes = (plane.field[x] for x in ("w", "w_x", "w_y", "w_xy"))
+    assert plane.still(w**2 + plane.field.sum(slopes)) == w**2  # what tells it from a constant
 
 
 def test_operators_keep_the_order_of_factors():

@@ -41,6 +41,19 @@ DERIVED = (
         tests=(f"{GRID} {CLAIMS} -k '(exact_waves and 2) or differences or rings or grows'",),
     ),
     *changes_of(
+        "fields/jets",
+        "Jets.still: rewrite i or j -> i",
+        "Jets.still: rewrite i or j -> j",
+        tests=(f"{FIELDS_OF} -k degree_zero",),
+    ),
+    *changes_of(
+        "fields/generic",
+        "is_kept: rewrite lattice.still(rate) -> lattice.field.zero",
+        "is_kept: rewrite lattice.vary(rate).values() -> ()",
+        "is_kept: rewrite False -> True",
+        tests=(f"{CLAIMS} -k equal_fields",),
+    ),
+    *changes_of(
         "fields/symbol",
         "look_at_symbol: rewrite order % 2 == 1 -> True",
         "look_at_symbol: rewrite order % 2 == 1 -> False",
@@ -125,7 +138,9 @@ DERIVED = (
         "make_grid: rewrite (size, size + 1) -> (size, size)",
         "make_grid: drop 1 in size",
         "_list_sums: rewrite {} if _1 else {each.name: defects} -> {}",
-        tests=(f"{CLAIMS} {GRID} -k 'differences or sums or no_order or kdv-size or first_point'",),
+        tests=(
+            f"{CLAIMS} {GRID} -k 'differences or no_order or kdv-size or first_point or rings_are'",
+        ),
     ),
 )
 

@@ -291,6 +291,33 @@ def test_a_rate_without_flux_is_none_of_a_constant():
         assert flux in found.method
 
 
+def test_where_still_fields_tell_no_constant_nothing_is_proved():
+    """S2_ss/S2_s, the derivative of log(S2_s), has no value for fields that do not depend on s."""
+    equations = derive(read_spec_text(SCALED, "scaled.toml"))
+    field = equations.setting.field
+    rates = (field.zero, field["S2"] * field["S2_ss"] / field["S2_s"])
+    spoiled = replace(equations, exact=replace(equations.exact, rates=rates))
+    found = decide_density(spoiled, equations.exact.emitted[1].values)
+    assert found.verdict is Verdict.SUPPORTED
+    assert "no value for fields that do not depend on space" in found.method
+
+
+def test_sums_over_points_are_told_from_constants_at_equal_fields():
+    """Of log(S2) with the rates g[+1] - g, and what is not 0 or has no value at equal fields."""
+    point = GenericPoint(derive(read_spec_text(SCALED.replace("c*S1", "c*S1 + S2_s^2"), "s.toml")))
+    field, (_, densities) = point.lattice.field, point.exact_point
+    before, here, after = (field[f"S2{end}"] for end in ("[-1]", "", "[+1]"))
+    for rate, kept in (
+        (after - here, True),
+        (after - here + field["c"], False),
+        ((after - here) ** 2, False),
+        (after - before * 2 + here, True),
+        (1 / (after - here) - 1 / (here - before), False),
+    ):
+        point.exact_point = [field.zero, here * rate], densities
+        assert point.is_kept("Q") is kept
+
+
 def statements(grid):
     """What is said of a grid, with what decides it."""
     return {statement: decide() for statement, _, decide in about_grid(grid)}
