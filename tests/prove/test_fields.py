@@ -302,6 +302,27 @@ def test_where_still_fields_tell_no_constant_nothing_is_proved():
     assert "no value for fields that do not depend on space" in found.method
 
 
+@pytest.mark.parametrize(
+    ("rate", "verdict"),
+    [
+        ("(S1*S2_s - S2*S1_s)/(S1^2 + S2^2)", Verdict.SUPPORTED),
+        ("S2_s/S2 - S1_s/S1", Verdict.PROVED),
+        ("S2_s/S2 - S1_s/S1 + 1/(1 + S1^2)", Verdict.REFUTED),
+    ],
+)
+def test_an_integral_that_counts_turns_is_not_proved_to_vanish(rate, verdict):
+    """That of the derivative of the angle of (S1, S2) is 2 pi times the turns about 0.
+
+    With S = (cos 2 pi s/L, sin 2 pi s/L), which winds once; logarithms of positive fields do not.
+    """
+    equations = derive(read_spec_text(SCALED.replace("log(S2)", rate), "scaled.toml"))
+    (value,), field = equations.exact.emitted[1].values, equations.setting.field
+    moved = replace(equations, exact=replace(equations.exact, rates=(field.zero, value)))
+    found = decide_density(moved, [field["S2"]])
+    assert found.verdict is verdict
+    assert ("wind about" in found.method) is (verdict is Verdict.SUPPORTED)
+
+
 def test_sums_over_points_are_told_from_constants_at_equal_fields():
     """Of log(S2) with the rates g[+1] - g, and what is not 0 or has no value at equal fields."""
     point = GenericPoint(derive(read_spec_text(SCALED.replace("c*S1", "c*S1 + S2_s^2"), "s.toml")))

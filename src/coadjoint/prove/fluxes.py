@@ -21,7 +21,8 @@ from fractions import Fraction
 from coadjoint.derive import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, solved
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.strands import list_turning, tell_turn, turn_along
 from coadjoint.prove.zero import Decision, decide_zero
@@ -87,10 +88,20 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
 def _decide_still(jets: Jets, rate: Element) -> Decision:
     """Whether a rate without variation is 0 for fields that do not depend on space.
 
-    That tells a total derivative from a constant, which has no variation either.
+    That tells a total derivative from a constant, which has no variation either. The integral is
+    the same for fields that can be deformed into one another where the rate is finite: into one
+    that does not depend on space, as intervals bound each symbol; but u and v may wind about the
+    zero of u^2 + v^2, and the integral of the derivative of their angle counts how often.
     """
+    field = jets.field
+    if any(len(field.reach(x) & jets.places.keys()) > 1 for x in _list_bounds(field, rate)):
+        method = (
+            "the Euler operator takes its rate to 0, and fields may wind about where it has no "
+            "value, so that its integral may count how often"
+        )
+        return Decision(verdict=Verdict.SUPPORTED, method=method)
     try:
-        decision = decide_zero([jets.still(rate)], jets.field)
+        decision = decide_zero([jets.still(rate)], field)
     except ZeroDivisionError:
         method = (
             "the Euler operator takes its rate to 0, and it has no value for fields that do not "
@@ -99,6 +110,14 @@ def _decide_still(jets: Jets, rate: Element) -> Decision:
         return Decision(verdict=Verdict.SUPPORTED, method=method)
     method = f"{decision.method} of its rate for fields that do not depend on space"
     return replace(decision, method=method)
+
+
+def _list_bounds(field: Field, element: Element) -> list[Element]:
+    """What stands below lines, and in functions where these are not analytic everywhere."""
+    below = [x for quotient in field.quotients(element) for x, _ in quotient.divisors]
+    if is_entire(field, [element]):
+        return below
+    return below + [x for g in field.functions_in(element) for x in field.adjoined[g].arguments]
 
 
 def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:
