@@ -1,7 +1,9 @@
 """Fields on a grid: central differences, and the motion of the points."""
 
+import re
 from dataclasses import replace
 from fractions import Fraction
+from math import perm
 
 import numpy as np
 import pytest
@@ -11,8 +13,9 @@ from coadjoint.derive import derive
 from coadjoint.derive.fields import profiles
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, list_rows, narrow
+from coadjoint.derive.fields.lattice import Calculus
 from coadjoint.derive.fields.profiles import sample_profiles
-from coadjoint.derive.fields.stencils import stencil, width_of
+from coadjoint.derive.fields.stencils import find_largest, stencil, width_of
 from coadjoint.derive.fields.torus import make_torus
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import DerivationError, KernelArgumentError, ResourceError
@@ -54,6 +57,35 @@ def test_stencils_are_those_that_books_print():
     """Of order 8: 4/5, -1/5, 4/105, -1/280."""
     printed = ("4/5", "-1/5", "4/105", "-1/280")
     assert [stencil(1, 8)[r] for r in range(1, 5)] == [Fraction(x) for x in printed]
+
+
+@pytest.mark.parametrize("derivative", [1, 2, 3, 4])
+@pytest.mark.parametrize("order", ORDERS)
+def test_stencils_multiply_no_wave_by_more_than_is_said(derivative, order):
+    """The largest eigenvalue of a circulant matrix of many rows, to five digits."""
+    row = np.zeros(1 << 12)
+    for r, c in stencil(derivative, order).items():
+        row[r] = float(c)
+    largest = np.abs(np.fft.fft(row)).max()
+    assert find_largest(derivative, order) == pytest.approx(largest, rel=1e-5)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_differences_of_polynomials_are_derivatives(order):
+    """Of degrees below k + p exactly, with h = 2/5 at s = 6/5, and not of the next one."""
+    calculus = Calculus(order=order, inverse=Fraction(5, 2), number=Fraction)
+    for k in range(5):
+        for n in range(k, k + order + 1):
+            found = calculus.differentiate(lambda i, n=n: Fraction(2 * i, 5) ** n, k)(3)
+            assert (found == perm(n, k) * Fraction(6, 5) ** (n - k)) == (n < k + order or k == 0)
+
+
+def test_differences_of_slopes_have_the_signs_of_sums_by_parts():
+    """F - D g + D_2 h for the slopes f = 5, g = s^2 and h = s^3 is 5 - 2 s + 6 s, by hand."""
+    calculus = Calculus(order=2, inverse=Fraction(5, 2), number=Fraction)
+    powers = [lambda i, n=n: Fraction(2 * i, 5) ** n for n in range(4)]
+    vary = calculus.vary([lambda i: 5 * powers[0](i), powers[2], powers[3]])
+    assert vary(3) == 5 + 4 * Fraction(6, 5)
 
 
 def test_products_of_derivatives_are_summed_by_parts():
@@ -180,6 +212,9 @@ def test_rings_are_the_matrices_of_the_bracket():
     found = Reference(ring).evaluate("rhs", given, float, lambda *_: 0.0)
     np.testing.assert_allclose(found, -(m * (D @ m) + D @ (m * m)) - c * D3 @ m, rtol=1e-11)
     assert grid_of("kdv").family.small <= N
+    # no neighbour is another one, and a second number shows how rates depend on it
+    sizes = [len(each.setting.state) for each in grid_of("kdv").windows]
+    assert sizes == [2 * width_of(3, order) + 1, 2 * width_of(3, order) + 2]
 
 
 def test_profiles_are_sampled_to_rounding():
@@ -190,6 +225,32 @@ def test_profiles_are_sampled_to_rounding():
     expected = np.cos(2 * np.pi * np.arange(8) / 8) / 3
     np.testing.assert_allclose([float(x) for x in values], expected, atol=1e-16)
     assert sample_profiles(none) == {}
+
+
+def test_profiles_of_a_line_and_of_a_plane_are_sampled_in_their_order():
+    """A line has a point at s = L; in a plane y runs first, along which the cosine has 4 points."""
+    text = shipped("spin_chain").path.read_text(encoding="utf-8")
+    line = re.sub(r"s = {.*", 's = { length = "L", size = 5, order = 2, ends = "free" }', text)
+    line = line.replace('"energy", "P"]', '"energy"]')
+    values = sample_profiles(read_spec_text(line, "line.toml"))["Pi"][0]
+    np.testing.assert_allclose([float(x) for x in values], [1, 0, -1, 0, 1], atol=1e-15)
+    text = shipped("euler_2d").path.read_text(encoding="utf-8")
+    plane = re.sub(r'\nw = ".*', '\nw = "3*cos(2*pi*x/Lx) + cos(2*pi*y/Ly)"', text)
+    plane = plane.replace('"Lx", size = 32', '"Lx", size = 2').replace("size = 32", "size = 4")
+    (values,) = sample_profiles(read_spec_text(plane, "plane.toml"))["w"]
+    assert [round(float(x), 14) for x in values] == [4, 3, 2, 3, -2, -3, -4, -3]
+
+
+def test_profiles_are_evaluated_to_many_digits():
+    """A square and its terms cancel at a tenth of the way, and a root is a power."""
+    text = shipped("kdv").path.read_text(encoding="utf-8")
+    for formula, part, known in (
+        ("(1 + s/L)^2 - 1 - 2*s/L - (s/L)^2", 10, 0.0),
+        ("2^(s/L)", 2, 2**0.5),
+    ):
+        spec = read_spec_text(text.replace('"cos(2*pi*s/L)/3"', f'"{formula}"'), "kdv.toml")
+        (found,) = profiles.evaluate_profile(spec, "m", Fraction(1, part))
+        assert abs(float(found) - known) < 1e-40 + 1e-15 * known
 
 
 def test_a_wave_of_camassa_and_holm_is_one_by_fourier_series():

@@ -8,14 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tests.mutation.mutant import Mutant, module
-
-
-def of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...]:
-    """Changes of one module below ``src/coadjoint``, or of one template."""
-    file = f"templates/{name}" if name.endswith(".j2") else module(name)
-    return tuple(Mutant(file, line, tests=tests) for line in lines)
-
+from tests.mutation.engine_of_fields import FIELDS
+from tests.mutation.mutant import Mutant
+from tests.mutation.mutant import changes_of as of
 
 #: Structure constants, ad* and the choice of minus or plus: tried in every run.
 SIGNS = (
@@ -76,6 +71,7 @@ CHECKS = (
     ),
 )
 MUTANTS = (
+    *FIELDS,
     *of(
         "lower/jets",
         "_with_partner: rewrite Call(own.partner, _1) -> Call(value.function, _1)",

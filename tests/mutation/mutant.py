@@ -133,6 +133,12 @@ def of(
     )
 
 
+def changes_of(name: str, *lines: str, tests: tuple[str, ...] = ()) -> tuple[Mutant, ...]:
+    """Changes of one module below ``src/coadjoint``, or of one template."""
+    file = f"templates/{name}" if name.endswith(".j2") else module(name)
+    return tuple(Mutant(file, line, tests=tests) for line in lines)
+
+
 def core_of(
     route: str,
     name: str,

@@ -189,7 +189,7 @@ def test_every_line_names_one_change():
     """A change of the engine that renames what a line names fails here, with what there is."""
     for mutant in MUTANTS:
         assert mutant.text()
-        judges_of(mutant)
+        assert [*judges_of(mutant)].count("-k") <= 1, mutant.name  # of several the last one counts
 
 
 def test_there_are_enough_mutants():

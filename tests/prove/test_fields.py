@@ -5,19 +5,24 @@ from dataclasses import replace
 import pytest
 
 from coadjoint.derive import derive
+from coadjoint.derive.fields import generic, hamiltonian
 from coadjoint.derive.fields.generic import GenericPoint
 from coadjoint.derive.fields.grid import make_grid
+from coadjoint.derive.fields.hamiltonian import field_equations
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Term
 from coadjoint.derive.fields.structure import field_operator
 from coadjoint.errors import ClaimError
 from coadjoint.prove import Verdict, prove
+from coadjoint.prove import fields as claims_of_fields
 from coadjoint.prove.fields import (
+    about_fields,
     decide_density,
     decide_jacobi,
     decide_skew,
 )
 from coadjoint.prove.grids import about_grid
+from coadjoint.prove.zero import Discovery, decide_zero
 from coadjoint.spec import read_spec_text
 from tests.fields import grid_of
 from tests.specs import emitted, shipped
@@ -89,13 +94,39 @@ def test_a_wrong_sign_of_one_derivative_breaks_antisymmetry():
     assert "{Pi1, Xi1}" in found.method
 
 
-def test_wrong_signs_of_both_derivatives_are_another_poisson_bracket():
-    """The cocycle may have any factor; compatibility alone, another route, refutes the motion."""
-    operator, jets = bracket_of("spin_chain")
-    spoiled = spoil(operator, [(0, 1), (1, 0)], 1)
-    assert decide_skew(spoiled, jets).verdict is Verdict.PROVED
-    assert decide_jacobi(spoiled, jets).verdict is Verdict.PROVED
-    assert spoiled != operator
+@pytest.mark.parametrize("spoiled", [False, True])
+def test_wrong_signs_of_both_derivatives_are_refuted_by_compatibility_alone(monkeypatch, spoiled):
+    """The cocycle may have any factor: the bracket stays one, and its motion keeps the energy.
+
+    But Xi_t - Omega_s is no more what mixed derivatives of g leave of it, of which the route over
+    the group knows, and so the holonomy of Xi.
+    """
+    operator, right = bracket_of("spin_chain")[0], emitted("spin_chain", "hamilton-pontryagin")
+    operator = spoil(operator, [(0, 1), (1, 0)], 1) if spoiled else operator
+    for module in (hamiltonian, claims_of_fields, generic):
+        monkeypatch.setattr(module, "field_operator", lambda _: operator)
+    wrong = field_equations(right.setting, "lie-poisson")
+    refuted = list[str]()
+    for statement, _, decide in about_fields((wrong, right)):
+        found = decide()
+        decision = decide_zero(found, right.setting.field) if isinstance(found, list) else found
+        if getattr(decision, "verdict", Verdict.PROVED) is not Verdict.PROVED:
+            refuted.append(statement)
+    compatible = [
+        "the route hamilton-pontryagin gives the same motion and energy as lie-poisson",
+        "the trace of the holonomy of dpsi/ds = psi Xi around the circle is conserved",
+    ]
+    assert refuted == compatible * spoiled
+
+
+def test_another_energy_is_another_motion_or_not_the_same_energy():
+    """With a constant in the energy of one route its motion is the same, and the claim refuted."""
+    first, other = (emitted("spin_chain", name) for name in shipped("spin_chain").routes[:2])
+    energy = other.exact.energy + first.setting.field.one
+    shifted = replace(other, exact=replace(other.exact, energy=energy))
+    for each, same in ((other, True), (shifted, False)):
+        (decide,) = (d for s, _, d in about_fields((first, each)) if "gives the same motion" in s)
+        assert (not any(decide())) is same
 
 
 def test_the_bracket_of_the_circle_needs_its_factor_two():
@@ -188,16 +219,124 @@ def test_a_velocity_of_another_equation_moves_other_rings():
 
 
 def test_the_lengths_of_spins_are_a_casimir_and_others_are_not():
-    """dot(S, S) is one, and the first component is none."""
+    """dot(S, S) is one, the first component is none, and a total derivative is one of no value."""
     text = shipped("landau_lifshitz").path.read_text(encoding="utf-8")
-    wrong = text.replace('casimirs  = ["dot(S, S)"]', 'casimirs  = ["dot(S, S)", "S1"]')
+    wrong = text.replace(
+        'casimirs  = ["dot(S, S)"]', 'casimirs  = ["dot(S, S)", "S1", "dot(S, S_s)"]'
+    )
     verdicts = [
         c.verdict for c in prove(read_spec_text(wrong, "m.toml")).claims if c.kind == "casimir"
     ]
-    assert verdicts == [Verdict.PROVED, Verdict.REFUTED]
+    assert verdicts == [Verdict.PROVED, Verdict.REFUTED, Verdict.PROVED]
 
 
 # -- on a grid ----------------------------------------------------------------------------
+
+
+#: Each point moves by the group of scalings and shifts, and by no other point.
+SCALED = """
+title   = "Momenta of scalings and shifts"
+source  = "by hand"
+license = "BSD-3-Clause"
+routes  = ["lie-poisson"]
+
+[space]
+s = { length = "L", size = 32, order = 4 }
+
+[algebra]
+name       = "aff(1)"
+invariance = "left"
+
+[variables]
+S = { role = "momentum" }
+
+[parameters]
+c = { default = 2 }
+L = { positive = true, default = 20 }
+
+[hamiltonian]
+h = "c*S1"
+
+[observables]
+Q = { expression = "log(S2)" }
+
+[claims]
+conserved = ["energy", "Q"]
+"""
+
+
+def test_what_grows_by_a_constant_is_not_conserved():
+    """{S1, S2} = -S2, so that S2_t = c S2 and log(S2) grows everywhere at the rate c.
+
+    A constant has no variation, but the integral c L, and the sum c N over the points.
+    """
+    equations = derive(read_spec_text(SCALED, "scaled.toml"))
+    field = equations.setting.field
+    assert equations.exact.rates[1] == field["c"] * field["S2"]
+    found = decide_density(equations, equations.exact.emitted[1].values)
+    assert found.verdict is Verdict.REFUTED
+    assert found.method.endswith("of its rate for fields that do not depend on space")
+    assert not [s for s in statements(make_grid(equations)) if s.startswith("Q ")]
+
+
+def test_a_rate_without_flux_is_none_of_a_constant():
+    """Of log(S2) it is S2_s with h = S1 S2_s.
+
+    With h = c S1 S2_s/S2 it is c times the derivative of log(S2), which no homotopy finds.
+    """
+    for h, flux in (("S1*S2_s", "the flux -S2"), ("c*S1*S2_s/S2", "a flux, since")):
+        equations = derive(read_spec_text(SCALED.replace("c*S1", h), "scaled.toml"))
+        found = decide_density(equations, equations.exact.emitted[1].values)
+        assert found.verdict is Verdict.PROVED
+        assert flux in found.method
+
+
+def test_where_still_fields_tell_no_constant_nothing_is_proved():
+    """S2_ss/S2_s, the derivative of log(S2_s), has no value for fields that do not depend on s."""
+    equations = derive(read_spec_text(SCALED, "scaled.toml"))
+    field = equations.setting.field
+    rates = (field.zero, field["S2"] * field["S2_ss"] / field["S2_s"])
+    spoiled = replace(equations, exact=replace(equations.exact, rates=rates))
+    found = decide_density(spoiled, equations.exact.emitted[1].values)
+    assert found.verdict is Verdict.SUPPORTED
+    assert "no value for fields that do not depend on space" in found.method
+
+
+@pytest.mark.parametrize(
+    ("rate", "verdict"),
+    [
+        ("(S1*S2_s - S2*S1_s)/(S1^2 + S2^2)", Verdict.SUPPORTED),
+        ("S2_s/S2 - S1_s/S1", Verdict.PROVED),
+        ("S2_s/S2 - S1_s/S1 + 1/(1 + S1^2)", Verdict.REFUTED),
+    ],
+)
+def test_an_integral_that_counts_turns_is_not_proved_to_vanish(rate, verdict):
+    """That of the derivative of the angle of (S1, S2) is 2 pi times the turns about 0.
+
+    With S = (cos 2 pi s/L, sin 2 pi s/L), which winds once; logarithms of positive fields do not.
+    """
+    equations = derive(read_spec_text(SCALED.replace("log(S2)", rate), "scaled.toml"))
+    (value,), field = equations.exact.emitted[1].values, equations.setting.field
+    moved = replace(equations, exact=replace(equations.exact, rates=(field.zero, value)))
+    found = decide_density(moved, [field["S2"]])
+    assert found.verdict is verdict
+    assert ("wind about" in found.method) is (verdict is Verdict.SUPPORTED)
+
+
+def test_sums_over_points_are_told_from_constants_at_equal_fields():
+    """Of log(S2) with the rates g[+1] - g, and what is not 0 or has no value at equal fields."""
+    point = GenericPoint(derive(read_spec_text(SCALED.replace("c*S1", "c*S1 + S2_s^2"), "s.toml")))
+    field, (_, densities) = point.lattice.field, point.exact_point
+    before, here, after = (field[f"S2{end}"] for end in ("[-1]", "", "[+1]"))
+    for rate, kept in (
+        (after - here, True),
+        (after - here + field["c"], False),
+        ((after - here) ** 2, False),
+        (after - before * 2 + here, True),
+        (1 / (after - here) - 1 / (here - before), False),
+    ):
+        point.exact_point = [field.zero, here * rate], densities
+        assert point.is_kept("Q") is kept
 
 
 def statements(grid):
@@ -234,6 +373,19 @@ def test_the_bracket_of_a_magnet_stays_one_on_a_grid():
     assert jacobi.verdict is Verdict.PROVED
 
 
+def test_a_bracket_of_few_points_that_is_one_says_nothing_of_more():
+    """{m_0, m_1} = m_0 alone: two points have the identity of Jacobi, which is no proof for all."""
+    grid = grid_of("kdv")
+    ring = grid.windows[0]
+    field, (m, *others) = ring.setting.field, ring.setting.state
+    rows = [[field.zero] * (1 + len(others)) for _ in ring.setting.state]
+    rows[0][1], rows[1][0] = field[m], -field[m]
+    few = replace(ring, exact=replace(ring.exact, poisson_tensor=tuple(map(tuple, rows))))
+    found = statements(replace(grid, windows=(few, grid.windows[1])))
+    assert isinstance(found["the bracket satisfies the Jacobi identity"], Discovery)
+    assert not [s for s in found if "Jacobi" in s and "N >=" in s]
+
+
 def test_a_bracket_with_products_differentiated_loses_the_energy():
     """-(2 m D + m_s) is the same as -(m D + D m) for fields, and not antisymmetric on a grid."""
     grid = grid_of("kdv")
@@ -243,6 +395,16 @@ def test_a_bracket_with_products_differentiated_loses_the_energy():
     found = statements(replace(grid, brackets=brackets))
     (energy,) = (d for s, d in found.items() if s.startswith("the energy") and "differences" in s)
     assert energy.verdict is Verdict.REFUTED
+
+
+def test_another_antisymmetric_bracket_is_not_that_of_the_rings():
+    """Twice the bracket is antisymmetric, too, and so is none; the matrices of rings are others."""
+    grid = grid_of("kdv")
+    twice = {key: 2 * x for key, x in grid.brackets.items()}
+    for brackets in (twice, {}):
+        found = statements(replace(grid, brackets=brackets))
+        (same,) = (d for s, d in found.items() if "generic point" in s)
+        assert same.verdict is Verdict.REFUTED
 
 
 def test_fourier_derivatives_keep_the_energy_by_a_bracket_whose_terms_balance():

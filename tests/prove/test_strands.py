@@ -130,6 +130,16 @@ def test_what_is_kept_where_both_equations_hold_is_said_with_them(changes, sign)
         assert f"{name} is conserved up to O(h^4) by N points, h = L/N, {where}" in found
 
 
+def test_what_is_kept_everywhere_is_said_without_the_turn():
+    """The length of what is advected, which the motion alone keeps."""
+    first = derive(strand(*CLAIMED))
+    field = first.setting.field
+    square = field.sum(field[f"Gamma{n}"] ** 2 for n in (1, 2, 3))
+    decision, where = decide_law(first, [square])
+    assert (decision.verdict, where) == (Verdict.PROVED, "")
+    assert "left out" not in decision.method
+
+
 def test_a_wrong_momentum_is_kept_nowhere():
     """Another sign of one term, about another axis; the advice names no set, which fields lack."""
     said, found = claims_of(

@@ -1,7 +1,8 @@
 r"""Fluxes: whether fields conserve the integrals of densities.
 
 A density f is conserved if its rate is a total derivative, :math:`\partial_t f + \partial_s F = 0`,
-which the variational derivative of the rate decides. Some are conserved only where the advected
+which the variational derivative of the rate decides, and its value for fields that do not depend on
+space, since a constant has no variation either. Some are conserved only where the advected
 quantities of a strand turn along it, :math:`\partial_s a = -\rho(\Xi) a`, as the momentum along it
 is: its rate is a total derivative and :math:`-\langle l_a, \partial_s a + \rho(\Xi) a \rangle`.
 Derivatives of a are left out by this equation; it takes what is left from the highest derivative
@@ -20,7 +21,8 @@ from fractions import Fraction
 from coadjoint.derive import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, solved
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element, Field, element_text
+from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.strands import list_turning, tell_turn, turn_along
 from coadjoint.prove.zero import Decision, decide_zero
@@ -68,13 +70,54 @@ def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
             return replace(decision, method=method, shown=Shown.VARIATION)
         fluxes = jets.integrate(-rate)
         if fluxes is None:
-            texts.append("a flux, since the Euler operator takes its rate to 0")
+            decision = _decide_still(jets, rate)
+            if decision.verdict is not Verdict.PROVED:
+                return decision
+            texts.append(
+                "a flux, since the Euler operator takes its rate to 0, and it is 0 for fields that "
+                "do not depend on space"
+            )
             continue
         assert setting.field.is_zero(jets.diverge(fluxes) + rate), equations.spec.name
         texts.append(_tell_flux(equations, fluxes))
     slope = "div" if setting.spec.in_plane else "d/ds"
     law = f"its rate + {slope} flux = 0"
     return Decision(verdict=Verdict.PROVED, method=f"{law}, with {'; '.join(texts)}")
+
+
+def _decide_still(jets: Jets, rate: Element) -> Decision:
+    """Whether a rate without variation is 0 for fields that do not depend on space.
+
+    That tells a total derivative from a constant, which has no variation either. The integral is
+    the same for fields that can be deformed into one another where the rate is finite: into one
+    that does not depend on space, as intervals bound each symbol; but u and v may wind about the
+    zero of u^2 + v^2, and the integral of the derivative of their angle counts how often.
+    """
+    field = jets.field
+    if any(len(field.reach(x) & jets.places.keys()) > 1 for x in _list_bounds(field, rate)):
+        method = (
+            "the Euler operator takes its rate to 0, and fields may wind about where it has no "
+            "value, so that its integral may count how often"
+        )
+        return Decision(verdict=Verdict.SUPPORTED, method=method)
+    try:
+        decision = decide_zero([jets.still(rate)], field)
+    except ZeroDivisionError:
+        method = (
+            "the Euler operator takes its rate to 0, and it has no value for fields that do not "
+            "depend on space, which would tell it from a constant"
+        )
+        return Decision(verdict=Verdict.SUPPORTED, method=method)
+    method = f"{decision.method} of its rate for fields that do not depend on space"
+    return replace(decision, method=method)
+
+
+def _list_bounds(field: Field, element: Element) -> list[Element]:
+    """What stands below lines, and in functions where these are not analytic everywhere."""
+    below = [x for quotient in field.quotients(element) for x, _ in quotient.divisors]
+    if is_entire(field, [element]):
+        return below
+    return below + [x for g in field.functions_in(element) for x in field.adjoined[g].arguments]
 
 
 def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:

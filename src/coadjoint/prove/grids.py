@@ -75,7 +75,10 @@ def _compare_rings(grid: Grid) -> Decision:
 
 
 def _differences(grid: Grid, ring: Equations) -> list[Element]:
-    """Of each point of a ring and each field: the rate by the generic point minus its own."""
+    """Of each point of a ring and each field: the rate by the generic point minus its own.
+
+    On a circle the brackets with all points, too: those of the generic point are antisymmetric.
+    """
     field, size = ring.setting.field, count_points(ring, grid)
     own = dict(zip(ring.setting.state, ring.exact.rates, strict=True))
     known = {each.name: each for each in ring.spec.variables}
@@ -90,18 +93,31 @@ def _differences(grid: Grid, ring: Equations) -> list[Element]:
     values[grid.count] = field.number(size)
     known_at = {(c, k): field[name] for (c, k), name in names.items()}
     known_at |= grid.velocities[size]
-    found = list[Element]()
+    tensor = ring.exact.poisson_tensor
+    assert tensor is not None, ring.spec.name
+    pairs = {
+        (a, b): x
+        for a, row in zip(ring.setting.state, tensor, strict=True)
+        for b, x in zip(ring.setting.state, row, strict=True)
+        if x and not grid.ends
+    }
+    space, found = grid.equations.spec.space, list[Element]()
+    assert space is not None, grid.equations.spec.name
+    inverse = field.number(size) / field[space.length]
     for k in range(size):
-        seen = {
+        seen = values | {
             name_at(c, r): known_at[c, (k + r) % size]
             for c in grid.lattice.components
             for r in range(-reach, reach + 1)
         }
         rates = grid.ends.get(k, grid.ends.get(k - size, grid.rates))
         for c, rate in zip(grid.equations.setting.state, rates, strict=True):
-            value = lattice.evaluate(rate, {**values, **seen}, field.number, field.call)
+            value = lattice.evaluate(rate, seen, field.number, field.call)
             found.append(value - own[names[c, k]])
-    return found
+        for (a, b, r), bracket in grid.brackets.items() if not grid.ends else ():
+            value = lattice.evaluate(bracket, seen, field.number, field.call) * inverse
+            found.append(value - pairs.pop((names[a, k], names[b, (k + r) % size]), field.zero))
+    return [*found, *pairs.values()]
 
 
 # -- what is kept -----------------------------------------------------------------------------

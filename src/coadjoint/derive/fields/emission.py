@@ -100,9 +100,9 @@ def velocities(setting: Setting) -> Mapping[str, Element]:
     names = [xi for xi, _, _ in setting.conjugates]
     closed = dict(zip(names, transform.velocities, strict=True))
     unsolved = [name for name, value in closed.items() if field.reach(value) & closed.keys()]
-    if transform.solves or unsolved:
+    if unsolved:
         message = (
-            f"the velocities {', '.join(unsolved or names)} have no closed form; expected a "
+            f"the velocities {', '.join(unsolved)} have no closed form; expected a "
             "Lagrangian that is quadratic in them and couples at most three. Give [hamiltonian] "
             "and the route lie-poisson instead."
         )

@@ -482,25 +482,37 @@ class GenericPoint:
         if self.space.has_ends:
             return name == "energy"
         (each,) = (x for x in self.equations.exact.emitted if x.name == name)
-        field = self.lattice.field
-        return all(field.is_zero(x) for c in each.components for x in self.change(c).values())
+        lattice = self._lattice_of_rates
+        try:
+            return all(
+                lattice.field.is_zero(x)
+                for rate in map(self._rate_of_sum, each.components)
+                for x in (*lattice.vary(rate).values(), lattice.still(rate))
+            )
+        except ZeroDivisionError:  # at equal fields, which would tell the sum from a constant
+            return False
 
-    def change(self, component: str) -> dict[str, Element]:
-        """The variation of the rate of the sum of a density; zeros if the sum is kept."""
+    @property
+    def _lattice_of_rates(self) -> LatticeField:
+        """In which the rates of sums are: where A u = m, all is a function of the velocities."""
+        return replace(self.lattice, components=solved(self.spec) or self.lattice.components)
+
+    def _rate_of_sum(self, component: str) -> Element:
+        """What has the sum of the rates of a density as its sum over all points."""
         rates, densities = self.exact_point
         lattice, field = self.lattice, self.lattice.field
         if self.momenta:
-            return self._change_by_velocities(component)
+            return self._rate_by_velocities(component)
         density, parts = densities[component], list[Element]()
         for name, rate in zip(self.setting.state, rates, strict=True):
             for r in range(-self.reach, self.reach + 1):
                 slope = field.derivative(density, name_at(name, r))
                 if slope:
                     parts.append(slope * lattice.shift(rate, r))
-        return lattice.vary(field.sum(parts))
+        return field.sum(parts)
 
-    def _change_by_velocities(self, component: str) -> dict[str, Element]:
-        """The same where A u = m: all is a function of the velocities."""
+    def _rate_by_velocities(self, component: str) -> Element:
+        """The same where A u = m."""
         calculus, place = self._place_exactly()
         field, parts = self.lattice.field, list[Element]()
         rates, _ = self.exact_point
@@ -515,7 +527,7 @@ class GenericPoint:
                 if name_at(m, r) in field.reach(whole)
             }
             whole = field.substitute(whole, known)
-        return replace(self.lattice, components=solved(self.spec)).vary(whole)
+        return whole
 
 
 def rational(value: Fraction) -> sympy.Rational:

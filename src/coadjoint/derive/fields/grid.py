@@ -126,7 +126,7 @@ def _list_sums(point: GenericPoint) -> dict[str, Sequence[Element]]:
     """As `Grid.sums`."""
     found = dict[str, Sequence[Element]]()
     for each in point.equations.exact.emitted:
-        if each.kept is Kept.ALWAYS and each.name != "energy":
+        if each.kept is Kept.ALWAYS:
             defects = point.find_sum_defects(each.components)
             found |= {} if defects is None else {each.name: defects}
     return found

@@ -263,6 +263,23 @@ class Jets:
         in_plane = any(len(rows) > 1 for rows in self.rows.values())
         return (along, aside) if in_plane else (along,)
 
+    def still(self, element: Element) -> Element:
+        """An element where fields do not depend on space.
+
+        A function without variation has one integral for all fields that can be deformed into one
+        another where it is finite; so it has no integral if it is 0 there, as no constant is.
+
+        Raises:
+            ZeroDivisionError: It has no value there.
+
+        >>> field = Field(["u", "u_s", "u_ss", DEGREE])
+        >>> jets = Jets(field, {"u": list_rows("u", ["s"], 2)})
+        >>> jets.still(field["u"] ** 2 + field["u_s"])
+        u**2
+        """
+        zeros = {symbol: self.field.zero for symbol, (_, i, j) in self.places.items() if i or j}
+        return self.field.substitute(element, zeros)
+
     def diverge(self, fluxes: Sequence[Element]) -> Element:
         """``D P``, or ``D_x P + D_y Q``."""
         return self.field.sum(self.total(flux, 1 - n, n) for n, flux in enumerate(fluxes))

@@ -130,6 +130,21 @@ class LatticeField:
             found[c] = self.field.sum(parts)
         return found
 
+    def still(self, element: Element) -> Element:
+        """An expression where all points have the same fields: the constant of `vary`.
+
+        Raises:
+            ZeroDivisionError: It has no value there.
+        """
+        field, reached = self.field, self.field.reach(element)
+        same = {
+            name: field[c]
+            for c in self.components
+            for r in range(-self.reach, self.reach + 1)
+            if (name := name_at(c, r)) in reached
+        }
+        return field.substitute(element, same)
+
 
 def name_at(component: str, place: int) -> str:
     """What a component is called so many points away.

@@ -108,7 +108,9 @@ def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Se
         )
         polynomial = numbers.charpoly(_ROOT).as_expr()
         if _count_bad(sympy.Poly(polynomial, _ROOT, domain="QQ"), odd=order % 2 == 1):
-            parts = [complex(root) for root in sympy.Poly(polynomial, _ROOT).nroots()]
+            # the square-free part: multiple roots are found too slowly
+            simple = sympy.Poly(polynomial, _ROOT, domain="QQ").sqf_part()
+            parts = [complex(root) for root in simple.nroots()]
             speed = max(abs(x.imag if order % 2 else x.real) for x in parts)
             reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
             point = {name: str(values[name]) for name in field.names if name in reached}
