@@ -138,6 +138,7 @@ def test_a_bracket_of_three_neighbours_that_is_none_is_refused():
     ("text", "changes", "reason"),
     [
         (STRETCHES, [("size = 12", "size = 3")], "for all from 4 members on"),
+        (STRETCHES, [("p[i+1]}", "p[i+5]}")], "members more than 4 apart have a bracket"),
         (LATTICE, [("c[i]*c[i+1]/2", "c[i]*c[i+1]/2) + sum(i, j, i < j, c[i]*c[j]")], "over pairs"),
         (
             LATTICE,
@@ -145,7 +146,7 @@ def test_a_bracket_of_three_neighbours_that_is_none_is_refused():
             "there is a table [noise]",
         ),
     ],
-    ids=["few", "pairs", "noise"],
+    ids=["few", "far", "pairs", "noise"],
 )
 def test_what_no_generic_member_tells_is_written_out(text, changes, reason):
     """And says why."""

@@ -77,7 +77,9 @@ def read_windows(
         file = count_out(source, file, index, file.index[index.name].size)
     _check(source, file, index)
     asked = "written_out = true asks for it" if file.index[index.name].written_out else ""
-    misfit = misfit or asked or find_misfit(file, index)
+    far = _measure_brackets(file) > limits.NEIGHBOURS
+    apart = f"members more than {limits.NEIGHBOURS} apart have a bracket" if far else ""
+    misfit = misfit or asked or apart or find_misfit(file, index)
     if misfit:
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
@@ -86,7 +88,7 @@ def read_windows(
     first = _first_window(index, reach, width, ends, pairs=pairs)
     if file.noise:  # what a process of one member does to a sum names so many members
         first = max(first, reach + 2 * width)
-    coupled = bool(_measure_brackets(file))
+    coupled = _measure_brackets(file) > 0
     least = 1 if index.periodic and not (pairs or coupled) else first
     size = index.size
     if size is not None and size < least:
