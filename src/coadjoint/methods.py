@@ -9,7 +9,7 @@ Read next: `coadjoint.solve.methods`.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -20,8 +20,16 @@ TERMS: Final = 3
 #: The method that is the motion itself, to rounding: its order is that of what its series leave
 #: out, in parts of a step, and no run shows it.
 EXACT: Final = "exact_body"
-#: Of how many steps one is composed, by its order.
-_LENGTHS: Final = MappingProxyType({2: 1, 4: 5, 6: 9})
+#: Of how many steps one is composed, by its order, which is 1 with noise.
+STEPS: Final = MappingProxyType({1: 1, 2: 1, 4: 5, 6: 9})
+#: The same in words, with the lengths of the steps.
+_COMPOSED: Final = MappingProxyType(
+    {
+        4: "five steps with the lengths of M. Suzuki (Physics Letters A 146 (1990) 319) of ",
+        6: "nine steps with the lengths of W. Kahan and R.-C. Li (Mathematics of Computation 66 "
+        "(1997) 1089) of ",
+    }
+)
 
 
 def list_fitting(judged: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -101,6 +109,7 @@ class StructuredMethod:
         keeps: What it keeps exactly, as a clause.
         theorem: What it is and why it keeps that, with the source.
         expects: Of a system to which it does not apply, what it expects of others.
+        noise: How the theorem goes on where there is noise; "" of a method without noise.
     """
 
     name: str
@@ -110,6 +119,7 @@ class StructuredMethod:
     keeps: str
     theorem: str
     expects: str = "rates without kinks"
+    noise: str = ""
 
     @property
     def macro(self) -> str:
@@ -121,7 +131,7 @@ class StructuredMethod:
         """How many states are searched for in a step; 0 of maps."""
         if self.file == "sequence":
             return 0
-        return self.order // 2 if self.file == "gauss" else _LENGTHS[self.order]
+        return self.order // 2 if self.file == "gauss" else STEPS[self.order]
 
     def count_memory(self, rows: int) -> int:
         """How many numbers a step of a state of so many rows leaves for the next one.
@@ -135,6 +145,36 @@ class StructuredMethod:
     def parts(self) -> int:
         """How many numbers of each row that are; sums of maps that keep nothing are plain."""
         return 0 if self.name == "kahan" else 1 + TERMS * self.stages
+
+    def compose(self, *orders: int) -> tuple[StructuredMethod, ...]:
+        """This method of order 2, and those of higher orders that are made of steps of it."""
+        composed = (
+            replace(
+                self,
+                name=f"{self.name}{order}",
+                order=order,
+                theorem=_COMPOSED[order] + self.theorem,
+                noise="",
+            )
+            for order in orders
+        )
+        return (self, *composed)
+
+    @property
+    def of_paths(self) -> StructuredMethod:
+        """The same method for motions with noise, in the sense of Stratonovich.
+
+        A step on orbits asks for the gradient of the whole energy of a step, noise and all.
+        """
+        is_action = "orbits" in self.needs
+        return replace(
+            self,
+            order=1,
+            needs=tuple(each for each in self.needs if each not in ACTION),
+            keeps=_ON_PATHS if is_action else self.keeps,
+            theorem=f"{self.theorem}, {self.noise}",
+            expects=self.expects + ", and noise by brackets" * is_action,
+        )
 
 
 @dataclass(frozen=True)
@@ -192,23 +232,8 @@ _ORBITS: Final = (*ACTION, "orbits")
 _ON_ORBITS: Final = (
     "Casimirs, to the rounding of each step, and the Poisson bracket: it stays on coadjoint orbits"
 )
-_MEAN: Final = (
-    "the coadjoint-mean method, a Poisson map on the dual of any Lie algebra: the discrete "
-    "Hamilton-Pontryagin principle with tau = exp (N. Bou-Rabee and J. E. Marsden, Foundations of "
-    "Computational Mathematics 9 (2009) 197)"
-)
-_SPHERICAL: Final = (
-    "the spherical midpoint, a Poisson map on products of the duals of so(3) (R. I. McLachlan, "
-    "K. Modin and O. Verdier, Mathematics of Computation 86 (2017) 2325) and, as their limit in "
-    "dual numbers, of se(3) (docs/decisions/coadjoint-orbits.md)"
-)
-_SPHERES: Final = (
-    "a motion that is the bracket with its energy alone, on the dual of a product of so(3) and "
-    "se(3)"
-)
-_LIE_POISSON: Final = (
-    "a motion that is the bracket with its energy alone, which is linear in the state"
-)
+_ON_PATHS: Final = "Casimirs, to the rounding of each step, and the Poisson bracket"
+_OF_ONE_ENERGY: Final = "with H + sum_k H_k dW_k/h as the energy of a step, in Stratonovich's sense"
 
 _BALANCE: Final = (
     "the energy, to the rounding of each step, or its balance with the power of forces; Casimirs "
@@ -222,110 +247,58 @@ _TENSOR: Final = (
 _TENSORS: Final = "an energy, and a Poisson or almost-Poisson tensor in closed form"
 
 _ENTRIES: Final = (
-    StructuredMethod(
+    *StructuredMethod(
         name="midpoint",
         file="midpoint",
         order=2,
         needs=(),
         keeps="linear and quadratic integrals, to the rounding of each step",
         theorem=f"the implicit midpoint, which keeps quadratic integrals ({_QUADRATIC})",
-    ),
-    StructuredMethod(
-        name="midpoint4",
-        file="midpoint",
-        order=4,
-        needs=(),
-        keeps="linear and quadratic integrals, to the rounding of each step",
-        theorem="five steps of the implicit midpoint with Suzuki's lengths (Physics Letters A 146 "
-        "(1990) 319), which keep quadratic integrals",
-    ),
-    StructuredMethod(
-        name="midpoint6",
-        file="midpoint",
-        order=6,
-        needs=(),
-        keeps="linear and quadratic integrals, to the rounding of each step",
-        theorem="nine steps of the implicit midpoint with the lengths of Kahan and Li (Mathematics "
-        "of Computation 66 (1997) 1089), which keep quadratic integrals",
-    ),
-    StructuredMethod(
+        noise="and for Stratonovich's equations keeps them on each path (J. Hong, D. Xu and P. "
+        "Wang, Applied Numerical Mathematics 87 (2015) 38), with bounded increments (G. N. "
+        "Milstein, Yu. M. Repin and M. V. Tretyakov, SIAM Journal on Numerical Analysis 40 (2002) "
+        "1583)",
+    ).compose(4, 6),
+    *StructuredMethod(
         name="coadjoint_mean",
         file="coadjoint_mean",
         order=2,
         needs=_ORBITS,
         keeps=_ON_ORBITS,
-        theorem=_MEAN,
-        expects=_LIE_POISSON,
-    ),
-    StructuredMethod(
-        name="coadjoint_mean4",
-        file="coadjoint_mean",
-        order=4,
-        needs=_ORBITS,
-        keeps=_ON_ORBITS,
-        theorem="five steps with Suzuki's lengths of the coadjoint-mean method, a Poisson map",
-        expects=_LIE_POISSON,
-    ),
-    StructuredMethod(
-        name="coadjoint_mean6",
-        file="coadjoint_mean",
-        order=6,
-        needs=_ORBITS,
-        keeps=_ON_ORBITS,
-        theorem="nine steps with the lengths of Kahan and Li of the coadjoint-mean method, a "
-        "Poisson map",
-        expects=_LIE_POISSON,
-    ),
-    StructuredMethod(
+        theorem="the coadjoint-mean method, a Poisson map on the dual of any Lie algebra: the "
+        "discrete Hamilton-Pontryagin principle with tau = exp (N. Bou-Rabee and J. E. Marsden, "
+        "Foundations of Computational Mathematics 9 (2009) 197)",
+        expects="a motion that is the bracket with its energy alone, which is linear in the state",
+        noise=_OF_ONE_ENERGY,
+    ).compose(4, 6),
+    *StructuredMethod(
         name="spherical_midpoint",
         file="spherical_midpoint",
         order=2,
         needs=(*_ORBITS, "spheres"),
         keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
-        theorem=_SPHERICAL,
-        expects=_SPHERES,
-    ),
-    StructuredMethod(
-        name="spherical_midpoint4",
-        file="spherical_midpoint",
-        order=4,
-        needs=(*_ORBITS, "spheres"),
-        keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
-        theorem="five steps with Suzuki's lengths of the spherical midpoint, a Poisson map",
-        expects=_SPHERES,
-    ),
-    StructuredMethod(
-        name="spherical_midpoint6",
-        file="spherical_midpoint",
-        order=6,
-        needs=(*_ORBITS, "spheres"),
-        keeps=f"{_ON_ORBITS}; on one sphere also a quadratic energy",
-        theorem="nine steps with the lengths of Kahan and Li of the spherical midpoint, a Poisson "
-        "map",
-        expects=_SPHERES,
-    ),
-    *(
-        StructuredMethod(
-            name=f"isospectral_midpoint{suffix}",
-            file="isospectral_midpoint",
-            order=order,
-            needs=(*_ORBITS, "sandwich"),
-            keeps=f"{_ON_ORBITS}; the spectrum of the matrix",
-            theorem=f"{steps}the isospectral midpoint, a Poisson map on the dual of an algebra of "
-            "matrices with all products B A B (K. Modin and M. Viviani, Foundations of "
-            "Computational Mathematics 20 (2020) 889)",
-            expects="a motion that is the bracket with its energy alone, on the dual of an algebra "
-            "of 3 to 28 matrices other than so(3) that has all products B A B, or lacks multiples "
-            "of 1 or i alone: so(n), so(p,q), se(n), su(n), u(n), sl(n), gl(n), sp(2n), symmetric "
-            "matrices with the bracket X N Y - Y N X, and so(n) with symmetric matrices that turn, "
-            f"in a basis in which these products take at most {C_STATEMENTS} statements",
-        )
-        for suffix, order, steps in (
-            ("", 2, ""),
-            ("4", 4, "five steps with Suzuki's lengths of "),
-            ("6", 6, "nine steps with the lengths of Kahan and Li of "),
-        )
-    ),
+        theorem="the spherical midpoint, a Poisson map on products of the duals of so(3) (R. I. "
+        "McLachlan, K. Modin and O. Verdier, Mathematics of Computation 86 (2017) 2325) and, as "
+        "their limit in dual numbers, of se(3) (docs/decisions/coadjoint-orbits.md)",
+        expects="a motion that is the bracket with its energy alone, on the dual of a product of "
+        "so(3) and se(3)",
+        noise=_OF_ONE_ENERGY,
+    ).compose(4, 6),
+    *StructuredMethod(
+        name="isospectral_midpoint",
+        file="isospectral_midpoint",
+        order=2,
+        needs=(*_ORBITS, "sandwich"),
+        keeps=f"{_ON_ORBITS}; the spectrum of the matrix",
+        theorem="the isospectral midpoint, a Poisson map on the dual of an algebra of matrices "
+        "with all products B A B (K. Modin and M. Viviani, Foundations of Computational "
+        "Mathematics 20 (2020) 889)",
+        expects="a motion that is the bracket with its energy alone, on the dual of an algebra of "
+        "3 to 28 matrices other than so(3) that has all products B A B, or lacks multiples of 1 or "
+        "i alone: so(n), so(p,q), se(n), su(n), u(n), sl(n), gl(n), sp(2n), symmetric matrices "
+        "with the bracket X N Y - Y N X, and so(n) with symmetric matrices that turn, in a basis "
+        f"in which these products take at most {C_STATEMENTS} statements",
+    ).compose(4, 6),
     *(
         StructuredMethod(
             name=f"gauss{order}",
@@ -339,22 +312,16 @@ _ENTRIES: Final = (
         )
         for order in (4, 6, 8)
     ),
-    *(
-        StructuredMethod(
-            name=f"discrete_gradient{suffix}",
-            file="discrete_gradient",
-            order=order,
-            needs=BALANCE,
-            keeps=_BALANCE,
-            theorem=f"{steps}{_TENSOR}, by the gradient at m corrected along the step (O. "
-            "Gonzalez, Journal of Nonlinear Science 6 (1996) 449)",
-            expects=_TENSORS,
-        )
-        for suffix, order, steps in (
-            ("", 2, ""),
-            ("4", 4, "five steps with Suzuki's lengths of "),
-        )
-    ),
+    *StructuredMethod(
+        name="discrete_gradient",
+        file="discrete_gradient",
+        order=2,
+        needs=BALANCE,
+        keeps=_BALANCE,
+        theorem=f"{_TENSOR}, by the gradient at m corrected along the step (O. Gonzalez, Journal "
+        "of Nonlinear Science 6 (1996) 449)",
+        expects=_TENSORS,
+    ).compose(4),
     StructuredMethod(
         name="average_gradient",
         file="average_gradient",
@@ -379,65 +346,45 @@ _ENTRIES: Final = (
         expects="a metriplectic motion P dh + G dS alone, with P dS = 0 and G dh = 0, whose tensor "
         "and G are in closed form",
     ),
-    *(
-        StructuredMethod(
-            name=f"nambu_gradient{suffix}",
-            file="nambu_gradient",
-            order=order,
-            needs=("energy", "energy_gradient", *DISTINGUISHED, "nambu"),
-            keeps="the energy and all distinguished functions, to the rounding of each step",
-            theorem=f"{steps}the product of discrete gradients of the energy and of all "
-            "distinguished functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. "
-            "Robidoux, Philosophical Transactions A 357 (1999) 1021)",
-            expects="a motion by Nambu's bracket alone, declared with at most six coordinates",
-        )
-        for suffix, order, steps in (("", 2, ""), ("4", 4, "five steps with Suzuki's lengths of "))
-    ),
+    *StructuredMethod(
+        name="nambu_gradient",
+        file="nambu_gradient",
+        order=2,
+        needs=("energy", "energy_gradient", *DISTINGUISHED, "nambu"),
+        keeps="the energy and all distinguished functions, to the rounding of each step",
+        theorem="the product of discrete gradients of the energy and of all distinguished "
+        "functions, which keeps each (R. I. McLachlan, G. R. W. Quispel and N. Robidoux, "
+        "Philosophical Transactions A 357 (1999) 1021)",
+        expects="a motion by Nambu's bracket alone, declared with at most six coordinates",
+    ).compose(4),
 )
 
-_POISSON: Final = (
-    "R. I. McLachlan, SIAM Journal on Scientific Computing 16 (1995) 151; E. Hairer, C. Lubich and "
-    "G. Wanner, Geometric Numerical Integration (2006), IX"
-)
-_KEPT_BY_FLOWS: Final = (
-    "the Poisson tensor, all Casimirs and leaves, to rounding; the energy within a bound"
-)
 _BLANES: Final = (
-    "with the parts of S. Blanes and P. C. Moan, Journal of Computational and Applied Mathematics "
+    " with the parts of S. Blanes and P. C. Moan, Journal of Computational and Applied Mathematics "
     "142 (2002) 313"
 )
 
 _MAPS: Final = (
-    StructuredMethod(
-        name="splitting",
-        file="sequence",
-        order=2,
-        needs=("flow1",),
-        keeps=_KEPT_BY_FLOWS,
-        theorem=f"a symmetric product of flows of parts of the energy, a Poisson map ({_POISSON})",
-    ),
-    StructuredMethod(
-        name="splitting4",
-        file="sequence",
-        order=4,
-        needs=("flow1",),
-        keeps=_KEPT_BY_FLOWS,
-        theorem=f"a product of flows of parts of the energy {_BLANES}, a Poisson map ({_POISSON})",
-    ),
-    StructuredMethod(
-        name="splitting6",
-        file="sequence",
-        order=6,
-        needs=("flow1",),
-        keeps=_KEPT_BY_FLOWS,
-        theorem=f"a product of flows of parts of the energy {_BLANES}, a Poisson map ({_POISSON})",
+    *(
+        StructuredMethod(
+            name=f"splitting{suffix}",
+            file="sequence",
+            order=order,
+            needs=("flow1",),
+            keeps="the Poisson tensor, all Casimirs and leaves, to rounding; the energy within a "
+            "bound",
+            theorem=f"a symmetric product of flows of parts of the energy{parts}, a Poisson map "
+            "(R. I. McLachlan, Physical Review Letters 71 (1993) 3043; E. Hairer, C. Lubich and G. "
+            "Wanner, Geometric Numerical Integration (2006), VII.4 and IX)",
+        )
+        for suffix, order, parts in (("", 2, ""), ("4", 4, _BLANES), ("6", 6, _BLANES))
     ),
     StructuredMethod(
         name="kahan",
         file="sequence",
         order=2,
         needs=("kahan",),
-        keeps="nothing exactly; quadratic motions that are integrable keep modified integrals",
+        keeps="nothing exactly; many quadratic motions that are integrable keep modified integrals",
         theorem="(1 - h/2 f'(x)) d = h f(x), symmetric and birational, and no Poisson map (E. "
         "Celledoni, R. I. McLachlan, B. Owren and G. R. W. Quispel, Journal of Physics A 46 (2013) "
         "025201)",
@@ -453,49 +400,14 @@ _MAPS: Final = (
     ),
 )
 
-_ON_PATHS: Final = "Casimirs, to the rounding of each step, and the Poisson bracket"
-_OF_ONE_ENERGY: Final = "with H + sum_k H_k dW_k/h as the energy of a step, in Stratonovich's sense"
-_BRACKETS: Final = "and noise by brackets"
-
-_NOISY_ENTRIES: Final = (
-    StructuredMethod(
-        name="heun",
-        file="heun",
-        order=1,
-        needs=(),
-        keeps="linear integrals, to the rounding of each step",
-        theorem="Heun's method for Stratonovich's equations (W. Ruemelin, SIAM Journal on "
-        "Numerical Analysis 19 (1982) 604), which keeps linear integrals on each path",
-    ),
-    StructuredMethod(
-        name="spherical_midpoint",
-        file="spherical_midpoint",
-        order=1,
-        needs=("orbits", "spheres"),
-        keeps=_ON_PATHS,
-        theorem=f"{_SPHERICAL}, {_OF_ONE_ENERGY}",
-        expects=f"{_SPHERES}, {_BRACKETS}",
-    ),
-    StructuredMethod(
-        name="coadjoint_mean",
-        file="coadjoint_mean",
-        order=1,
-        needs=("orbits",),
-        keeps=_ON_PATHS,
-        theorem=f"{_MEAN}, {_OF_ONE_ENERGY}",
-        expects=f"{_LIE_POISSON}, {_BRACKETS}",
-    ),
-    StructuredMethod(
-        name="midpoint",
-        file="midpoint",
-        order=1,
-        needs=(),
-        keeps="linear and quadratic integrals, to the rounding of each step",
-        theorem="the implicit midpoint for Stratonovich's equations, which keeps quadratic "
-        "integrals on each path (J. Hong, D. Xu and P. Wang, Applied Numerical Mathematics 87 "
-        "(2015) 38), with bounded increments (G. N. Milstein, Yu. M. Repin and M. V. Tretyakov, "
-        "SIAM Journal on Numerical Analysis 40 (2002) 1583)",
-    ),
+_HEUN: Final = StructuredMethod(
+    name="heun",
+    file="heun",
+    order=1,
+    needs=(),
+    keeps="linear integrals, to the rounding of each step",
+    theorem="Heun's method for Stratonovich's equations (W. Ruemelin, SIAM Journal on Numerical "
+    "Analysis 19 (1982) 604), which keeps linear integrals on each path",
 )
 
 #: With a fixed step, without a method that keeps structure; and with noise.
@@ -509,7 +421,9 @@ OF_PATHS: Final = (
 )
 
 #: Methods of motions with noise, by name.
-NOISY: Final = MappingProxyType({each.name: each for each in _NOISY_ENTRIES})
+NOISY: Final = MappingProxyType(
+    {_HEUN.name: _HEUN} | {each.name: each.of_paths for each in reversed(_ENTRIES) if each.noise}
+)
 _TABLE: Final = {each.name: each for each in _ENTRIES}
 #: Every method that keeps structure, by name.
 STRUCTURED: Final = MappingProxyType(_TABLE)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coadjoint.build import compiler
+from coadjoint.build import compiler, processes
 from coadjoint.build.cache import cache_folder
 from coadjoint.build.compiler import (
     Compiler,
@@ -213,7 +213,7 @@ def test_a_limit_that_a_compiler_met_is_named_however_it_ended(monkeypatch, tmp_
     with pytest.raises(CompilerError, match=r"expected a version\. .*ulimit -n"):
         find_compiler()
     slow = Compiler((str(script(tmp_path, "slow", f"{said}; sleep 61")),), "slow 1.0")
-    monkeypatch.setattr(compiler._run, "__defaults__", (60, 0.5))
+    monkeypatch.setattr(processes.run_program, "__defaults__", (60, 0.5))
     with pytest.raises(CompilerError, match=r"did not finish in 0\.5 s: .*ulimit -n"):
         compile_kernel(slow, sources(tmp_path), "exact")
 
@@ -231,7 +231,7 @@ def test_a_compiler_that_met_no_limit_is_to_be_replaced(tmp_path, said):
 def test_a_limit_of_processor_time_of_the_session_is_named(monkeypatch, tmp_path):
     """Where it is below ours, the message names it and how to raise it."""
     fake = script(tmp_path, "loop", "kill -XCPU $$")
-    monkeypatch.setattr(compiler.resource, "getrlimit", lambda kind: (1, 1))
+    monkeypatch.setattr(processes.resource, "getrlimit", lambda kind: (1, 1))
     with pytest.raises(CompilerError, match=r"in 1 s of processor time: .*ulimit -t"):
         compile_kernel(Compiler((str(fake),), "loop 1.0"), sources(tmp_path), "exact")
 
@@ -272,7 +272,7 @@ void choose(int *chosen)
 def test_a_hanging_compiler_is_stopped(monkeypatch, tmp_path):
     """The limit is named, and nothing of it is left running."""
     fake = script(tmp_path, "slow", "sleep 61 & echo $! > started; wait")
-    monkeypatch.setattr(compiler._run, "__defaults__", (60, 0.5))
+    monkeypatch.setattr(processes.run_program, "__defaults__", (60, 0.5))
     with pytest.raises(CompilerError, match=r"the compiler did not finish in 0\.5 s: .*slow was"):
         compile_kernel(Compiler((str(fake),), "slow 1.0"), sources(tmp_path), "exact")
     wait_for_the_end(tmp_path / "started")
@@ -288,7 +288,7 @@ def wait_for_the_end(started):
 def test_a_compiler_that_never_ends_is_stopped_by_its_processor_time(monkeypatch, tmp_path):
     """A loop is told from a machine that is busy: the limit counts what the compiler used."""
     fake = script(tmp_path, "loop", "while :; do :; done")
-    monkeypatch.setattr(compiler._run, "__defaults__", (1, 120))
+    monkeypatch.setattr(processes.run_program, "__defaults__", (1, 120))
     told = r"in 1 s of processor time: .*loop was stopped while it compiled kernel\.c of \d+ KiB\."
     with pytest.raises(CompilerError, match=f"{told} Long texts take long"):
         compile_kernel(Compiler((str(fake),), "loop 1.0"), sources(tmp_path), "exact")
@@ -363,7 +363,7 @@ def test_a_failed_version_is_remembered(monkeypatch, tmp_path):
 def test_a_compiler_that_needs_too_much_memory_is_stopped(monkeypatch, tmp_path):
     """The limit holds for what the compiler starts, and its message is shown."""
     found = find_compiler()
-    monkeypatch.setattr(compiler, "COMPILE_BYTES", 2**20)
+    monkeypatch.setattr(processes, "COMPILE_BYTES", 2**20)
     with pytest.raises(CompilerError, match=r"failed on kernel\.c with status"):
         compile_kernel(found, sources(tmp_path), "exact")
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from coadjoint.systems import (
     elastic_chain,
     euler_2d,
     euler_disk,
+    heavy_top,
     hunter_saxton,
     rigid_body,
     rolling_ellipsoid,
@@ -161,6 +163,27 @@ def test_a_false_claim_is_caught(name, claim, expected, monkeypatch, capsys):
     assert [each for each in found.failures if expected in each]
     assert main(system, PACKAGE, ["--check", name]) == 1
     assert expected in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("order", [7, 8])
+def test_an_order_that_longer_steps_alone_show_is_compared(order, monkeypatch):
+    """Of short steps roundings alone are seen: gauss6 has the order 6, whatever is claimed."""
+    system = heavy_top.system
+    wrong = tuple(replace(x, order=order) if x.name == "gauss6" else x for x in system.METHODS)
+    monkeypatch.setattr(system, "METHODS", wrong)
+    (found,) = check_methods(system, ["gauss6"])
+    assert found.order == pytest.approx(6, abs=0.2)
+    assert f"its order is 6.0, and {order} is claimed" in found.failures
+
+
+def test_longer_steps_than_a_method_allows_accuse_nobody():
+    """Their order is 4.3: that of shorter ones counts, 2e-13 to 4e-16, roundings and all."""
+    ends = {4.0: 4.2004e-12, 2.0: 2.004e-13, 1.0: 4e-16, 0.5: 0.0}
+    runs = SimpleNamespace(is_noisy=False, step=1.0, count=8, states=None)
+    runs.run = lambda name, step, count, states: np.array([[1.0], [ends[step]]])
+    order, reached = self_check._find_order(runs, SimpleNamespace(name="gauss8", order=8))
+    assert reached
+    assert order == pytest.approx(np.log2(2e-13 / 4e-16))
 
 
 def test_members_are_drawn_inside_the_domain():

@@ -7,7 +7,8 @@ import pytest
 
 from coadjoint.derive.mechanics.constrained import start_motion
 from coadjoint.derive.mechanics.kinematics import rate_name
-from coadjoint.derive.mechanics.solver import Solve, solution_defects, solve_in_kernel, solver_names
+from coadjoint.derive.mechanics.solution_defects import solution_defects
+from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel, solver_names
 from coadjoint.exact import Field
 from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower

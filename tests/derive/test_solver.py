@@ -7,7 +7,8 @@ import pytest
 
 from coadjoint.crosscheck.oracle import oracle
 from coadjoint.derive import derive, make_setting
-from coadjoint.derive.mechanics.solver import Solve, solution_defects, solve_in_kernel, solver_names
+from coadjoint.derive.mechanics.solution_defects import solution_defects
+from coadjoint.derive.mechanics.solver import Solve, solve_in_kernel, solver_names
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, DerivationError, LimitError
 from coadjoint.exact import Field

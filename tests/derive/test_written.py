@@ -167,7 +167,7 @@ VOLTERRA = """
 title = "Volterra's lattice"
 routes = ["poisson"]
 [index]
-i = { size = 5, periodic = true }
+i = { size = 5, periodic = true, written_out = true }
 [variables]
 c = { role = "coordinate", index = "i", default = 1 }
 [poisson.brackets]
@@ -183,7 +183,7 @@ conserved = ["energy", "sum(i, c[i]^2/2 + c[i]*c[i+1])"]
 def test_members_may_have_brackets_with_their_neighbours():
     """Volterra's lattice: dc_i/dt = c_i (c_(i+1) - c_(i-1)), also with two ends."""
     ring, chain = read(VOLTERRA), read(VOLTERRA.split("[claims]")[0], (", periodic = true", ""))
-    assert ring.written == chain.written == "brackets couple members"
+    assert ring.written == chain.written == "written_out = true asks for it"
     c = sympy.symbols("c_:5")
     turned = [c[i] * (c[(i + 1) % 5] - c[i - 1]) for i in range(5)]
     assert [sympy.expand(a - b) for a, b in zip(derive(ring).rates, turned, strict=True)] == [0] * 5
@@ -201,10 +201,11 @@ def test_members_may_have_brackets_with_their_neighbours():
         (("{c[i], c[i+1]}", "{c[i], c[k+1]}"), "there is no index 'k'"),
     ],
 )
-def test_bad_brackets_of_neighbours_are_refused(change, said):
+@pytest.mark.parametrize("asked", [", written_out = true", ""])
+def test_bad_brackets_of_neighbours_are_refused(change, said, asked):
     """With the key, and advice that works."""
     with pytest.raises(SpecError) as caught:
-        read(VOLTERRA.split("[claims]")[0], change)
+        read(VOLTERRA.split("[claims]")[0], (", written_out = true", asked), change)
     assert said in str(caught.value)
     assert "poisson.brackets" in str(caught.value)
 

@@ -8,7 +8,8 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
-from coadjoint.derive.mechanics.solver import Solve, solution_defects, solver_names
+from coadjoint.derive.mechanics.solution_defects import solution_defects
+from coadjoint.derive.mechanics.solver import Solve, solver_names
 from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import ConstrainedRates, about_constraints
 from coadjoint.prove.zero import decide_zero

@@ -348,8 +348,8 @@ def test_a_wrong_gradient_is_seen(monkeypatch, name, spoil, text):
 def test_a_wrong_bracket_is_seen(monkeypatch):
     """Likewise: a vector that is twice as long."""
 
-    def spoil(family, bracket):
-        return action.add_action(family, lambda find: bracket(lambda c, k: 2 * find(c, k)))
+    def spoil(family, bracket, ends):
+        return action.add_action(family, lambda find: bracket(lambda c, k: 2 * find(c, k)), ends)
 
     monkeypatch.setattr("coadjoint.derive.indexed.add_action", spoil)
     with pytest.raises(CrossCheckError, match=r"rung 4: .*: bracket_vector of"):

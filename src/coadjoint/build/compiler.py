@@ -1,48 +1,31 @@
-"""The compiler: found, asked for its version, and run on one kernel or solver within limits.
+"""The compiler: found, asked for its version, and run on one kernel or solver.
 
 Comes in: a folder with a C file and its header. Goes out: a shared object in it. Nothing here
-passes through a shell, and ``CC`` is a program's name and nothing more. Compilers end with whoever
-waits for them: at once on Ctrl-C, and when this process is killed (`coadjoint.build.warden`).
+passes through a shell, and ``CC`` is a program's name and nothing more.
+Read next: `coadjoint.build.processes`, which runs it within limits.
 """
 
 from __future__ import annotations
 
-import errno
 import os
 import platform
 import re
-import resource
 import shutil
-import signal
-import subprocess
 import sys
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from threading import Lock
-from typing import TYPE_CHECKING
 
-from coadjoint.build import warden
 from coadjoint.build.calling import SUPPORT
+from coadjoint.build.processes import ANOTHER, advise, run_program, with_signal
 from coadjoint.build.source import KERNEL, Source
 from coadjoint.build.versions import keep_version, recall_version
-from coadjoint.errors import CompilerError, errno_of, remedy_for
-from coadjoint.limits import COMPILE_BYTES, COMPILE_SECONDS, COMPILE_WALL_SECONDS
-
-if TYPE_CHECKING:
-    from concurrent.futures import ThreadPoolExecutor
+from coadjoint.errors import CompilerError, errno_of
 
 CANDIDATES = ("cc", "gcc", "clang")
-ANOTHER = "Set CC to another compiler."
-#: What to do where one takes too long.
-SMALLER = (
-    "Long texts take long: a system with fewer coupled variables, members or observables has "
-    "shorter ones. Where the text is short, the compiler hangs: set CC to another one."
-)
 HOW_TO_GET_ONE = "Install one: `apt install gcc`, or `pip install 'coadjoint[c]'` anywhere."
 #: What ``CC`` may be: a name or path; a leading - or @ would be an option of another program.
 _PLAIN_PROGRAM = re.compile(r"[A-Za-z0-9_./+][A-Za-z0-9_./+-]*")
@@ -91,8 +74,6 @@ _HASTY = (
 )
 #: ``-z now``: a symbol that is missing is missed when the library is loaded, not in a first call.
 _SHARED = ("-fPIC", "-shared", *(("-Wl,-z,now",) if sys.platform == "linux" else ()))
-#: What a driver says of a program that ran out of processor time.
-_OUT_OF_TIME = "CPU time limit exceeded"
 #: Seconds in which a compiler tells its version.
 VERSION_SECONDS = 30
 
@@ -227,12 +208,14 @@ def _compiler(command: tuple[str, ...]) -> Compiler:
     known = recall_version(command)
     if known is not None:
         return Compiler(command, *known)
-    status, output = _run((*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS)
+    status, output = run_program(
+        (*command, "--version"), Path("/"), VERSION_SECONDS, VERSION_SECONDS
+    )
     if status != 0 or not output.strip():
-        said = _with_signal(output, status)
+        said = with_signal(output, status)
         raise CompilerError(
             f"{' '.join(command)} --version ended with status {status} and said "
-            f"{output.strip()[:200]!r}; expected a version. {_advise(said)}",
+            f"{output.strip()[:200]!r}; expected a version. {advise(said)}",
             found=command[0],
             status=status,
         )
@@ -268,10 +251,10 @@ def compile_kernel(
 
     def attempt(machine: tuple[str, ...]) -> tuple[int, str]:
         flags = compiler.flags(build, source, machine=machine)
-        return _run((*compiler.command, *flags, *files, "-o", result.name, "-lm"), folder)
+        return run_program((*compiler.command, *flags, *files, "-o", result.name, "-lm"), folder)
 
     status, output = attempt(MACHINES[0])
-    said = _with_signal(output, status)
+    said = with_signal(output, status)
     if status != 0 and not errno_of(said):  # it failed itself, and met no limit
         for machine in MACHINES[1:]:
             if attempt(machine)[0] == 0:
@@ -281,7 +264,7 @@ def compile_kernel(
     if status != 0:
         raise CompilerError(
             f"{compiler.command[0]} failed on {source.files[0]} with status {status}: "
-            f"{output.strip()[:600] or 'no output'}. {_advise(said)}",
+            f"{output.strip()[:600] or 'no output'}. {advise(said)}",
             found=compiler.command[0],
             status=status,
         )
@@ -307,158 +290,3 @@ def _tell_refused(compiler: Compiler, machine: tuple[str, ...]) -> None:
 
 #: First bytes of shared objects: ELF, and Mach-O in its 64-bit and universal forms.
 _MAGIC = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
-
-
-@contextmanager
-def compilers() -> Iterator[ThreadPoolExecutor]:
-    """Threads in which compilers are waited for; Ctrl-C ends what runs, and the wait with it."""
-    from concurrent.futures import ThreadPoolExecutor  # nothing waits where all is compiled
-
-    pool = ThreadPoolExecutor()
-    with _lock:
-        _pools.add(pool)
-    try:
-        yield pool
-    except Exception:
-        pool.shutdown(cancel_futures=True)
-        raise
-    except BaseException:  # Ctrl-C
-        _stop()
-        pool.shutdown(cancel_futures=True)
-        raise
-    finally:
-        pool.shutdown()
-        with _lock:
-            _pools.discard(pool)
-            _stopped.intersection_update(_pools)
-
-
-#: Compilers that run, pools that are in use, and those of them that were interrupted.
-_running: set[subprocess.Popen[bytes]] = set()
-_pools: set[ThreadPoolExecutor] = set()
-_stopped: set[ThreadPoolExecutor] = set()
-_lock = Lock()
-
-
-def _stop() -> None:
-    """End every compiler of this process; none starts again until the pools have ended."""
-    with _lock:
-        _stopped.update(_pools)
-        for process in _running:
-            _kill(process)
-
-
-def _run(
-    command: tuple[str, ...],
-    folder: Path,
-    seconds: int = COMPILE_SECONDS,
-    wall_seconds: int = COMPILE_WALL_SECONDS,
-) -> tuple[int, str]:
-    """Run a program in a folder within limits; status and output, standard error included.
-
-    Args:
-        command: Its absolute path and its arguments.
-        folder: Where it works.
-        seconds: Limit of processor time.
-        wall_seconds: Limit of wall time, for programs that hang.
-
-    Raises:
-        CompilerError: It took too long, was interrupted, or could not be started.
-    """
-    kept = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
-    limits = (str(COMPILE_BYTES), str(seconds))
-    ours, theirs = -1, -1
-    try:
-        theirs, ours = os.pipe()
-        with _lock:
-            if _stopped:
-                raise _interruption_error(command)
-            process = subprocess.Popen(
-                (sys.executable, "-I", "-S", warden.__file__, *limits, *command),
-                cwd=folder,
-                env={**kept, "LC_ALL": "C", "TMPDIR": str(folder)},
-                stdin=theirs,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
-            _running.add(process)
-        try:
-            output = process.communicate(timeout=wall_seconds)[0].decode(errors="replace")
-        except subprocess.TimeoutExpired as error:
-            said = (error.output or b"").decode(errors="replace")
-            advice = remedy_for(said) or SMALLER
-            raise _timeout_error(command, folder, wall_seconds, "", advice) from None
-        finally:
-            with _lock:
-                _running.discard(process)
-            _kill_group(process)
-        if _stopped:
-            raise _interruption_error(command)
-    except OSError as error:
-        raise CompilerError(
-            f"{command[0]} could not be started: {error.strerror}. {remedy_for(error) or ANOTHER}",
-            found=command[0],
-        ) from error
-    finally:
-        for end in (ours, theirs):
-            if end >= 0:
-                os.close(end)
-    if process.returncode == 128 + signal.SIGXCPU or _OUT_OF_TIME in output:
-        most = resource.getrlimit(resource.RLIMIT_CPU)[1]
-        kind, advice = " of processor time", SMALLER
-        if 0 <= most < seconds:  # RLIM_INFINITY is -1 on some systems
-            seconds, advice = most, "Raise the limit of processor time (ulimit -t)."
-        raise _timeout_error(command, folder, seconds, kind, advice)
-    return process.returncode, output
-
-
-def _with_signal(output: str, status: int) -> str:
-    """What a compiler said, and the name of the signal that ended it."""
-    return f"{output}\n{signal.strsignal(status - 128)}" if status > 128 else output
-
-
-def _advise(said: str) -> str:
-    """What to do: against the limit that a compiler spoke of, else take another compiler."""
-    if errno_of(said) == errno.ENOMEM:
-        most = COMPILE_BYTES / 2**30
-        return (
-            f"{remedy_for(said)} A compiler may take {most:.3g} GiB; a smaller system needs less."
-        )
-    return remedy_for(said) or ANOTHER
-
-
-def _timeout_error(
-    command: tuple[str, ...], folder: Path, seconds: float, kind: str, advice: str
-) -> CompilerError:
-    """The compiler took too long, for a text whose size is told."""
-    at_work = ""
-    if any(each.endswith(".c") for each in command):
-        given = (each for each in folder.glob("*.c") if each.name != "build.c")
-        size, name = max(((each.stat().st_size, each.name) for each in given), default=(0, ""))
-        # that of the system: its parts are a few lines each
-        at_work = f" while it compiled {name} of {size / 1024:.0f} KiB" if name else ""
-    return CompilerError(
-        f"the compiler did not finish in {seconds:g} s{kind}: {command[0]} was stopped{at_work}. "
-        f"{advice}",
-        found=command[0],
-        limit=seconds,
-    )
-
-
-def _interruption_error(command: tuple[str, ...]) -> CompilerError:
-    return CompilerError(f"the compiler {command[0]} was interrupted.", found=command[0])
-
-
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill a child and everything it started; its session is its own."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-
-
-def _kill_group(process: subprocess.Popen[bytes]) -> None:
-    """End a child and everything it started."""
-    _kill(process)
-    process.wait()
-    if process.stdout is not None:
-        process.stdout.close()

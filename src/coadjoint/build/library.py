@@ -21,12 +21,8 @@ from typing import Any
 from coadjoint import __version__
 from coadjoint.build.cache import fetch, store, working_folder
 from coadjoint.build.calling import CALL, CALL_AT, LABEL, SUPPORT
-from coadjoint.build.compiler import (
-    ANOTHER,
-    Compiler,
-    compile_kernel,
-    find_compiler,
-)
+from coadjoint.build.compiler import Compiler, compile_kernel, find_compiler
+from coadjoint.build.processes import ANOTHER
 from coadjoint.build.source import KERNEL, Source
 from coadjoint.errors import CompilerError, OutputError, remedy_for, system_error
 

@@ -4,7 +4,7 @@ Comes in: ``warden.py MEMORY SECONDS PROGRAM ARGUMENT...``, and as standard inpu
 caller keeps open and never writes to. Goes out: the exit status of the program, 128 plus the number
 of a signal. When the pipe ends, because the caller was killed, everything that was started here is
 killed, too: no compiler outlives the run that asked for it. It starts in ten milliseconds, so it
-imports next to nothing. Read next: `coadjoint.build.compiler`, which calls it.
+imports next to nothing. Read next: `coadjoint.build.processes`, which calls it.
 """
 
 from __future__ import annotations

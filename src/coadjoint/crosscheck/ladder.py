@@ -23,7 +23,8 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from coadjoint.build.cache import working_folder
-from coadjoint.build.compiler import compiler_version, compilers
+from coadjoint.build.compiler import compiler_version
+from coadjoint.build.processes import compilers
 from coadjoint.crosscheck.bits import compare_chunks, equal_bits
 from coadjoint.crosscheck.compare import Figures, against_oracle, exact_points
 from coadjoint.crosscheck.oracle import Reference

@@ -16,13 +16,13 @@ Read next: `coadjoint.families`, then `coadjoint.prove.indexed`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy
 
-from coadjoint.derive.action import add_action
+from coadjoint.derive.action import Bracket, add_action
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.mechanics.turning import step_back, turning_residuals
@@ -88,7 +88,7 @@ def derive_family(equations: Equations) -> Family:
         singles=reader.singles_of(totals),
         wraps=declared.index.periodic or reader.is_closed,
     )
-    return add_action(family, reader.multiply) if reader.has_blocks else family
+    return family if reader.brackets is None else add_action(family, *reader.brackets)
 
 
 @dataclass(frozen=True)
@@ -124,37 +124,43 @@ class _Reader(TotalsReader):
 
     # -- the bracket --------------------------------------------------------------------
 
-    @cached_property
-    def tensor(self) -> list[dict[str, Element]]:
-        """Rows of the bracket of the member in the middle, by the components of all members."""
-        equations, names = self.equations, self.names_of(self.declared.variables, self.middle)
+    def tensor_of(self, member: int) -> list[dict[str, Element]]:
+        """Rows of the bracket of a member, by the components of all members."""
+        equations, names = self.equations, self.names_of(self.declared.variables, member)
         tensor, state = equations.exact.poisson_tensor, equations.variables
         assert tensor is not None, equations.route
         rows = (map(equations.close, tensor[state.index(name)]) for name in names)
         zero = equations.setting.field.is_zero
         return [{c: x for c, x in zip(state, row, strict=True) if not zero(x)} for row in rows]
 
-    @property
-    def has_blocks(self) -> bool:
-        """Whether there is a bracket, and that of a member is one of its own components."""
+    def has_bracket(self, names: Iterable[str]) -> bool:
+        """Whether there is a bracket, and that of a member is one of some components alone."""
         equations = self.equations
         if equations.exact.poisson_tensor is None or equations.distribution is not None:
             return False
-        own = {*self.names_of(self.names, self.middle), *self.shared}
-        reach = equations.setting.field.reach
-        return all({c} | reach(x) <= own for row in self.tensor for c, x in row.items())
+        own, reach = {*names, *self.shared}, equations.setting.field.reach
+        rows = self.tensor_of(self.middle)
+        return all({c} | reach(x) <= own for row in rows for c, x in row.items())
 
-    def multiply(self, find: Callable[[str, int], sympy.Symbol]) -> list[sympy.Expr]:
+    @property
+    def brackets(self) -> tuple[Bracket, dict[int, Bracket]] | None:
+        """The bracket of a member, and of those at the ends, where neighbours have one with it."""
+        if not self.has_bracket(symbol.name for symbol in self.see_around(self.middle)):
+            return None
+        is_alone = self.has_bracket(self.names_of(self.names, self.middle))
+        ends, count = () if is_alone else self.ends, self.members.count
+        return self.multiply(self.middle), {end: self.multiply(end % count) for end in ends}
+
+    def multiply(self, member: int) -> Bracket:
         """The bracket of a member times a vector, whose components are given by their names."""
-        new, names = (
-            self.rename(self.middle, 0, 0),
-            self.names_of(self.declared.variables, self.middle),
-        )
-        own = dict(zip(names, (s.name for s in self.states), strict=True))
-        return [
-            sympy.Add(*(self.write(x).xreplace(new) * find(own[c], 0) for c, x in row.items()))
-            for row in self.tensor
+        new = self.see_around(member)
+        places = {symbol: (each.name, shift) for (each, shift), symbol in self.neighbours.items()}
+        places |= {symbol: (symbol.name, 0) for symbol in self.states}
+        rows = [
+            [(self._rename(self.write(x), new), places[new[sympy.Symbol(c)]]) for c, x in own]
+            for own in map(dict.items, self.tensor_of(member))
         ]
+        return lambda find: [sympy.Add(*(x * find(*place) for x, place in row)) for row in rows]
 
     # -- noise --------------------------------------------------------------------------
 

@@ -26,7 +26,8 @@ from coadjoint.derive.mechanics.distribution import Distribution, Equation, Row
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.kinematics import rate_name
 from coadjoint.derive.mechanics.sections import section_components
-from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.mechanics.solution_defects import solution_defects
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, element_text
 from coadjoint.exact.dense import adjugate, determinant, dot

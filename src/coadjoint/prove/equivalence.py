@@ -20,7 +20,8 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
 )
 from coadjoint.derive.mechanics.iteration import Newton
-from coadjoint.derive.mechanics.solver import Solve, solution_defects
+from coadjoint.derive.mechanics.solution_defects import solution_defects
+from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import determinant

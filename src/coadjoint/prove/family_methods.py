@@ -73,7 +73,7 @@ _QUADRATIC: Final = (
 )
 _BLOCKS: Final = (
     "it expects an energy that is a sum over members and pairs, and a bracket in closed form of "
-    "the components of each member"
+    "each member and its neighbours"
 )
 _PLANE: Final = "Python leads the steps of a field in a plane, between transforms"
 #: Methods of NOISY whose steps there are as loops over members.

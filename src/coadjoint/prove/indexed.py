@@ -16,8 +16,8 @@ over the members, and so is its rate:
   alone, is a function of them and the members near them, the same for every N. It vanishes if F
   does for three numbers that follow one another; then F does for every larger one.
 
-The energy is kept since the bracket is antisymmetric for each member. Comes in: the certificates of
-the windows. Goes out: one certificate, in which each claim says for which N it holds.
+The energy is kept since the bracket is antisymmetric. Comes in: the certificates of the windows.
+Goes out: one certificate, in which each claim says for which N it holds.
 Read next: `coadjoint.spec.windows`, which chooses the windows.
 """
 

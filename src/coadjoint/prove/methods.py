@@ -25,6 +25,7 @@ from coadjoint.methods import (
     BY_ENERGY,
     MAPPED,
     NOISY,
+    STEPS,
     STRUCTURED,
     JudgedMethod,
     StructuredMethod,
@@ -46,8 +47,6 @@ METRIPLECTIC: Final = (
     "of a metriplectic motion G dh = 0 holds for the derivative of the energy, and not for a "
     "discrete gradient; metriplectic_gradient projects G along that"
 )
-#: Steps of order 2 that make one of each order; with noise they have order 1.
-STEPS: Final = {1: 1, 2: 1, 4: 5, 6: 9}
 #: What methods for other motions lack.
 WITH_NOISE: Final = "motions with noise have methods of their own: "
 

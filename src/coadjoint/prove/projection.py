@@ -16,7 +16,7 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.distribution import Distribution
 from coadjoint.derive.mechanics.kinematics import moved_names, multiplier_name, shift_name
-from coadjoint.derive.mechanics.solver import solution_defects
+from coadjoint.derive.mechanics.solution_defects import solution_defects
 from coadjoint.derive.mechanics.turning import turned_back
 from coadjoint.exact import Element
 from coadjoint.prove.constrained import ConstrainedRates

@@ -33,25 +33,21 @@ TEMPLATE: Final = "c/header.h.j2"
 
 #: Methods that keep no structure, in the form of those that do.
 PLAIN: Final = {
-    each.name: each
-    for each in (
-        StructuredMethod(
-            name="rk4",
-            file="rk4",
-            order=4,
-            needs=(),
-            keeps="linear integrals",
-            theorem="the classical method of W. Kutta, Zeitschrift fuer Mathematik und Physik 46 "
-            "(1901) 435",
+    name: StructuredMethod(
+        name=name, file=name, order=order, needs=(), keeps="linear integrals", theorem=theorem
+    )
+    for name, order, theorem in (
+        (
+            "rk4",
+            4,
+            "the classical method of W. Kutta, Zeitschrift fuer Mathematik und Physik 46 (1901) "
+            "435",
         ),
-        StructuredMethod(
-            name="dop853",
-            file="dop853",
-            order=8,
-            needs=(),
-            keeps="linear integrals",
-            theorem="the explicit method of order 8 by E. Hairer, S. P. Norsett and G. Wanner, "
-            "Solving Ordinary Differential Equations I (1993), II.5, with a fixed step",
+        (
+            "dop853",
+            8,
+            "the explicit method of order 8 by E. Hairer, S. P. Norsett and G. Wanner, Solving "
+            "Ordinary Differential Equations I (1993), II.5, with a fixed step",
         ),
     )
 }

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning, compilers
+from coadjoint.build.compiler import HOW_TO_GET_ONE, CompilerWarning
+from coadjoint.build.processes import compilers
 from coadjoint.errors import CompilerError, CrossCheckError, KernelArgumentError
 from coadjoint.render.targets import BUILDS
 from coadjoint.solve.ready import make_ready

@@ -391,24 +391,27 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     """The order by three runs with steps that are halved, and whether some reached the end.
 
     Where it is too low, steps may be too long for it: those of a run more are half as long. Where
-    there are roundings alone, those of a run more are twice as long, as far as they are solved.
+    there are roundings alone, those of a run more are twice as long, as far as they are solved; of
+    an order that is too low there, the shorter steps tell whether these are too long. Roundings
+    make the last gap larger, and the order smaller.
     """
     if runs.is_noisy:
         return _compare([runs.follow_paths(method.name, part) for part in (1, 2, 4)], mean=True)
     first = runs.step * (2.0 if method.order > 4 else 1.0)
-    count = runs.count
+    count, enough = runs.count, method.order - SHY
     ends = [runs.run(method.name, first / part, count * part, runs.states) for part in (1, 2, 4)]
     order, reached = _compare(ends)
     for power in range(1, SOONER + 1):
         if order is not None or not reached or not count >> power:
             break
         longer = runs.run(method.name, first * 2**power, count >> power, runs.states)
+        order, _ = _compare([longer, *ends[:2]])
+        if order is not None:
+            shorter, _ = (order, True) if order > enough else _compare(ends, rounded=0.0)
+            return None if shorter is None else max(order, shorter), True
         ends = [longer, *ends[:2]]
-        order, _ = _compare(ends)
-        if order is not None:  # shorter steps of a lower order would have left more than roundings
-            return (order if order > method.order - SHY else None), True
     for part in LATER:
-        if order is None or order > method.order - SHY:
+        if order is None or order > enough:
             break
         ends = [*ends[1:], runs.run(method.name, first / part, count * part, runs.states)]
         again, _ = _compare(ends)
@@ -416,12 +419,15 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
     return order, reached
 
 
-def _compare(ends: list[Array], *, mean: bool = False) -> tuple[float | None, bool]:
+def _compare(
+    ends: list[Array], *, mean: bool = False, rounded: float = ROUNDED
+) -> tuple[float | None, bool]:
     """The order by the ends of three runs; None where they differ by roundings alone.
 
     Args:
         ends: States, with halved steps.
         mean: Whether the mean gap counts, and not the largest one.
+        rounded: Gaps up to that, relative to the state, are roundings.
     """
     reached = np.isfinite(ends).all(axis=(0, 1))
     if not reached.any():
@@ -430,7 +436,7 @@ def _compare(ends: list[Array], *, mean: bool = False) -> tuple[float | None, bo
     size = float(np.abs(three).max())
     find = np.mean if mean else np.max
     gaps = float(find(np.abs(one - two))), float(find(np.abs(two - three)))
-    if not gaps[1] > ROUNDED * size:
+    if not gaps[1] > rounded * size:
         return None, True
     return math.log2(gaps[0] / gaps[1]), True
 

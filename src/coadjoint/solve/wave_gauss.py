@@ -16,7 +16,7 @@ Read next: `coadjoint.solve.simulate`.
 
 Source:
     Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, theorem IV.2.1, and sections
-    VIII.5 for the sum of roundings and VIII.6.1 for steps by Z.
+    VIII.5 for the sum of roundings and VIII.6 for steps by Z.
 """
 
 from __future__ import annotations

@@ -86,8 +86,10 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
         for table in ("lagrangian", "lax"):
             if getattr(file, driving) and getattr(file, table) is not None:
                 yield f"there are tables [{driving}] and [{table}]"
-    if file.poisson is not None and any("[" in key for key in file.poisson.brackets or ()):
-        yield "brackets couple members"
+    couples = file.poisson is not None and any("[" in key for key in file.poisson.brackets or ())
+    for table in ("symmetries", "noise", "forces", "dissipation") if couples else ():
+        if getattr(file, table):
+            yield f"brackets couple members, and there is a table [{table}]"
     definitions = _read_definitions(file)
 
     def read(texts: Any) -> list[Node]:
@@ -136,6 +138,8 @@ def _list_misfits(file: Any, index: Index) -> Iterator[str]:
     most = max([0, *(n + 1 if n >= 0 else -n for found in find_ends(file, index) for n in found)])
     if most > limits.NEIGHBOURS:
         yield f"a member stands alone that is not among the first or last {limits.NEIGHBOURS}"
+    if couples and pairs:
+        yield "brackets couple members, and there are sums over pairs"
     if pairs and any(reach(each.term) != (0, 0) for each in rubbing):
         yield "Rayleigh's function couples neighbours, and there are sums over pairs"
 

@@ -10,6 +10,7 @@ The numbers are those from which the claims follow for every other number
 * a ring whose sums have terms of w + 1 neighbouring members: 2 w and 2 w + 1;
 * an open chain: w and w + 1, and enough for a member with all its neighbours;
 * one in which members at the ends stand alone: twice as many, and two more;
+* brackets of members b apart: as if the energy coupled members b further;
 * pairs: 2 and 3;
 * pairs and neighbours: 4 w, 4 w + 1 and 4 w + 2 in a ring, and in a chain 2 w, 2 w + 1 and 2 w + 2.
 
@@ -47,6 +48,8 @@ from coadjoint.spec.sections.lax import Lax
 from coadjoint.spec.sections.turning import TURNING, read_rotation
 
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
+#: What is added to the index in a bracket of two members.
+_PLACE = re.compile(r"\[\s*\w+\s*([-+]\s*\d{1,6})?\s*\]")
 
 
 def read_windows(
@@ -74,7 +77,9 @@ def read_windows(
         file = count_out(source, file, index, file.index[index.name].size)
     _check(source, file, index)
     asked = "written_out = true asks for it" if file.index[index.name].written_out else ""
-    misfit = misfit or asked or find_misfit(file, index)
+    far = _measure_brackets(file) > limits.NEIGHBOURS
+    apart = f"members more than {limits.NEIGHBOURS} apart have a bracket" if far else ""
+    misfit = misfit or asked or apart or find_misfit(file, index)
     if misfit:
         return _write_all(source, file, read, index, misfit)
     reach, width, pairs = _measure(source, file, index)
@@ -83,13 +88,16 @@ def read_windows(
     first = _first_window(index, reach, width, ends, pairs=pairs)
     if file.noise:  # what a process of one member does to a sum names so many members
         first = max(first, reach + 2 * width)
-    least = 1 if index.periodic and not pairs else first
+    coupled = _measure_brackets(file) > 0
+    least = 1 if index.periodic and not (pairs or coupled) else first
     size = index.size
     if size is not None and size < least:
         if pairs and size < 2:
             problem = f"the index {index.name!r} counts one member"
             raise source.fault(("index", index.name), problem, size, "at least 2 for pairs")
         few = f"a chain of fewer than {least} has no member with all its neighbours"
+        if coupled and index.periodic:
+            few = f"with brackets of neighbours claims are proved for all from {least} members on"
         if ends:
             few = f"the ends of a chain of fewer than {least} do not keep apart"
         if pairs:
@@ -402,7 +410,7 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
     energy += list_texts(file.lagrangian)
     energy += list_texts(file.noise)
     acting = [text for each in (file.forces, file.dissipation) for text in list_texts(each)]
-    reach = span([*energy, *acting])
+    reach = span([*energy, *acting]) + _measure_brackets(file)
     width = span(
         [*shared, *list_texts(file.observables), *list_texts(file.claims), *list_texts(file.lax)]
     )
@@ -412,6 +420,13 @@ def _measure(source: Source, file: Any, index: Index) -> tuple[int, int, bool]:
         problem = f"members that are {max(reach, width)} apart stand in one formula"
         raise source.too_many(("hamiltonian",), problem, max(reach, width), "NEIGHBOURS")
     return reach, width, pairs
+
+
+def _measure_brackets(file: Any) -> int:
+    """How far apart two members are that have a bracket, at the most."""
+    keys = () if file.poisson is None else file.poisson.brackets or ()
+    places = [[int(n.replace(" ", "") or 0) for n in _PLACE.findall(key)] for key in keys]
+    return max([0, *(max(shifts) - min(shifts) for shifts in places if shifts)])
 
 
 def name_fault(source: Source, key: KeyPath, index: str) -> CoadjointError:

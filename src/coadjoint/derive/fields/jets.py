@@ -7,9 +7,9 @@ Fields u and their derivatives :math:`u_k = \partial_s^k u` are symbols. On func
     E_u f = \sum_k (-D)^k \frac{\partial f}{\partial u_k},
 
 the total derivative and the Euler operator, which is the variational derivative of the integral of
-f over the circle (Olver 1993, Applications of Lie Groups to Differential Equations, 2nd ed.,
-theorem 4.7). f is a total derivative, ``f = D P``, if and only if ``E f = 0`` for every u, where
-f is a polynomial. For one of degree n the homotopy formula gives P:
+f over the circle. f is a total derivative, ``f = D P``, if and only if ``E f = 0`` for every u,
+where f is a polynomial (Olver 1993, Applications of Lie Groups to Differential Equations, 2nd ed.,
+theorem 4.7). For one of degree n the homotopy formula gives P:
 
 .. math:: P = \frac{1}{n} \sum_u \sum_{k \ge 0} u_k \sum_{j > k} (-D)^{j-k-1}
     \frac{\partial f}{\partial u_j}.

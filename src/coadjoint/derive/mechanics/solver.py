@@ -11,16 +11,15 @@ and ``U x = z``. For a symmetric one U is the transpose of L. Pivots are the sam
 leading minors. What is identically zero in W, y, z or x is left out, and x is then 0.
 More than `WRITTEN` unknowns of a symmetric matrix are not written out: the kernel has a loop
 (`coadjoint.exact.factored`), and what it gives are symbols that rest on A and b.
-Comes in: elements of A and b. Goes out: definitions, and what must vanish for them to be right.
+Comes in: elements of A and b. Goes out: definitions.
 Read next: `coadjoint.derive.mechanics.decided`, which finds the zeros;
-`coadjoint.derive.mechanics.legendre`, which solves for velocities.
+`coadjoint.derive.mechanics.solution_defects`, what must vanish for definitions to be right.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Final
 
 from coadjoint.derive.mechanics.decided import Decided
@@ -259,7 +258,7 @@ class _Elimination:
             name = column_name(self.solve.block[i], place)
             value = self.decided.value(self._rest(i, j))
             if value != 0:
-                leaf = self.solve.symmetric and _is_leaf(self.field, value)
+                leaf = self.solve.symmetric and is_leaf(self.field, value)
                 self._w[i, j] = value if leaf else self._entry(name, value)
         row = self._row(j)
         taken = self.field.sum(self._w[j, k] * self._z[k] for k in before if k in self._z)
@@ -294,7 +293,7 @@ class _Elimination:
     def _entry(self, name: str, value: Element) -> Element:
         """An entry of W, L or U by its name, or by that of an entry it is up to its sign."""
         value = self.decided.value(value)
-        if _is_leaf(self.field, value):
+        if is_leaf(self.field, value):
             return self._define(name, value)
         if (same := self._find_named(value)) is None:
             return self._define(name, value)
@@ -356,7 +355,7 @@ def factors(
             name = factor_name(row, column)
             if name in definitions:
                 value = definitions[name]
-                entries[i, k] = value if _is_leaf(field, value) else field[name]
+                entries[i, k] = value if is_leaf(field, value) else field[name]
                 entries[k, i] = entries[i, k]
             if not solve.symmetric and (own := column_name(row, column)) in definitions:
                 entries[i, k] = field[own] * entries[k, k]
@@ -365,7 +364,7 @@ def factors(
     return entries
 
 
-def _is_leaf(field: Field, value: Element) -> bool:
+def is_leaf(field: Field, value: Element) -> bool:
     """Whether a value costs no operation: a number, or a name up to its sign."""
     if field.as_number(value) is not None:
         return True
@@ -377,107 +376,3 @@ def _is_product(field: Field, value: Element) -> bool:
     """Whether a value has no sum in it."""
     divisors = [divisor for each in field.quotients(value) for divisor, _ in each.divisors]
     return all(len(field.terms(part)) < 2 for part in (value, *divisors))
-
-
-def solution_defects(
-    field: Field, solve: Solve, definitions: Mapping[str, Element]
-) -> list[Element]:
-    """Entries of ``W - L D``, ``W U - A``, ``W z - b``, ``D z - y``, ``U x - z``.
-
-    All are 0 for a solution; U is the transpose of L where A is symmetric, and else there is no L.
-    In each entry the name that is defined last is replaced by its definition, and reciprocals of
-    pivots are: that is enough for a proof, and no closed form is written out. Only where something
-    was left out as identically zero, all definitions are substituted. A loop has no defects: it
-    solves any equations whose leading minors do not vanish.
-    """
-    if solve.is_loop:
-        return []
-    return _Defects(field, solve, definitions).entries()
-
-
-class _Defects:
-    """The equations of `solution_defects`, with the definitions substituted as far as is needed."""
-
-    def __init__(self, field: Field, solve: Solve, definitions: Mapping[str, Element]) -> None:
-        self.field, self.solve, self.definitions = field, solve, definitions
-        self._size = range(len(solve.block))
-        own = {name for name in solver_names(solve.block) if name in definitions}
-        # entries that are others up to their sign, and pivots that are parameters
-        self._same = {name: v for name in own if _is_leaf(field, v := definitions[name])}
-        ones = map(reciprocal_name, solve.block)
-        self._ones = {name: definitions[name] for name in ones if name in definitions}
-        self._d = [self._value(pivot_name(place)) for place in solve.block]
-
-    def _value(self, name: str) -> Element:
-        """The symbol of a name; zero where nothing is defined."""
-        return self.field[name] if name in self.definitions else self.field.zero
-
-    def _l(self, i: int, j: int) -> Element:
-        if i == j:
-            return self.field.one
-        return self._value(factor_name(self.solve.block[i], self.solve.block[j]))
-
-    def _u(self, i: int, j: int) -> Element:
-        """An entry of U on or above the diagonal."""
-        if i == j or self.solve.symmetric:
-            return self._l(j, i)
-        return self._value(upper_name(self.solve.block[i], self.solve.block[j]))
-
-    def _w(self, i: int, j: int) -> Element:
-        """An entry of W by its name; by those of L and D where it has none."""
-        name = column_name(self.solve.block[i], self.solve.block[j])
-        if i == j:
-            return self._d[j]
-        if name in self.definitions or not self.solve.symmetric:
-            return self._value(name)
-        own = factor_name(self.solve.block[i], self.solve.block[j])
-        return self._reduce(own, self._l(i, j) * self._d[j])
-
-    def entries(self) -> list[Element]:
-        """All defects, row by row."""
-        field, block, size = self.field, self.solve.block, self._size
-        z = [self._value(scaled_name(place)) for place in block]
-        x = [field[name] for name in self.solve.names]
-        defects = []
-        for i in size:
-            for j in size[:i] if self.solve.symmetric else ():
-                own = factor_name(block[i], block[j])
-                defects.append((own, self._w(i, j) - self._l(i, j) * self._d[j]))
-            for j in size[: i + 1] if self.solve.symmetric else size:
-                last = min(i, j)
-                total = field.sum(self._w(i, k) * self._u(k, j) for k in size[: last + 1])
-                own = pivot_name(block[i]) if i == j else column_name(block[i], block[j])
-                own = upper_name(block[i], block[j]) if i < j else own
-                defects.append((own, total - self.solve.matrix[i][j]))
-            y, own = self._d[i] * z[i], scaled_name(block[i])
-            if forward_name(block[i]) in self.definitions:
-                y = field[forward_name(block[i])]
-                defects.append((own, self._d[i] * z[i] - y))
-                own = forward_name(block[i])
-            before = field.sum(self._w(i, k) * z[k] for k in size[:i])
-            defects.append((own, before + y - self.solve.known[i]))
-            total = field.sum(self._u(i, k) * x[k] for k in size[i:])
-            defects.append((self.solve.names[i], total - z[i]))
-        return [self._decide(last, defect) for last, defect in defects]
-
-    def _reduce(self, last: str, element: Element) -> Element:
-        """An element with one name and the reciprocals replaced by their definitions."""
-        if last in self._same:
-            element = self.field.substitute(element, {last: self._same[last]})
-            last = next(iter(self.field.reach(self._same[last])), "")
-        own = {last: self.definitions[last]} if last in self.definitions else {}
-        put = self.field.substitute(self.field.substitute(element, own), self._ones)
-        return self.field.substitute(put, self._same)
-
-    def _decide(self, last: str, defect: Element) -> Element:
-        """Zero where the last definition shows it, or all of them do."""
-        value = self._reduce(last, defect)
-        return self.field.zero if self.field.is_zero(value) else self._known.value(value)
-
-    @cached_property
-    def _known(self) -> Decided:
-        """All definitions in their order."""
-        known = Decided(self.field, ())
-        for name, value in self.definitions.items():
-            known.define(name, value)
-        return known

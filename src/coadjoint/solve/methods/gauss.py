@@ -1,8 +1,8 @@
 """Gauss: the implicit methods of Runge and Kutta of order 4, 6 and 8, in NumPy.
 
 They keep linear and quadratic integrals, carry a constant symplectic form along, and are their own
-adjoints: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), IV.2 and VI.4.
-Rounded tables would lose that, by an error of one sign in each step. So stages are written as
+adjoints: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration (2006), IV.2, V.2 and
+VI.4. Rounded tables would lose that, by an error of one sign in each step. So stages are written as
 M. Antonana, J. Makazaga and A. Murua have them, Numerical Algorithms 76 (2017) 861: with
 ``L_j = h b_j f(Y_j)``, ``Y_i = x + sum_j m_ij L_j`` and ``m_ij = a_ij/b_j``, all that quadratic
 integrals need is ``m_ij + m_ji = 1``, which holds here without rounding. Of the lengths ``h b_j``
