@@ -62,7 +62,10 @@ SCOPE = {
         ("C[2]", (3,)),
         ("rows(A[1], cross(A[2], A[3]), u)*w", (3,)),
         ("sqrt(s) + sin(s)*cos(s)/tan(s) - exp(s)*log(s)", ()),
-        ("sinh(s)/cosh(s) - tanh(s) + asin(s) - acos(s) + atan(s) - atan2(s, u[1])", ()),
+        (
+            "sinh(s)/cosh(s) - tanh(s) + asin(s) - acos(s) + atan(s) - atan2(s, u[1])/asinh(s) + atanh(s)",
+            (),
+        ),
         ("abs(s) + min(s, 1) - max(s, u[1])*sign(s) + pow(s, u[2])", ()),
     ],
 )
