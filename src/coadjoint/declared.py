@@ -71,8 +71,8 @@ class Bound:
     Attributes:
         name: Of the condition, or of what keeps surfaces apart; of the acceleration, or of the
             reaction, whose pivot it is; of the velocity that a Legendre transform gives.
-        kind: ``condition``, ``contact``, ``acceleration``, ``reaction``, ``transform``, ``range`` or
-            ``iteration``.
+        kind: ``condition``, ``contact``, ``acceleration``, ``reaction``, ``transform`` of a root,
+            ``range`` of a momentum, or ``iteration``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """

@@ -77,7 +77,8 @@ def find_inverse(
 def _solve(field: Field, function: Element, name: str, value: Element) -> Inverse | None:
     """One step further in."""
     whole = field.normal(function)
-    outer = [g for g in field.names_in(whole) & field.adjoined.keys() if name in field.reach(field[g])]
+    called = field.names_in(whole) & field.adjoined.keys()
+    outer = [g for g in called if name in field.reach(field[g])]
     if not outer:
         root = _solve_quotient(field, whole, name, name, value)
         if root is not None:
@@ -85,14 +86,14 @@ def _solve(field: Field, function: Element, name: str, value: Element) -> Invers
         return _solve_power(field, whole, name, value)
     if len(outer) == 1 and name not in field.names_in(whole):
         (generator,) = outer
-        called = field.adjoined[generator]
+        known = field.adjoined[generator]
         image = _solve_quotient(field, whole, generator, name, value)
-        undo = _INVERSES.get(called.function)
+        undo = _INVERSES.get(known.function)
         if image is not None and undo is not None:
             inner, bounds = undo(field, image)
-            if (found := _solve(field, called.argument, name, inner)) is not None:
-                known = {**found.known, generator: image}
-                return replace(found, known=known, range=(*bounds, *found.range))
+            if (found := _solve(field, known.argument, name, inner)) is not None:
+                images = {**found.known, generator: image}
+                return replace(found, known=images, range=(*bounds, *found.range))
     if (ratio := _solve_ratio(field, whole, outer, name, value)) is not None:
         return ratio
     return _solve_power(field, whole, name, value)

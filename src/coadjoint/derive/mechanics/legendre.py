@@ -3,9 +3,10 @@
 Comes in: l as an element, a function of the velocities. Goes out: the momenta dl/dxi, the
 velocities in terms of the momenta, and the energy. Where l is quadratic in the velocities, or a
 function of one quadratic form (`coadjoint.derive.mechanics.radial`), the inverse is written out, of
-up to `LARGEST_BLOCK` coupled velocities; so is that of a velocity which is coupled to no other, if
-its momentum is a function with a known inverse (`coadjoint.derive.mechanics.inverses`). More are solved for in the kernel, and so are
-those of any other l, by `coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
+up to `LARGEST_BLOCK` coupled velocities. So is that of a velocity which is coupled to no other, if
+its momentum is a function with a known inverse (`coadjoint.derive.mechanics.inverses`). More
+velocities are solved for in the kernel, and so are those of any other l, by
+`coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
