@@ -263,6 +263,8 @@ def test_the_advice_of_the_refusal_works():
     with pytest.raises(DerivationError, match="at rest") as caught:
         derive(spec(text))
     said = str(caught.value)
+    line, carets = said.splitlines()[-2:]
+    assert line[carets.index("^") : len(carets)] == '"v^n/n - k*q"'
     assert "Give a [hamiltonian] and the route canonical" in said
     assert "remove p and take the route euler-lagrange" in said
     head, _, _ = text.partition("[lagrangian]")
