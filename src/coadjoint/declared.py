@@ -71,8 +71,8 @@ class Bound:
     Attributes:
         name: Of the condition, or of what keeps surfaces apart; of the acceleration, or of the
             reaction, whose pivot it is; of the velocity that a Legendre transform gives.
-        kind: ``condition``, ``contact``, ``acceleration``, ``reaction``, ``transform`` or
-            ``iteration``.
+        kind: ``condition``, ``contact``, ``acceleration``, ``reaction``, ``transform`` of a root,
+            ``range`` of a momentum, or ``iteration``.
         strict: Whether it may not be zero.
         inputs: Components of state, parameters, inputs and time that it depends on.
     """
@@ -87,6 +87,8 @@ class Bound:
         """What the row is, for comments and messages."""
         if self.kind == "transform":
             return f"argument of a root in {self.name}"
+        if self.kind == "range":
+            return f"condition on the momentum of {self.name}"
         if self.kind == "iteration":
             return f"pivot of {self.name} in d2l/dxi2"
         return self.name if self.kind in ("condition", "contact") else f"pivot of {self.name}"

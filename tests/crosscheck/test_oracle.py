@@ -70,6 +70,8 @@ def test_envelopes_grow_with_the_slope(function):
         "tanh": lambda u: 1 / math.cosh(u) ** 2,
         "asin": lambda u: 1 / math.sqrt(1 - u**2),
         "acos": lambda u: 1 / math.sqrt(1 - u**2),
+        "asinh": lambda u: 1 / math.sqrt(1 + u**2),
+        "atanh": lambda u: 1 / (1 - u**2),
         "atan": lambda u: 1 / (1 + u**2),
         "sign": lambda u: 0.0,
     }

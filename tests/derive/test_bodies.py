@@ -17,7 +17,9 @@ TWO = '"euler-poincare", "lie-poisson"'
 
 def refusal(declared, route):
     """The message of a route that cannot be followed; it names the route and a line."""
-    with pytest.raises(DerivationError, match=rf":\d+: the route {route} cannot be") as caught:
+    with pytest.raises(
+        DerivationError, match=rf":\d+: \w+\.\w: the route {route} cannot be"
+    ) as caught:
         derive(declared, route)
     assert caught.value.route == route
     assert caught.value.exit_status == 2

@@ -84,7 +84,9 @@ def test_a_table_that_violates_jacobi_is_refused_with_its_triple(ask):
     assert str(error) == (
         "sample.toml:11: poisson.brackets: sample: the bracket violates the Jacobi identity: "
         "{x1, {x2, x3}} + cyclic = x1*x3*k - x3; expected 0. "
-        "Check the brackets between x1, x2 and x3."
+        "Check the brackets between x1, x2 and x3.\n"
+        '    "{x1, x2}" = "x3"\n'
+        "                 ^^^^"
     )
     assert error.parts["triple"] == ["x1", "x2", "x3"]
     assert (error.parts["path"], error.parts["line"]) == ("sample.toml", 11)

@@ -51,6 +51,10 @@ WORDS = {
         "vector(-(2 - x1^2)/((2 + x1^2)*sqrt((2 + x1^2)^2 - x1^2)), "
         "-k*(1 - tanh(x2)^2)/sqrt(4 - tanh(x2)^2))",
     ),
+    "inverse hyperbolic": (
+        "asinh(k*x1) - atanh(x2/(2 + x2^2))",
+        "vector(-k/sqrt(1 + k^2*x1^2), (2 - x2^2)/((2 + x2^2)^2 - x2^2))",
+    ),
     "atan": ("x1*atan(x1) - log(1 + x1^2)/2 + k*x2^2/2", "vector(-atan(x1), -k*x2)"),
     "angle": (
         "k*atan2(x2, x1) + dot(x, x)/2",

@@ -13,7 +13,7 @@ from coadjoint.exact.relations import relations_of
 
 NAMES = ("a", "b", "x", "y", "q")
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "sign")
-FUNCTIONS += ("asin", "acos", "atan", "atan2")
+FUNCTIONS += ("asin", "acos", "atan", "atan2", "asinh", "atanh")
 
 #: Identities that hold at every real point where both sides are defined.
 ZEROS = [
@@ -71,6 +71,15 @@ ZEROS = [
     "sin(asin(x)) - x",
     "cos(asin(x)) - sqrt(1 - x**2)",
     "sin(acos(x)) - sqrt(1 - x**2)",
+    "sinh(asinh(x)) - x",
+    "cosh(asinh(x))**2 - 1 - x**2",
+    "tanh(atanh(x)) - x",
+    "cosh(atanh(x)) - 1/sqrt(1 - x**2)",
+    "sinh(atanh(x))*sqrt(1 - x**2) - x",
+    "asinh(sinh(x)) - x",
+    "atanh(tanh(x)) - x",
+    "atanh(sinh(x)/cosh(x)) - x",
+    "asinh(-x) + asinh(x)",
     "tan(atan(x)) - x",
     "sin(atan2(y, x))*sqrt(x**2 + y**2) - y",
     "cos(atan2(y, x))*sqrt(x**2 + y**2) - x",
@@ -170,7 +179,7 @@ def real(function):
 
     def call(x, *other):
         is_outside = function in ("sqrt", "log") and x <= 0
-        if is_outside or (function in ("asin", "acos") and abs(x) >= 1):
+        if is_outside or (function in ("asin", "acos", "atanh") and abs(x) >= 1):
             raise ValueError(x)
         return getattr(mpmath, function)(x, *other)
 

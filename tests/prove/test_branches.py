@@ -475,7 +475,10 @@ def test_undecided_claims_name_the_system_and_the_claim():
     with pytest.raises(ClaimError) as caught:
         claimed(FREE, "q1", "p1^2 + 1")
     text = str(caught.value)
-    assert text.startswith("sample: undecided: q1 is conserved where p1^2 + 1 = 0: ")
+    place = f"sample.toml:{caught.value.line}: claims.conserved[1].claim: "
+    assert text.startswith(f"{place}undecided: q1 is conserved where p1^2 + 1 = 0: ")
+    line, carets = text.splitlines()[-2:]
+    assert line[carets.index("^") : len(carets)] == '"q1"'
     assert "Expected real points" in text
     assert caught.value.exit_status == 1
     assert caught.value.found == "q1 is conserved where p1^2 + 1 = 0"

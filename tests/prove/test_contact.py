@@ -9,9 +9,10 @@ from coadjoint.exact.dense import scale
 from coadjoint.prove import prove
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.rolling import about_rolling
+from coadjoint.prove.zero import UndecidedError
 from tests.contacts import BALL_INSIDE, ELLIPSOID, IN_SPHERE, ON_PLANE, ON_TURNTABLE
 from tests.rolling import derived
-from tests.specs import spec
+from tests.specs import prove_claims, spec
 
 #: What each claim turns on.
 WORDS = (
@@ -135,3 +136,15 @@ def test_the_work_of_a_turntable_is_that_of_its_constraint():
     claims = certificate.claims
     found = [(c.statement, str(c.verdict)) for c in claims if c.statement.startswith("the energy")]
     assert found == [("the energy changes by the work of the moving constraints", "proved")]
+
+
+def test_a_surface_without_points_is_pointed_at():
+    """The message of an undecided claim has the line of the surface, and carets below it."""
+    with pytest.raises(UndecidedError) as caught:
+        prove_claims(spec(BALL_INSIDE, ("b^2 - X1^2 - X2^2", "b^2 + X1^2 + X2^2")))
+    error = caught.value
+    first, *_, line, carets = str(error).splitlines()
+    assert first.startswith(f"sample.toml:{error.line}: rolling.surface: undecided: ")
+    assert "holds nowhere" in first
+    assert line[carets.index("^") : len(carets)] == '"b^2 + X1^2 + X2^2"'
+    assert BALL_INSIDE.splitlines()[error.line - 1].startswith("surface = ")

@@ -96,7 +96,9 @@ def test_the_motion_must_stay_on_the_level_set(where, holds):
 def test_on_an_empty_level_set_nothing_is_decided(integral, where):
     """Functions that never vanish together would let every claim pass, and nothing refutes it."""
     claim = f'conserved = [{{ claim = "{integral}", where = {where} }}]'
-    with pytest.raises(ClaimError, match=r"sample: undecided: .* is conserved where .* = 0: "):
+    with pytest.raises(
+        ClaimError, match=r"sample.toml:\d+: claims.*: undecided: .* is conserved where .* = 0: "
+    ):
         verdicts(RIGID_BODY, ('casimirs = ["dot(Pi, Pi)"]', claim))
 
 

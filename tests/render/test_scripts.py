@@ -19,6 +19,7 @@ from tests.specs import RIGID_BODY, render_claims
 POINTS = 10_000
 #: Functions of one argument on what they are compared at.
 ARGUMENTS = {"log": (1e-6, 1e6), "asin": (-1, 1), "acos": (-1, 1), "exp": (-20, 20)}
+ARGUMENTS |= {"atanh": (-1, 1)}
 #: How many units in the last place an engine may differ from NumPy in one call. The C library and
 #: NumPy state errors below 1 for these, fdlibm of V8 below 1, two for the hyperbolic ones.
 ULPS = 4

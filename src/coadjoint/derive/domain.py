@@ -23,6 +23,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.mechanics.contact import touch_of
 from coadjoint.derive.mechanics.kinematics import kinematics, multiplier_name
+from coadjoint.derive.mechanics.legendre import legendre
 from coadjoint.derive.mechanics.solver import pivot_name
 from coadjoint.exact import Condition, Element, Region
 from coadjoint.exact.signs import sign
@@ -109,7 +110,10 @@ def _contact(equations: Equations) -> list[tuple[Bound, Element]]:
 
 
 def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
-    """A bound for each root by which velocities follow from momenta, where it may have no value."""
+    """Bounds of momenta that have velocities, where that is not certain.
+
+    One for each root and logarithm by which these follow, and others of the range of ``dl/dxi``.
+    """
     setting = equations.setting
     velocities = {xi for xi, _, _ in setting.conjugates}
     field, pairs, seen = setting.field, list[tuple[Bound, Element]](), set[str]()
@@ -124,12 +128,17 @@ def _transforms(equations: Equations) -> list[tuple[Bound, Element]]:
     for name, value in equations.exact.definitions:
         if name not in velocities or name not in bending or name in equations.kept:
             continue
+        alone = legendre(setting).alone
+        for positive in alone[name].range if name in alone else ():
+            bound = Bound(name, "range", True, _inputs(equations, positive))
+            pairs.append((bound, positive))
         for generator in sorted(field.functions_in(value) - seen):
             seen.add(generator)
-            positive = field.domain_of(field.adjoined[generator])
-            if positive is not None and sign(field, positive) != 1:
-                bound = Bound(name, "transform", True, _inputs(equations, positive))
-                pairs.append((bound, positive))
+            called = field.adjoined[generator]
+            asked = field.domain_of(called)
+            if asked is not None and sign(field, asked) != 1:
+                kind = "transform" if called.function == "sqrt" else "range"
+                pairs.append((Bound(name, kind, True, _inputs(equations, asked)), asked))
     return pairs
 
 

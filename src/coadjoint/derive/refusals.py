@@ -26,13 +26,13 @@ def refusal(
     """
     spec = setting.spec
     formula = spec.lagrangian or spec.hamiltonian
-    place = f"{spec.path}:{formula.line}" if formula is not None else str(spec.path)
     leave = leave_route(setting, route)
     if leave:
         hint = f"{hint[:-1]}, or {leave}." if hint else f"{leave[0].upper()}{leave[1:]}."
-    message = f"{place}: the route {route} cannot be followed: {problem}; expected {expected}."
+    message = f"the route {route} cannot be followed: {problem}; expected {expected}. {hint}"
+    message = message.rstrip()
     return DerivationError(
-        f"{message} {hint}".rstrip(),
+        formula.locate(spec.path, message) if formula else f"{spec.path}: {message}",
         path=str(spec.path),
         line=formula.line if formula is not None else 0,
         route=route,

@@ -16,6 +16,7 @@ from coadjoint.derive import setting as settings
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle, jets
 from coadjoint.derive.mechanics import external, kinematics, legendre
+from coadjoint.derive.mechanics.iteration import is_guess
 from coadjoint.derive.setting import Setting
 from coadjoint.spec import Spec
 from coadjoint.spec.routes import ROUTES
@@ -31,6 +32,8 @@ _ALWAYS = (
     jets.symbols,
     circle.symbols,
 )
+#: Functions beyond those of the formulas that the inverse of a curved Legendre map may call.
+INVERTED = 4
 _FOLDER = "coadjoint.derive.routes"
 
 
@@ -56,4 +59,5 @@ def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Sett
     # routes that share their variables share the function that names them, too
     makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
     names = [name for make in (kinematics.symbols, *makers, *_ALWAYS) for name in make(spec)]
+    room += INVERTED * sum(map(is_guess, dict.fromkeys(names)))
     return settings.make_setting(spec, tuple(dict.fromkeys([*names, *symbols])), room)

@@ -312,7 +312,7 @@ def fault(
 ) -> DerivationError:
     """An error that points at a formula."""
     return DerivationError(
-        f"{setting.spec.path}:{formula.line}: {formula.key}: {message}",
+        formula.locate(setting.spec.path, message),
         path=str(setting.spec.path),
         line=formula.line,
         key=formula.key,

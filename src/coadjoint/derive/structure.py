@@ -153,7 +153,7 @@ def _declared_structure(setting: Setting, bracket: Poisson) -> PoissonStructure:
         formula = (*bracket.functions, *(formula for *_, formula in bracket.entries))[0]
         path, key = setting.spec.path, ".".join(formula.key.split(".")[:2])
         raise AlgebraError(
-            f"{path}:{formula.line}: {key}: {error}",
+            f"{path}:{formula.line}: {key}: {error}\n{formula.excerpt}".rstrip(),
             path=str(path),
             line=formula.line,
             key=key,

@@ -401,11 +401,18 @@ class Field(Rationals):
         return sorted(present, key=self._turns.__getitem__)
 
     def substitute(self, element: Element, values: Mapping[str, Element]) -> Element:
-        """The element with symbols replaced by elements; symbols not named stay."""
-        if not self.reach(element) & values.keys():
+        """The element with symbols replaced by elements; symbols not named stay.
+
+        So are functions that are named by their generators, wherever they stand.
+        """
+        called = self.functions_in(element) if values.keys() & self.adjoined.keys() else frozenset()
+        if not (self.reach(element) | called) & values.keys():
             return element
         new = {name: values[name] for name in self.names if name in values}
         for generator in self._calls_in(element):
+            if generator in values:
+                new[generator] = values[generator]
+                continue
             known = self.adjoined[generator]
             arguments = tuple(self.substitute(each, values) for each in known.arguments)
             if any(a is not b for a, b in zip(arguments, known.arguments, strict=True)):

@@ -7,6 +7,7 @@ Read next: `coadjoint.exact.signs`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import reduce
 from math import floor
@@ -27,6 +28,13 @@ _OF_INVERSES = {
     "atan": ("1/r", "u/r", "1 + u*u"),
     "atan2": ("v/r", "u/r", "u*u + v*v"),
 }
+#: The same of hyperbolic functions.
+_OF_HYPERBOLIC_INVERSES = {
+    "asinh": ("r", "u", "1 + u*u"),
+    "atanh": ("1/r", "u/r", "1 - u*u"),
+}
+#: What undoes a function on all of its values.
+_UNDONE = {"asinh": "sinh", "atanh": "tanh", "tanh": "atanh"}
 
 
 def known_value(field: Field, function: str, *arguments: Element) -> Element | None:
@@ -41,7 +49,12 @@ def known_value(field: Field, function: str, *arguments: Element) -> Element | N
         return field.number(at_zero)
     match function:
         case "sin" | "cos":
-            return _of_inverse(field, function, argument) or _of_turn(field, function, argument)
+            found = _of_inverse(field, function == "sin", argument, _OF_INVERSES)
+            return found or _of_turn(field, function, argument)
+        case "sinh" | "cosh":
+            return _of_inverse(field, function == "sinh", argument, _OF_HYPERBOLIC_INVERSES)
+        case "tanh" | "asinh" | "atanh":
+            return _undo(field, function, argument)
         case "sign":
             return _sign(field, argument)
         case "sqrt":
@@ -53,16 +66,29 @@ def known_value(field: Field, function: str, *arguments: Element) -> Element | N
     return None
 
 
-def _of_inverse(field: Field, function: str, argument: Element) -> Element | None:
+def _of_inverse(
+    field: Field, is_sine: bool, argument: Element, inverses: Mapping[str, tuple[str, str, str]]
+) -> Element | None:
     """The sine or cosine of an inverse function: ``cos(asin(u)) = sqrt(1 - u^2)``."""
     for name in field.functions_in(argument):
         known = field.adjoined[name]
-        if known.function in _OF_INVERSES and argument == field[name]:
-            cosine, sine, square = _OF_INVERSES[known.function]
+        if known.function in inverses and argument == field[name]:
+            cosine, sine, square = inverses[known.function]
             own, values = Arithmetic(number=field.number, call=field.call), by_name(known.arguments)
             root = field.call("sqrt", evaluate(square, own, **values))
-            text = sine if function == "sin" else cosine
-            return cast(Element, evaluate(text, own, r=root, **values))
+            return cast(Element, evaluate(sine if is_sine else cosine, own, r=root, **values))
+    return None
+
+
+def _undo(field: Field, function: str, argument: Element) -> Element | None:
+    """The u of ``asinh(sinh(u))``, or of ``atanh(sinh(u)/cosh(u))``."""
+    for name in sorted(field.functions_in(argument)):
+        known = field.adjoined[name]
+        if known.function == _UNDONE[function] and argument == field[name]:
+            return known.argument
+        is_sine = function == "atanh" and known.function == "sinh"
+        if is_sine and argument == field[name] / field[known.partner]:
+            return known.argument
     return None
 
 

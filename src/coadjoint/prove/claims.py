@@ -62,7 +62,8 @@ from coadjoint.prove.zero import (
     decide_zero,
     make_entry,
 )
-from coadjoint.spec import Spec
+from coadjoint.spec import Formula, Spec
+from coadjoint.spec.tables import list_formulas
 
 
 @dataclass(frozen=True)
@@ -260,10 +261,10 @@ def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = T
         routes = [derive(spec, route, setting=setting) for route in spec.routes]
     field = routes[0].setting.field
     field.region = _region(routes[0])
-    _check_domain(spec.name, field)
+    _check_domain(spec, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes, searched=searched):  # finding takes its time
-        result = _examine(spec, statement, examine, field)
+        result = _examine(spec, statement, kind, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
         entry = make_entry(statement, kind, result, seconds)
         if isinstance(entry, Claim):
@@ -291,6 +292,7 @@ def _claims(routes: Sequence[Equations], *, searched: bool) -> Iterator[Examined
 def _examine(
     spec: Spec,
     statement: str,
+    kind: str,
     examine: Callable[[], Sequence[Element] | Decision | Discovery],
     field: Field,
 ) -> Decision | Discovery:
@@ -303,9 +305,30 @@ def _examine(
         result = examine()
         return result if isinstance(result, Decision | Discovery) else decide_zero(result, field)
     except UndecidedError as error:
-        raise UndecidedError(
-            f"{spec.name}: undecided: {statement}: {error}", system=spec.name, found=statement
-        ) from error
+        message = f"undecided: {statement}: {error}"
+        raise _fault(spec, _formula_of(spec, statement, kind), message, statement) from error
+
+
+def _formula_of(spec: Spec, statement: str, kind: str) -> Formula | None:
+    """The formula of the spec that a statement is about; None where it is about several."""
+    if kind == "rolling" and spec.rolling is not None and spec.rolling.contact is not None:
+        return spec.rolling.contact.surface
+    named = (each for each in list_formulas(spec) if each.path[0] == "claims")
+    return next((f for f in named if statement.startswith(f"{f.in_one_line} ")), None)
+
+
+def _fault(spec: Spec, formula: Formula | None, message: str, found: str) -> UndecidedError:
+    """An error that points at a formula, if there is one."""
+    if formula is None:
+        return UndecidedError(f"{spec.path}: {message}", system=spec.name, found=found)
+    return UndecidedError(
+        formula.locate(spec.path, message),
+        system=spec.name,
+        path=str(spec.path),
+        line=formula.line,
+        key=formula.key,
+        found=found,
+    )
 
 
 def _region(first: Equations) -> Region:
@@ -316,7 +339,7 @@ def _region(first: Equations) -> Region:
     return region(first, momenta)
 
 
-def _check_domain(name: str, field: Field) -> None:
+def _check_domain(spec: Spec, field: Field) -> None:
     """Look for a point of the domain: on an empty one anything is true.
 
     Raises:
@@ -324,9 +347,11 @@ def _check_domain(name: str, field: Field) -> None:
     """
     points = Points(field, ())
     if next(chain(points.near_defaults(), points), None) is None:
-        raise UndecidedError(
-            f"{name}: no point is found in [domain] at which the motion has a value. Expected real "
-            "points with the declared signs. Correct [domain], the energy or the forces, or give "
-            "defaults near which there are some.",
-            system=name,
+        message = (
+            "no point is found in [domain] at which the motion has a value. Expected real points "
+            "with the declared signs. Correct [domain], the energy or the forces, or give defaults "
+            "near which there are some."
         )
+        conditions = [each.left for each in spec.domain]
+        formulas = (*conditions, spec.hamiltonian, spec.lagrangian)
+        raise _fault(spec, next(filter(None, formulas), None), message, spec.name)

@@ -210,7 +210,7 @@ class Domain:
             return f"the condition {bound.name}{f', {text},' if text else ''} does not hold"
         if bound.kind == "contact":
             return _CONTACT[bound.name][0]
-        if bound.kind == "transform":
+        if bound.kind in ("transform", "range"):
             return f"no {bound.name} has these momenta: the Legendre transform has no solution"
         if bound.kind == "iteration":
             return f"Newton's iteration from rest finds no {bound.name} of these momenta"
@@ -225,7 +225,7 @@ class Domain:
             return f"the larger side of {bound.name} minus the other"
         if bound.kind == "contact":
             return f"{bound.name}, {_CONTACT[bound.name][1]},"
-        if bound.kind in ("transform", "iteration"):
+        if bound.kind in ("transform", "range", "iteration"):
             return f"the {bound.label}"
         return f"the pivot of {bound.name}"
 

@@ -3,15 +3,17 @@
 Comes in: l as an element, a function of the velocities. Goes out: the momenta dl/dxi, the
 velocities in terms of the momenta, and the energy. Where l is quadratic in the velocities, or a
 function of one quadratic form (`coadjoint.derive.mechanics.radial`), the inverse is written out, of
-up to `LARGEST_BLOCK` coupled velocities. More of them are solved for in the kernel, and so are
-those of any other l, by `coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
+up to `LARGEST_BLOCK` coupled velocities. So is that of a velocity which is coupled to no other, if
+its momentum is a function with a known inverse (`coadjoint.derive.mechanics.inverses`). More
+velocities are solved for in the kernel, and so are those of any other l, by
+`coadjoint.derive.mechanics.iteration`; they keep their names elsewhere.
 Read next: `coadjoint.derive.routes.euler_poincare`, which uses it;
 `coadjoint.derive.mechanics.solver`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -24,6 +26,7 @@ from coadjoint.derive.mechanics.configuration import (
     mechanics,
     sampled_mechanics,
 )
+from coadjoint.derive.mechanics.inverses import Inverse, find_inverse
 from coadjoint.derive.mechanics.iteration import (
     STEPS,
     Newton,
@@ -43,7 +46,7 @@ from coadjoint.derive.mechanics.solver import (
     solver_names,
 )
 from coadjoint.derive.mechanics.variational import normal_extremals
-from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.setting import Setting, fault, list_components, once
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import determinant, inverse
@@ -68,6 +71,7 @@ class LegendreTransform:
             velocities by name.
         solves: What the kernel solves; see `coadjoint.derive.mechanics.solver`.
         curved: Those of the definitions that give velocities which are not linear in the momenta.
+        alone: The inverses of ``dl/dxi`` that give velocities which are coupled to no other.
     """
 
     momenta: tuple[Element, ...]
@@ -76,6 +80,7 @@ class LegendreTransform:
     definitions: tuple[Definition, ...]
     solves: tuple[Solve, ...]
     curved: tuple[Definition, ...]
+    alone: Mapping[str, Inverse]
 
     @property
     def iterations(self) -> str:
@@ -110,18 +115,25 @@ def hamiltonian(setting: Setting) -> tuple[Element, tuple[Solve, ...]]:
     return transform.energy, transform.solves
 
 
+def alone_velocities(setting: Setting) -> dict[str, Element]:
+    """Velocities that are coupled to no other and follow in closed form from the momentum."""
+    if setting.spec.hamiltonian is not None or setting.spec.variational or not setting.momenta:
+        return {}
+    return {name: each.value for name, each in legendre(setting).alone.items()}
+
+
 def _write_out(setting: Setting, transform: LegendreTransform) -> Element:
     """The energy in momenta alone, where velocities are not linear in them."""
     field, curved = setting.field, dict(transform.curved)
     names = [xi for xi, _, _ in setting.conjugates]
     velocities = {name: curved.pop(name) for name in names if name in curved}
-    still = momenta_at_rest(setting, transform.momenta)
     momenta = {
-        mu: (field[y] + rest) * w
-        for i, ((_, mu, w), rest) in enumerate(zip(setting.conjugates, still, strict=True))
+        mu: (field[y] + at_rest(setting, transform.momenta[i])) * w
+        for i, (_, mu, w) in enumerate(setting.conjugates)
         if (y := forward_name(i)) in curved
     }
-    h = field.substitute(field.substitute(transform.energy, momenta), velocities)
+    calls = {g: image for each in transform.alone.values() for g, image in each.known.items()}
+    h = field.substitute(field.substitute(transform.energy, calls | momenta), velocities)
     return field.substitute(simplify_roots(field, h), curved)
 
 
@@ -134,22 +146,23 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     """
     setting, mass = of.setting, of.mass
     field, names = setting.field, of.frame.velocities
-    try:
-        known = known_side(setting, of.momenta)
-    except ZeroDivisionError as error:  # a root of 0 at rest
-        raise _not_solved(of, [*of.bending], "momenta are not defined there") from error
     velocities: dict[str, Element] = {}
     solves: list[Solve] = []
-    radial: list[Definition] = []
+    curved: list[Definition] = []
+    alone: dict[str, Inverse] = {}
     for block in coupled_blocks(mass):
         own = tuple(tuple(mass[i][j] for j in block) for i in block)
-        rest = [known[i] for i in block]
         if any(names[i] in of.bending for i in block):
-            found = _solve_radially(of, known, block)
-            radial += found or []
-            if found is None:
+            if (single := _solve_alone(of, block)) is not None:
+                alone[names[block[0]]] = single
+                curved.append((names[block[0]], single.value))
+            elif (found := _solve_radially(of, block)) is not None:
+                curved += found
+            else:
                 solves.append(_iterate(of, block))
-        elif len(block) <= LARGEST_BLOCK:
+            continue
+        rest = known_side(setting, of.momenta, block)
+        if len(block) <= LARGEST_BLOCK:
             velocities |= _invert_block(setting, own, rest, block)
         else:
             _check_pivots(setting, own, block)
@@ -160,29 +173,34 @@ def legendre_transform(of: Mechanics) -> LegendreTransform:
     energy = field.sum([*products, -of.lagrangian])
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     written = [(name, velocities[name]) for name in names if name in velocities]
-    parts = dict(radial)
-    closed = velocities | {name: field.substitute(value, parts) for name, value in radial}
+    parts = dict(curved)
+    closed = velocities | {name: field.substitute(value, parts) for name, value in curved}
     return LegendreTransform(
         momenta=of.momenta,
         velocities=tuple(closed.get(name, field[name]) for name in names),
         energy=field.substitute(energy, velocities),
-        definitions=(*solved, *radial, *written),
+        definitions=(*solved, *curved, *written),
         solves=tuple(solves),
-        curved=tuple(radial),
+        curved=tuple(curved),
+        alone=alone,
     )
 
 
-def known_side(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
-    """``mu - dl/dxi`` at rest: the right side of ``mass * xi = known``."""
-    still = momenta_at_rest(setting, momenta)
-    pairs = zip(setting.conjugates, still, strict=True)
-    return [setting.field[mu] * (1 / w) - slope for (_, mu, w), slope in pairs]
+def known_side(setting: Setting, momenta: Sequence[Element], block: Sequence[int]) -> list[Element]:
+    """``mu - dl/dxi`` at rest, in some places: the right side of ``mass * xi = known``."""
+    return [_paired(setting, i) - at_rest(setting, momenta[i]) for i in block]
 
 
-def momenta_at_rest(setting: Setting, momenta: Sequence[Element]) -> list[Element]:
-    """``dl/dxi`` at rest."""
+def _paired(setting: Setting, place: int) -> Element:
+    """A momentum as it pairs with its velocity."""
+    _, mu, weight = setting.conjugates[place]
+    return setting.field[mu] * (1 / weight)
+
+
+def at_rest(setting: Setting, momentum: Element) -> Element:
+    """``dl/dxi_i`` at rest."""
     rest = dict.fromkeys((xi for xi, _, _ in setting.conjugates), setting.field.zero)
-    return [setting.field.substitute(slope, rest) for slope in momenta]
+    return setting.field.substitute(momentum, rest)
 
 
 def symbols(spec: Spec) -> tuple[str, ...]:
@@ -196,11 +214,14 @@ def symbols(spec: Spec) -> tuple[str, ...]:
         return ()
     try:
         known = sampled_mechanics(spec)
-    except DerivationError:  # the route will say so
-        return ()
+        blocks, velocities = coupled_blocks(known.mass), known.frame.velocities
+        bending = {*known.bending}
+    except DerivationError:  # of what is real in the domain alone, or the route will say so
+        velocities = list_components(spec.having_role("velocity"))
+        blocks, bending = [tuple(range(len(velocities)))], {*velocities}
     names = list[str]()
-    for block in coupled_blocks(known.mass):
-        if any(known.frame.velocities[i] in known.bending for i in block):
+    for block in blocks:
+        if any(velocities[i] in bending for i in block):
             names += [*solver_names(block), *map(guess_name, block), *map(rate_name, block)]
             driven = sum(len(each.components) for each in spec.inputs)
             names += [*map(slope_name, range(driven))]
@@ -242,8 +263,7 @@ def _iterate(of: Mechanics, block: tuple[int, ...]) -> Solve:
         minor = determinant(tuple(row[:size] for row in still[:size]))
         if not _is_positive(setting, minor):
             raise _not_solved(of, own, "d2l/dxi2 is not positive definite there for certain")
-    pairs = [setting.conjugates[i] for i in block]
-    mu = [setting.field[p] * (1 / w) for _, p, w in pairs]
+    mu = [_paired(setting, i) for i in block]
     products = [
         field.sum(entry * x for entry, x in zip(row, guess.values(), strict=True))
         for row in hessian
@@ -263,18 +283,34 @@ def _is_positive(setting: Setting, element: Element) -> bool:
     return any(sign(field, element / each) == 1 for each in excesses if not field.is_zero(each))
 
 
-def _solve_radially(
-    of: Mechanics, known: Sequence[Element], block: tuple[int, ...]
-) -> list[Definition] | None:
+def _solve_alone(of: Mechanics, block: tuple[int, ...]) -> Inverse | None:
+    """A velocity that is coupled to no other, in closed form; None where there is none."""
+    if len(block) > 1:
+        return None
+    (place,), setting = block, of.setting
+    field, momentum, name = setting.field, of.momenta[place], of.frame.velocities[place]
+    called = sorted(field.functions_in(of.lagrangian))
+    domains = (field.domain_of(field.adjoined[g]) for g in called if name in field.reach(field[g]))
+    asked = [each for each in domains if each is not None]
+    return find_inverse(field, momentum, name, _paired(setting, place), asked)
+
+
+def _solve_radially(of: Mechanics, block: tuple[int, ...]) -> list[Definition] | None:
     """Velocities of a block in which l is a function of one quadratic form; None where it is none.
 
     They are written in ``y = mu - dl/dxi`` at rest, which has a name where that is not 0.
     """
     setting, names = of.setting, [of.frame.velocities[i] for i in block]
-    field, still = setting.field, momenta_at_rest(setting, of.momenta)
-    moving = [of.momenta[i] - still[i] for i in block]
-    parts = [(forward_name(i), known[i]) for i in block if len(field.terms(known[i])) > 1]
-    y = {forward_name(i): known[i] for i in block} | {name: field[name] for name, _ in parts}
+    field = setting.field
+    try:
+        moving = [of.momenta[i] - at_rest(setting, of.momenta[i]) for i in block]
+        known = dict(
+            zip(map(forward_name, block), known_side(setting, of.momenta, block), strict=True)
+        )
+    except ZeroDivisionError as error:  # a root of 0 at rest
+        raise _not_solved(of, names, "momenta are not defined there") from error
+    parts = [(name, value) for name, value in known.items() if len(field.terms(value)) > 1]
+    y = known | {name: field[name] for name, _ in parts}
     invert = partial(inverse_in_blocks, field, refuse=of.refusal)
     found = radial_solution(field, moving, names, [*y.values()], invert)
     return None if found is None else [*parts, *zip(names, found, strict=True)]

@@ -44,7 +44,7 @@ from coadjoint.derive.mechanics.constrained import emit_motion, start_motion
 from coadjoint.derive.mechanics.driving import explicit_rate
 from coadjoint.derive.mechanics.emission import emit
 from coadjoint.derive.mechanics.external import external_forces, metric
-from coadjoint.derive.mechanics.legendre import hamiltonian
+from coadjoint.derive.mechanics.legendre import alone_velocities, hamiltonian
 from coadjoint.derive.mechanics.solver import solve_in_kernel
 from coadjoint.derive.mechanics.variational import normal_extremals, show_extremals
 from coadjoint.derive.records import Step, write_rates, write_slopes, write_step
@@ -75,8 +75,9 @@ def derive(setting: Setting) -> Equations:
     velocities = dict(zip(setting.momenta, setting.velocities, strict=False))
     slopes = dict(zip(setting.state, field.gradient(h, setting.state), strict=True))
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
+    alone = alone_velocities(setting)
     written = [
-        (velocities[p], slopes[p] * weight)
+        (velocities[p], alone.get(velocities[p], slopes[p] * weight))
         for _, p, weight in pairs
         if p in velocities and velocities[p] not in dict(solved)
     ]

@@ -13,6 +13,7 @@ from itertools import combinations
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emit
+from coadjoint.derive.mechanics.legendre import alone_velocities
 from coadjoint.derive.mechanics.solver import Definition, Solve, solve_in_kernel
 from coadjoint.derive.mechanics.variational import normal_extremals, show_extremals
 from coadjoint.derive.records import bracket, write_rates, write_slopes, write_step
@@ -139,10 +140,11 @@ def velocities_of(
     field, given = setting.field, _conjugate_velocities(setting)
     solved = [line for solve in solves for line in solve_in_kernel(field, solve)]
     known = {name for name, _ in solved}
+    alone = alone_velocities(setting)
     return (
         *solved,
         *(
-            (xi, weight * field.derivative(h, mu))
+            (xi, alone.get(xi, weight * field.derivative(h, mu)))
             for mu, weight, xi in zip(setting.momenta, setting.weights, given, strict=bool(given))
             if xi not in known
         ),
@@ -153,6 +155,5 @@ def velocities_of(
 def _define_of_product(setting: Setting, h: Element) -> list[Definition]:
     """``v = {q, h}`` of these."""
     weights = {p: weight for _, p, weight in canonical_pairs(setting)}
-    return [
-        (v, setting.field.derivative(h, p) * weights[p]) for p, v in _velocities_of_product(setting)
-    ]
+    pairs, alone = _velocities_of_product(setting), alone_velocities(setting)
+    return [(v, alone.get(v, setting.field.derivative(h, p) * weights[p])) for p, v in pairs]

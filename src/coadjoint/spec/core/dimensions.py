@@ -408,7 +408,8 @@ def _any_power(asking: _Asking, base: Measured, exponent: Measured) -> Measured:
     return _of_number(asking, exponent)
 
 
-_PURE = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan")
+_PURE = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh")
+_OF_RATIOS = ("asin", "acos", "atan", "asinh", "atanh")
 #: The units of a value from those of the arguments, for every function of the language.
 _RULES: Mapping[str, Callable[..., Measured]] = MappingProxyType(
     {
@@ -433,7 +434,7 @@ _RULES: Mapping[str, Callable[..., Measured]] = MappingProxyType(
         "sqrt": lambda asking, a: scalar(_root(a.entries[0])),
         "complex": _complex,
         "pow": _any_power,
-        **dict.fromkeys(_PURE, _of_number),
+        **dict.fromkeys((*_PURE, *_OF_RATIOS), _of_number),
         **dict.fromkeys(("abs", "min", "max"), _like),
         **dict.fromkeys(("sign", "atan2"), _ratio),
     }

@@ -48,6 +48,7 @@ class Formula:
         path: Its key in the spec, e.g. ``("lagrangian", "l")``.
         line: Line of the text in the file, counted from 1.
         sums: In a spec with an index, the tree with its sums over members; else None.
+        excerpt: The line of the text in the file, and carets under the text, for messages.
     """
 
     text: str
@@ -57,6 +58,7 @@ class Formula:
     path: KeyPath
     line: int
     sums: Node | None = None
+    excerpt: str = field(default="", compare=False, repr=False)
 
     @property
     def key(self) -> str:
@@ -67,6 +69,10 @@ class Formula:
     def in_one_line(self) -> str:
         """The text without its line breaks, for statements and tables."""
         return " ".join(self.text.split())
+
+    def locate(self, path: object, message: str) -> str:
+        """A message with the place of the formula in a file before it, and its line below."""
+        return f"{path}:{self.line}: {self.key}: {message}\n{self.excerpt}".rstrip()
 
 
 #: What a spec declares and a formula may use.
@@ -201,9 +207,17 @@ def read_formula(
             raise ExpressionError(problem, 0, len(text), words(shape), "a scalar", hint)
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
-    line = source.line(source.positions.value(key))
-    sums = None if members is None else whole
-    return Formula(text=text, typed=typed, tree=tree, shape=shape, path=key, line=line, sums=sums)
+    span = source.positions.value(key)
+    return Formula(
+        text=text,
+        typed=typed,
+        tree=tree,
+        shape=shape,
+        path=key,
+        line=source.line(span),
+        sums=None if members is None else whole,
+        excerpt=source.excerpt(span),
+    )
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

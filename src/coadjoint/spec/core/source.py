@@ -116,7 +116,7 @@ class Source:
         message += f"; expected {expected}." if expected else "." * (problem[-1] not in ".?")
         message += f" {hint}" if hint else ""
         return kind(
-            f"{message}\n{self._excerpt(span)}".rstrip(),
+            f"{message}\n{self.excerpt(span)}".rstrip(),
             path=self.path,
             line=line,
             column=column,
@@ -191,7 +191,7 @@ class Source:
         last = min(max(end - 1, first), len(characters) - 1)
         return characters[first], characters[last] + 1
 
-    def _excerpt(self, span: Span) -> str:
+    def excerpt(self, span: Span) -> str:
         """The line of a place, and a caret line under it."""
         first = self.text.rfind("\n", 0, span[0]) + 1
         last = self.text.find("\n", first)
