@@ -18,6 +18,7 @@ from coadjoint.derive.vectors import vector_form
 from coadjoint.files import read_certificate
 from coadjoint.loading import load
 from coadjoint.prove import prove
+from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.examination import examine
 from coadjoint.prove.record import motion_record
 from coadjoint.spec import read_spec
@@ -72,9 +73,9 @@ def test_each_has_html_that_is_whole(shown):
         "spec": "<math>",
         "equations": "𝜫",
         "certificate": "proved",
-        "algebra": "<td>J3</td>",
+        "algebra": "<msub><mi>J</mi><mn>3</mn></msub>",
         "examination": "Killing",
-        "system": "kg m^2/s",
+        "system": '<mi mathvariant="normal">kg</mi>',
         "solution": "<pre>",
     }
     for name, value in shown.items():
@@ -82,6 +83,35 @@ def test_each_has_html_that_is_whole(shown):
         tags = Tags(page)
         assert (tags.open, "script" in tags.names) == ([], False), name
         assert marks[name] in page, name
+
+
+def test_claims_are_written_as_formulas(shown):
+    """A Casimir is a product of bold vectors, as in documents; without a spec letters are plain."""
+    own = shown["certificate"]
+    momentum = "<mi>\N{MATHEMATICAL BOLD ITALIC CAPITAL PI}</mi>"
+    assert momentum in own._repr_html_()
+    assert momentum not in replace(own, spec=None)._repr_html_()
+    for name in ("certificate", "examination", "algebra", "system"):
+        words = re.sub(r"<math.*?</math>", "", shown[name]._repr_html_(), flags=re.DOTALL)
+        assert not re.search(r"dot\(|\^|\*|<=|->|J1", words), name
+
+
+def test_a_claim_that_fails_says_why():
+    """Where it fails, and what to do, stand first."""
+    claim = Claim(
+        statement="dot(Pi, Pi) is conserved",
+        kind="conserved",
+        verdict=Verdict.REFUTED,
+        method="a point",
+        counterexample={"Pi1": "2"},
+        defect="3",
+    )
+    page = Certificate("top", (claim,))._repr_html_()
+    assert "top: the certificate does not hold" in page
+    assert page.index("Correct the claim") < page.index("What was proved")
+    assert "<mn>2</mn>" in page
+    told = Certificate("top", (replace(claim, verdict=Verdict.PROVED),))._repr_html_()
+    assert "Correct the claim" not in told
 
 
 def test_text_representations_fit_a_screen(shown):

@@ -65,7 +65,7 @@ def complete(
     """
     sections = [*record["sections"]]
     if "claims" in certificate:
-        sections += _proofs(certificate)
+        sections += proof_sections(certificate)
     if folder is not None and (folder / "kernel_python.py").is_file():
         sections += _cost(folder, certificate)
     sections += _references(record)
@@ -77,8 +77,12 @@ def section(title: str, kind: str, **parts: Any) -> dict[str, Any]:
     return {"title": title, "law": "", "law_latex": "", "kind": kind, **parts}
 
 
-def _proofs(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """What was proved and how: in sentences by subject, then claim by claim."""
+def proof_sections(certificate: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """What was proved and how: in sentences by subject, then claim by claim.
+
+    Args:
+        certificate: ``claims`` and ``findings`` as records.
+    """
     claims = certificate["claims"]
     counts = Counter(claim["verdict"] for claim in claims)
     total = ", ".join(f"{number} {verdict}" for verdict, number in counts.items())

@@ -7,46 +7,46 @@ Modules of these objects import this one when a notebook asks. Read next:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
-from coadjoint.notation.numbers import shorten_numbers
-from coadjoint.notation.written import aligned
+from coadjoint.chapter import proof_sections, section
+from coadjoint.notation.written import Written, aligned
 
 if TYPE_CHECKING:
     from coadjoint.algebra import LieAlgebra
     from coadjoint.derive.equations import Equations
+    from coadjoint.derive.lines import Line
     from coadjoint.prove.certificate import Certificate
     from coadjoint.prove.examination import Examination
+    from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
     from coadjoint.spec import Spec
 
-#: Generators of an algebra beyond which a table of its brackets is no help.
-LARGEST_TABLE = 10
+#: Dimension of an algebra from which on its brackets are not listed: they fill no page.
+LARGEST: Final = 30
 #: Dots for an inch of a small picture.
-SMALL = 60
-
-
-def table(rows: Iterable[Sequence[str]], heads: Sequence[str]) -> str:
-    """A table of texts, which are escaped; what is HTML already starts with ``<math``."""
-    cells = [[each if each.startswith("<math") else escape(each) for each in row] for row in rows]
-    body = "".join("<tr><td>" + "</td><td>".join(row) + "</td></tr>" for row in cells)
-    head = "</th><th>".join(map(escape, heads))
-    return f"<table><tr><th>{head}</th></tr>{body}</table>"
+SMALL: Final = 60
 
 
 def show_spec(spec: Spec) -> str:
     """A spec: its names with their meaning, and its energy."""
     from coadjoint.derive.document import symbol_rows, write_formulas
+    from coadjoint.render.document import render_fragment
 
-    (heads, *rows), formulas = symbol_rows(spec), write_formulas(spec)
-    shown = [[c if isinstance(c, str) else c.mathml for c in row] for row in rows]
-    told = "".join(f"<p>{line.mathml}</p>" for line in formulas)
-    lead = f"<p><b>{escape(spec.title)}</b><br>{escape(spec.description)}</p>"
-    return f"{lead}{told}{table(shown, [str(head) for head in heads])}"
+    about = section(spec.title, "about", law=spec.description)
+    lines = [asdict(each) for each in write_formulas(spec)]
+    energy = section("", "energy", lines=lines)
+    symbols = section("", "symbols", rows=_as_records(symbol_rows(spec)))
+    return render_fragment([about, *[energy] * bool(lines), symbols])
+
+
+def _as_records(rows: Iterable[Sequence[Line | str]]) -> list[tuple[Any, ...]]:
+    """Rows of a table, whose formulas are records of their formats."""
+    return [tuple(c if isinstance(c, str) else asdict(c) for c in row) for row in rows]
 
 
 def show_equations(equations: Equations) -> str:
@@ -67,14 +67,17 @@ def write_equations(equations: Equations) -> str:
 
 
 def show_certificate(certificate: Certificate) -> str:
-    """Claims with their verdicts."""
-    rows = [
-        (each.statement, str(each.verdict), shorten_numbers(each.method))
-        for each in certificate.claims
-    ]
+    """Claims with their verdicts in sentences, why some fail, and a table of all of them."""
+    from coadjoint.derive.document import symbol_rows
+    from coadjoint.prove.certificate import failure_text
+    from coadjoint.render.document import list_names, render_fragment
+
     state = "holds" if certificate.holds else "does not hold"
-    lead = f"<p><b>{escape(certificate.system)}</b>: the certificate {state}.</p>"
-    return lead + table(rows, ("claim", "verdict", "method"))
+    failures = [("", failure_text(each)) for each in certificate.failures]
+    title = f"{certificate.system}: the certificate {state}"
+    parts = [section(title, "failures", words=failures), *proof_sections(certificate.as_record())]
+    rows = [] if certificate.spec is None else _as_records(symbol_rows(certificate.spec))
+    return render_fragment(parts, list_names([section("", "symbols", rows=rows)]))
 
 
 def show_examination(examination: Examination) -> str:
@@ -85,27 +88,34 @@ def show_examination(examination: Examination) -> str:
 
 
 def show_algebra(algebra: LieAlgebra) -> str:
-    """The brackets of an algebra as a table."""
-    lead = f"<p><b>{escape(algebra.name)}</b>, dimension {algebra.dimension}</p>"
-    basis = algebra.basis
-    if len(basis) > LARGEST_TABLE:
-        return f"{lead}<p>{escape(', '.join(basis))}</p>"
-    rows = [
-        (name, *(_write_bracket(algebra, i, j) for j in range(len(basis))))
-        for i, name in enumerate(basis)
+    """The brackets of an algebra."""
+    from coadjoint.derive.lines import whole_line
+    from coadjoint.notation.names import name
+    from coadjoint.prove.examination import take_field, write_brackets
+    from coadjoint.render.document import render_fragment
+
+    title = f"{algebra.name}, dimension {algebra.dimension}"
+    if algebra.dimension <= LARGEST:
+        brackets = asdict(write_brackets(*take_field(algebra)))
+        return render_fragment([{**brackets, "title": title}])
+    basis = [asdict(whole_line(name(each))) for each in algebra.basis]
+    return render_fragment([section(title, "basis", lines=basis)])
+
+
+def show_quantities(quantities: Quantities) -> str:
+    """Quantities: symbol, name, shape, unit and default of each."""
+    from coadjoint.notation.names import name, unit
+    from coadjoint.render.document import render_fragment
+
+    def write(written: Written) -> dict[str, str]:
+        return {"mathml": f"<math>{written.mathml}</math>"}
+
+    (heads, *rows), own = quantities.table(), quantities.values()
+    shown = [
+        (write(name(label, bold=bool(each.shape))), label, shape, write(unit(each.unit)), default)
+        for each, (label, shape, _, default) in zip(own, rows, strict=True)
     ]
-    return lead + table(rows, ("[row, column]", *basis))
-
-
-def _write_bracket(algebra: LieAlgebra, i: int, j: int) -> str:
-    """A bracket of two basis vectors as text."""
-    sign = 1 if i < j else -1
-    row: Mapping[int, Any] = algebra.constants.get((min(i, j), max(i, j)), {})
-    terms = []
-    for k, constant in row.items():
-        factor = {"1": "", "-1": "-"}.get(str(sign * constant), f"{sign * constant} ")
-        terms.append(f"{factor}{algebra.basis[k]}")
-    return " + ".join(terms).replace("+ -", "- ") or "0"
+    return render_fragment([section("", "quantities", rows=[("symbol", *heads), *shown])])
 
 
 def show_system(system: System) -> str:

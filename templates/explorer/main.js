@@ -378,7 +378,7 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 const METHODS = { rk4: "the method of Runge and Kutta of order 4", midpoint: "the implicit midpoint", gauss4: "the method of Gauss of order 4", isospectral_midpoint: "the isospectral midpoint", spherical_midpoint: "the spherical midpoint", splitting: "a splitting of order 2", splitting4: "a splitting of order 4", splitting6: "a splitting of order 6" };
-const keeping = scene.noise ? `with the increments of Wiener processes over steps of ${shorten(model.h)}${unitText(scene.unitOfTime)}; it keeps what is linear or quadratic and kept by each path`
+const keeping = scene.noise ? `with the increments of Wiener processes over steps of ${shorten(model.h)}${unitText(scene.unitOfTime)}${model.method.keeps.length ? `; each path keeps ${model.method.keeps.map(plainName).join(", ")}` : ""}`
   : model.method.name === "isospectral_midpoint" ? "which keeps the eigenvalues of the matrix" : model.method.keeps.length ? `which keeps ${model.method.keeps.map(plainName).join(", ")}` : "";
 id("method").textContent = `The rates are the generated code of this system. Steps are made by ${METHODS[model.method.name]}${keeping && `, ${keeping}`}.`;
 id("kept").hidden = !model.integrals.length;

@@ -30,7 +30,8 @@ class Model {
     this.given = { state: this.x, parameters: this.p, inputs: this.u, time: this.clock };
     this.plane = scene.plane ? new PlaneField(scene.plane) : null;
     const method = scene.methods[0] || { name: scene.noise ? "midpoint" : "rk4", schedule: [], keeps: [] }, rates = (x, out) => this.call("rhs", x, out);
-    this.stepper = scene.noise ? new NoisyMidpoint(this.n, rates, (x, out) => this.call("noise", x, out), scene.noise)
+    const spheres = method.name === "spherical_midpoint" ? scene.spheres : [];
+    this.stepper = scene.noise ? new NoisyMidpoint(this.n, rates, (x, out) => this.call("noise", x, out), scene.noise, spheres)
       : this.isRing(method) ? new RingMidpoint(scene.members, this.n / scene.members, rates, (x, v, out) => this.call("jacobian_vector", Float64Array.from([...x, ...v]), out))
       : new Stepper(this.n, rates, method, scene.spheres, (flow, x, out) => this.call(flow, x, out));
     this.method = method;
@@ -285,11 +286,13 @@ class Model {
       const left = scene.domain.findIndex((each, k) => !(each.strict ? rows[k] > 0 : rows[k] >= 0));
       if (left >= 0) return this.end(scene.domain[left].name);
     }
-    for (let i = 0; i < this.n; i++) this.half[i] = 0.5 * (this.old[i] + this.x[i]);
+    if (scene.noise) this.half.set(this.stepper.middle);
+    else for (let i = 0; i < this.n; i++) this.half[i] = 0.5 * (this.old[i] + this.x[i]);
     if (this.rest.length) this.follow(h);
     else if (scene.turning && !scene.attitude) {
       const q = this.attitude, w = this.readSpeed(scene.turning, scene.spinning);
-      this.attitude = normal(multiply(q, scene.noise ? [1, ...scaled(0.5 * h, w)] : turnBy(scaled(h, w)))); // the midpoint turns by Cayley's transform
+      const half = () => 0.5 * h * (scene.spinning ? this.stepper.stretchOf(scene.spinning.rows) : 1);
+      this.attitude = normal(multiply(q, scene.noise ? [1, ...scaled(half(), w)] : turnBy(scaled(h, w)))); // midpoints turn by Cayley's transform
     }
     if (scene.moving && (scene.kind === "body" || scene.slipping))
       this.position = plus(this.position, scaled(h, rotate(this.pose(), this.readSpeed(scene.moving, scene.pushing))));

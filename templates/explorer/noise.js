@@ -1,4 +1,4 @@
-// Noise: normal numbers by seed, step and Wiener process, and the implicit midpoint with their increments.
+// Noise: normal numbers by seed, step and Wiener process, and midpoints with their increments.
 // Words, numbers and steps are those of the library, operation by operation, so that a seed gives the same path.
 
 /* The high and the low 32 bits of a product of two words. */
@@ -42,13 +42,46 @@ function drawNormal(seed, step, process, tables) {
   return normalOf((high * 2 ** 20 + (low >>> 12) + 0.5) * 2 ** -52, tables);
 }
 
-/* The implicit midpoint of `rates + fields (dW/h)`; `rates(x, out)` is the drift, `fields(x, out)` has a row for each component. */
+/* The quotient of the lengths of a vector and of the half of a sum, by one step of Newton's method for each sweep; of dual
+   numbers where there is a tangent. A state is multiplied by it as a start with a rise, so that a middle is rounded once. */
+class Scale {
+  constructor(x, [rows, tangent], { near, roundings }) {
+    Object.assign(this, { rows, tangent, near, roundings, scale: 1, slope: 0, rest: 1 });
+    const [square, mixed] = this.measure(x);
+    this.half = 0.5 / (square > 0 ? square : 1);
+    this.slant = -4 * this.half * this.half * mixed;
+    this.empty = square === 0;
+  }
+  measure(x) {
+    const [a, b, c] = this.rows.map((row) => x[row]), square = a * a + b * b + c * c;
+    if (!this.tangent.length) return [square, 0];
+    const [d, e, f] = this.tangent.map((row) => x[row]);
+    return [square, a * d + b * e + c * f];
+  }
+  isRoot() { return this.empty || (Math.abs(this.rest - 1) < this.near && this.scale > 0); }
+  apply(start, rise, x) {
+    const { rows, tangent, half, scale, slope, roundings } = this, [square, mixed] = this.measure(x);
+    const both = scale * scale, part = half * square, rest = 1.5 - part * both, stays = Math.abs(rest - 1) <= roundings;
+    if (tangent.length) {
+      const tilt = 2 * half * mixed, lean = (this.slant * square + tilt) * both + 2 * part * scale * slope;
+      if (!(stays && Math.abs(lean) <= roundings * Math.abs(tilt))) this.slope = slope * rest - scale * lean;
+    }
+    this.rest = rest;
+    if (!stays) this.scale = scale * rest;
+    const beyond = this.scale - 1;
+    tangent.forEach((row, k) => { x[row] = start[row] + (rise[row] + (beyond * x[row] + this.slope * x[rows[k]])); });
+    for (const row of rows) x[row] = start[row] + (rise[row] + beyond * x[row]);
+  }
+}
+
+/* The implicit midpoint of `rates + fields (dW/h)`, and on spheres the spherical one; `rates(x, out)` is the drift,
+   `fields(x, out)` has a row for each component. */
 class NoisyMidpoint {
-  constructor(size, rates, fields, tables) {
-    Object.assign(this, { size, rates, fields, tables, seed: 1, made: 0 });
+  constructor(size, rates, fields, tables, spheres = []) {
+    Object.assign(this, { size, rates, fields, tables, spheres, seed: 1, made: 0, kept: [] });
     this.numbers = new Float64Array(tables.processes.length);
     this.slopes = new Float64Array(size * this.numbers.length);
-    [this.middle, this.next, this.slope] = Array.from({ length: 3 }, () => new Float64Array(size));
+    [this.middle, this.next, this.slope, this.chord] = Array.from({ length: 4 }, () => new Float64Array(size));
   }
   /* The same path again, or that of another seed. */
   restart(seed = this.seed) { Object.assign(this, { seed, made: 0 }); }
@@ -61,16 +94,18 @@ class NoisyMidpoint {
   }
   /* Whether its equation was solved; the state is then that after the step. */
   step(x, h) {
-    const { size, tables, middle, slope, next, numbers } = this, half = 0.5 * h;
+    const { size, tables, middle, slope, next, chord, numbers } = this, half = 0.5 * h;
     const bound = Math.sqrt(4 * Math.max(1, -Math.log(h))); // Milstein, Repin and Tretyakov 2002
     for (let k = 0; k < numbers.length; k++) numbers[k] = clamp(drawNormal(this.seed, this.made, k, tables), -bound, bound) * Math.sqrt(h) / h;
     middle.set(x);
+    const kept = this.kept = this.spheres.map((each) => new Scale(x, each, tables));
     let last = Infinity, solved = false;
     for (let sweep = 0; sweep < tables.sweeps; sweep++) {
       this.move(middle, slope);
+      for (let i = 0; i < size; i++) next[i] = x[i] + (chord[i] = half * slope[i]);
+      for (const each of kept) each.apply(x, chord, next);
       let change = 0, most = 0;
       for (let i = 0; i < size; i++) {
-        next[i] = x[i] + half * slope[i];
         change = Math.max(change, Math.abs(next[i] - middle[i]));
         most = Math.max(most, Math.abs(next[i]));
       }
@@ -79,9 +114,11 @@ class NoisyMidpoint {
       if (change === 0 || (solved && change >= last)) break;
       last = change;
     }
-    if (!solved) return false;
-    for (let i = 0; i < size; i++) x[i] = 2 * middle[i] - x[i];
+    if (!solved || !kept.every((each) => each.isRoot())) return false;
+    for (let i = 0; i < size; i++) x[i] = kept.length ? x[i] + h * slope[i] : 2 * middle[i] - x[i];
     this.made += 1;
     return true;
   }
+  /* By how much the middle of the step is longer than that of its chord, for the vector with these rows. */
+  stretchOf(rows) { return this.kept.find((each) => each.rows[0] === rows[0])?.scale ?? 1; }
 }

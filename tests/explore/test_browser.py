@@ -175,6 +175,10 @@ def test_a_seed_is_a_path_of_a_body_whose_momentum_rests_in_space(page, pages):
     at = page.run(space)
     first = page.run(walk)
     np.testing.assert_allclose(page.run(space), at, atol=1e-11)
+    page.run("explorer.model.stepper.stretchOf = () => 1")  # as if the middle were on its chord
+    assert page.run(walk) == first
+    assert np.abs(np.subtract(page.run(space), at)).max() > 1e-6
+    page.run("delete explorer.model.stepper.stretchOf")
     page.run("document.getElementById('other').click()")
     assert page.run("location.hash").endswith("&s=2")
     second = page.run(walk)

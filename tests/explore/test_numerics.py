@@ -9,10 +9,12 @@ import pytest
 
 from coadjoint.explore.page import assemble
 from coadjoint.explore.scene import describe_scene
+from coadjoint.methods import Sphere
 from coadjoint.render.scripts import render_family_script, render_script
 from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.matrix_functions import show_on_sphere, show_on_torus
+from coadjoint.solve.methods.spherical_midpoint import Scale
 from coadjoint.solve.normals import draw_normals, normal_of
 from coadjoint.spec import read_spec
 from tests import specs
@@ -88,22 +90,26 @@ def test_normal_numbers_have_the_bits_of_the_library(noisy):
 WALK = """
   const x = Float64Array.from(start), p = Float64Array.from(parameters);
   const stepper = new NoisyMidpoint(x.length, (x, out) => kernel.rhs(x, p, out),
-    (x, out) => kernel.noise(x, p, out), { ...scene.noise, ...change });
+    (x, out) => kernel.noise(x, p, out), { ...scene.noise, ...change }, spheres);
   stepper.restart(seed);
   for (let n = 0; n < count; n++) if (!stepper.step(x, h)) return null;
   return [...x];
 """
 
 
-def test_a_path_with_noise_has_the_bits_of_the_library(noisy):
+@pytest.mark.parametrize("method", ["midpoint", "auto"])
+def test_a_path_with_noise_has_the_bits_of_the_library(noisy, method):
     """Step by step that of `simulate`; a table that is spoiled in its last digit is seen."""
     start, h, count, seed = [0.3, 2.0, -0.5], 1 / 64, 200, 5
+    spheres = noisy.scene["spheres"] if method == "auto" else []
     with load_texts(specs.rendered("stochastic_rigid_body").texts) as system:
         given = {"parameters": system.pack().tolist(), "h": h, "start": start, "change": {}}
         run = system.simulate(
-            start, (0.0, h * count), method="midpoint", step=h, seed=seed, samples=count + 1,
+            start, (0.0, h * count), method=method, step=h, seed=seed, samples=count + 1,
             target="numpy", progress=False,
         )  # fmt: skip
+    given |= {"spheres": spheres}
+    assert noisy.scene["methods"][0]["name"] == "spherical_midpoint"
     path = [noisy.run(WALK, count=n, seed=seed, **given) for n in (1, 2, 50, count)]
     np.testing.assert_array_equal(path, run.state[:, [1, 2, 50, count]].T)
     np.testing.assert_allclose((np.array(path) ** 2).sum(axis=1), 4.34, rtol=1e-13)
@@ -114,10 +120,38 @@ def test_a_path_with_noise_has_the_bits_of_the_library(noisy):
     assert noisy.run(WALK, count=count, seed=seed, **spoiled) != path[-1]
 
 
+SCALES = """
+  const scale = new Scale(x, [[3, 4, 5], [0, 1, 2]], scene.noise), next = new Float64Array(6);
+  for (let n = 0; n < count; n++) {
+    next.set(x.map((v, i) => v + rise[i]));
+    scale.apply(x, rise, next);
+  }
+  return [...next, scale.scale, scale.slope, scale.isRoot() ? 1 : 0];
+"""
+
+
+def test_quotients_of_dual_lengths_have_the_bits_of_the_library(noisy):
+    """Of a heavy top's Gamma with its momentum: two sweeps are no solution, seven are."""
+    generator = np.random.default_rng(3)
+    x, rise = generator.normal(size=6), 0.05 * generator.normal(size=6)
+    for count in (1, 2, 7):
+        scale = Scale(x[:, None], 0 * x[:, None], Sphere((3, 4, 5), (0, 1, 2)))
+        for _ in range(count):
+            following = (x + rise)[:, None]
+            scale.apply(x[:, None], rise[:, None], following)
+        wanted = [*following[:, 0], *scale.scale, *scale.slope, *scale.is_root()]
+        given = {"x": x.tolist(), "rise": rise.tolist(), "count": count}
+        assert noisy.run(SCALES, **given) == [float(each) for each in wanted]
+        assert bool(wanted[-1]) is (count > 2)
+    length = np.linalg.norm(following[3:6, 0])
+    np.testing.assert_allclose(length, np.linalg.norm(x[3:6]), rtol=1e-15)
+
+
 def test_an_equation_of_a_step_without_a_solution_ends_the_path(noisy):
     """What two sweeps have not solved is no step."""
     with load_texts(specs.rendered("stochastic_rigid_body").texts) as system:
         given = {"start": [1, 2, 3], "parameters": system.pack().tolist(), "seed": 1, "h": 0.1}
+    given |= {"spheres": []}
     assert noisy.run(WALK, count=1, change={"sweeps": 2}, **given) is None
     assert noisy.run(WALK, count=1, change={}, **given) is not None
 

@@ -38,6 +38,23 @@ def test_the_sections_of_a_spin_chain_are_on_a_sphere():
     assert curves.radius == 1
 
 
+def test_a_strand_that_turns_as_one_body_turns_in_space():
+    """About the second axis by w t; as its first section sees it, it would stand still."""
+    size, w = 64, 0.7
+    start = np.zeros((6, size))
+    start[1] = 2.0 * w
+    options = {"parameters": {"I": [1.0, 2.0, 3.0]}, "samples": 21}
+    chain = spin_chain.system.resize({"s": size}).simulate(start.ravel(), (0, 4), **options)
+    curves = find_curves(chain)
+    for at in (0, 7, 20):
+        angle = w * chain.time[at]
+        known = np.array([np.sin(angle), 0.0, np.cos(angle)])
+        np.testing.assert_allclose(curves.show(at), np.tile(known, (size + 1, 1)).T, atol=1e-9)
+    assert "seen from" not in curves.title
+    alone = chain.system.simulate(start.ravel(), (0, 4), samples=1)
+    assert "seen from" in find_curves(alone).title
+
+
 def test_a_magnet_is_a_closed_curve_on_its_sphere():
     """The vectors themselves; of vectors of several lengths there is no curve."""
     magnet = landau_lifshitz.simulate(None, (0, 0.1), samples=3)

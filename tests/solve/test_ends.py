@@ -6,6 +6,8 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.folders import load_texts
+from coadjoint.solve.panels import list_panels
+from coadjoint.solve.spectral import find_densities
 from tests.derive.test_ends import spec_of
 
 #: Inertia and stiffness about the third axis, and the length.
@@ -43,6 +45,23 @@ def test_waves_stand_between_ends(strand):
         errors.append(np.sqrt(np.mean((state[2] - Pi3) ** 2 + (state[5] - Xi3) ** 2)))
     assert errors[1] < 0.02
     assert np.log2(errors[0] / errors[1]) > {2: 1.9, 4: 3.0}[order]
+
+
+def test_the_energy_has_a_density(strand):
+    """Of rotation and of strain at each point; the sum of these, with halves at ends, is all."""
+    system, _, order = strand
+    start = np.random.default_rng(7).normal(size=(6, 33))
+    options = {"method": "dop853", "target": "numpy", "samples": 3}
+    found = system.resize({"s": 33}).simulate(start.ravel(), (0, 0.1), **options)
+    inertia, stiffness = (np.array(each).reshape(3, 1, 1) for each in ([1, 2, 3], [3, 2, 1]))
+    known = (found["Pi"] ** 2 / inertia + stiffness * found["Xi"] ** 2).sum(axis=0) / 2
+    density = find_densities(found)["energy"]
+    np.testing.assert_allclose(density, known, rtol=1e-13)
+    assert [each.label for each in list_panels(found)][-1] == "energy\ndensity"
+    if order == 2:
+        weights = np.array([0.5, *[1.0] * 31, 0.5])[:, None] * L / 32
+        np.testing.assert_allclose((weights * density).sum(axis=0), found["energy"], rtol=1e-13)
+        assert np.abs(density.sum(axis=0) * L / 32 - found["energy"]).min() > 1e-3
 
 
 def test_the_holonomy_turns_with_the_ends(strand):

@@ -9,6 +9,7 @@ from coadjoint.cli.simulate import find_start
 from coadjoint.solve.illustrate import _has_colours_of_values, _take_colours, describe
 from coadjoint.solve.panels import COLOURS
 from coadjoint.solve.plot import draw
+from coadjoint.solve.scenes import TIME_MAP
 from coadjoint.systems import (
     chaplygin_ball,
     euler_disk,
@@ -77,6 +78,7 @@ def test_values_as_colours_have_more_colours():
 
 def test_lines_keep_their_colours_among_those_of_a_surface():
     """A thin line has too few dots for a colour of its own, among all those of a surface."""
+    from matplotlib import colormaps
     from matplotlib.colors import to_rgb
     from PIL import Image
 
@@ -88,6 +90,11 @@ def test_lines_keep_their_colours_among_those_of_a_surface():
     with Image.open(io.BytesIO(_take_colours(place))) as small:
         colours = small.convert("RGB").getcolors()
         assert (280, orange) in colours
-        assert 20 < len(colours) <= 64
+        assert 20 < len(colours) <= 96
+        palette = np.reshape(small.getpalette(), (-1, 3)).tolist()
+    ends = np.round(255 * colormaps[TIME_MAP]([0.0, 1.0])[:, :3]).astype(int).tolist()
+    assert all(each in palette for each in ends), "the first and the last time"
+    few = np.reshape(picture.quantize(64).getpalette(), (-1, 3)).tolist()
+    assert not any(each in few for each in ends)
     plain = {colour for _, colour in picture.quantize(64).convert("RGB").getcolors()}
     assert orange not in plain

@@ -18,6 +18,7 @@ from coadjoint.lower import normals
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
 from coadjoint.methods import JudgedMethod
 from coadjoint.pipeline import Rendered
+from coadjoint.solve.methods.spherical_midpoint import NEAR, ROUNDINGS
 from coadjoint.solve.stochastic import SOLVED
 from coadjoint.spec import Spec
 from coadjoint.spec.model import Variable
@@ -54,7 +55,7 @@ def describe_scene(spec: Spec, rendered: Rendered) -> dict[str, Any]:
         "time": bool(context.time),
         "domain": [{"name": each.label, "strict": each.strict} for each in context.domain],
         "members": 0,
-        "methods": [] if spec.noise else _describe_methods(context.methods, context),
+        "methods": _describe_methods(context.methods, context),
         "noise": _describe_noise(spec),
         **_choose(spec, finder, rendered),
     }
@@ -76,6 +77,8 @@ def _describe_noise(spec: Spec) -> dict[str, Any] | None:
         "log2": normals.LOG2,
         "sweeps": normals.SWEEPS,
         "solved": SOLVED,
+        "near": NEAR,
+        "roundings": ROUNDINGS,
     }
 
 

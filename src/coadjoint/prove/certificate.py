@@ -12,9 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coadjoint.errors import ClaimError
+
+if TYPE_CHECKING:
+    from coadjoint.spec import Spec
 
 
 class Verdict(StrEnum):
@@ -134,11 +137,13 @@ class Certificate:
         system: Name of the system.
         claims: In the order in which they were examined.
         findings: Likewise.
+        spec: That of the system, by which notebooks write its names; None of an algebra alone.
     """
 
     system: str
     claims: tuple[Claim, ...]
     findings: tuple[Finding, ...] = ()
+    spec: Spec | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{self.count(v)} {v}" for v in Verdict if self.count(v))

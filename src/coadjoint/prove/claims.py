@@ -9,7 +9,7 @@ how something is decided to be zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from time import perf_counter
 from typing import Any
@@ -248,10 +248,11 @@ def prove(spec: Spec, routes: Sequence[Equations] = ()) -> Certificate:
     """
     check_type("prove", spec, Spec, "what coadjoint.read_spec returns")
     if spec.family is None:
-        return indexed.bind_size(spec, _certify(spec, routes))
+        return replace(indexed.bind_size(spec, _certify(spec, routes)), spec=spec)
     windows = indexed.list_windows(spec)
     extend = extend_truncated if spec.family.truncation else indexed.extend
-    return extend(spec, [_certify(each, searched=False) for each in windows])
+    known = [_certify(each, searched=False) for each in windows]
+    return replace(extend(spec, known), spec=spec)
 
 
 def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = True) -> Certificate:

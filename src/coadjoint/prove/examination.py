@@ -102,8 +102,7 @@ class Examination:
 
     def brackets(self) -> dict[tuple[int, int], Element]:
         """The nonzero brackets ``[e_i, e_j]``, i < j, as sums of names of the basis."""
-        rows = self.algebra.constants.items()
-        return {pair: _vector(self.field, self.algebra.basis, row) for pair, row in rows}
+        return _list_brackets(self.algebra, self.field)
 
     def document(self) -> Document:
         """The examination for people, in the formats of derivations."""
@@ -118,52 +117,15 @@ class Examination:
             about=f"{_count_in_words(algebra.dimension, 'generator')}: {', '.join(algebra.basis)}.",
             source="",
             description=f"Blocks: {blocks}." if blocks else "",
-            sections=(self._table(), self._invariants(), self._casimirs(), self._verdicts()),
+            sections=(
+                write_brackets(self.algebra, self.field),
+                self._invariants(),
+                self._casimirs(),
+                self._verdicts(),
+            ),
         )
 
     # -- sections -------------------------------------------------------------------------
-
-    def _table(self) -> Section:
-        """The brackets: as a table where that fits on a page, else one by one."""
-        title, law = "Brackets", "[e_i, e_j] = c_ij^k e_k"
-        latex = r"[e_i, e_j] = c_{ij}^k \, e_k"
-        values = self.brackets()
-        if not values:
-            return Section(
-                title=title,
-                law=law,
-                law_latex=latex,
-                lines=(),
-                words=(("abelian", "all brackets are zero"),),
-            )
-        basis = self.algebra.basis
-        cells = {pair: formula(self.field, value) for pair, value in values.items()}
-        widest = max(len(cell.text) for cell in (*cells.values(), *map(_head, basis))) + 2
-        if (len(basis) + 1) * widest <= TABLE:
-            law += ", e_i at the left of a row, e_j above a column"
-            return Section(
-                title=title, law=law, law_latex=latex, lines=(), words=(), table=self._rows(cells)
-            )
-        lines = tuple(
-            formula_line(self.field, algebra_bracket(basis[i], basis[j]), value)
-            for (i, j), value in values.items()
-        )
-        return Section(
-            title=title, law=f"{law}; pairs left out commute", law_latex=latex, lines=lines
-        )
-
-    def _rows(self, cells: Mapping[tuple[int, int], Line]) -> tuple[tuple[Line, ...], ...]:
-        """Heads, then a row for each member of the basis."""
-        turned = {(j, i): formula(self.field, -value) for (i, j), value in self.brackets().items()}
-        whole, basis = {**cells, **turned}, self.algebra.basis
-        heads = tuple(map(_head, basis))
-        return (
-            (Line("", "", "", ""), *heads),
-            *(
-                (heads[i], *(whole.get((i, j), COMMUTE) for j in range(len(basis))))
-                for i in range(len(basis))
-            ),
-        )
 
     def _invariants(self) -> Section:
         """Numbers and words, each with the way it was found."""
@@ -236,6 +198,49 @@ class Examination:
         return element_text(self.field, element)
 
 
+def write_brackets(algebra: LieAlgebra, field: Field) -> Section:
+    """The brackets: as a table where that fits on a page, else one by one.
+
+    Args:
+        algebra: With constants in the field.
+        field: As of an `Examination`.
+    """
+    title, law = "Brackets", "[e_i, e_j] = c_ij^k e_k"
+    latex = r"[e_i, e_j] = c_{ij}^k \, e_k"
+    values, basis = _list_brackets(algebra, field), algebra.basis
+    if not values:
+        words = (("abelian", "all brackets are zero"),)
+        return Section(title=title, law=law, law_latex=latex, lines=(), words=words)
+    turned = {(j, i): -value for (i, j), value in values.items()}
+    cells = {pair: formula(field, value) for pair, value in {**values, **turned}.items()}
+    heads = tuple(map(_head, basis))
+    widest = max(len(cell.text) for cell in (*(cells[pair] for pair in values), *heads)) + 2
+    if (len(basis) + 1) * widest <= TABLE:
+        law += ", e_i at the left of a row, e_j above a column"
+        places = range(len(basis))
+        rows = [(heads[i], *(cells.get((i, j), COMMUTE) for j in places)) for i in places]
+        table = ((Line("", "", "", ""), *heads), *rows)
+        return Section(title=title, law=law, law_latex=latex, lines=(), table=table)
+    lines = tuple(
+        formula_line(field, algebra_bracket(basis[i], basis[j]), value)
+        for (i, j), value in values.items()
+    )
+    law += "; pairs left out commute"
+    return Section(title=title, law=law, law_latex=latex, lines=lines)
+
+
+def _list_brackets(algebra: LieAlgebra, field: Field) -> dict[tuple[int, int], Element]:
+    """The nonzero brackets ``[e_i, e_j]``, i < j, as sums of names of the basis."""
+    rows = algebra.constants.items()
+    return {pair: _vector(field, algebra.basis, row) for pair, row in rows}
+
+
+def take_field(algebra: LieAlgebra) -> tuple[LieAlgebra, Field]:
+    """An algebra with its constants in the field of rational functions on its dual."""
+    field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
+    return algebra.over(field.adopt), field
+
+
 def _head(name: str) -> Line:
     """A name of the basis at the edge of the table."""
     return whole_line(symbol(name))
@@ -265,8 +270,7 @@ def examine(algebra: LieAlgebra, degree: int = DEGREE) -> Examination:
     ['J1*P1 + J2*P2 + J3*P3', 'P1^2 + P2^2 + P3^2']
     """
     check_type("examine", algebra, LieAlgebra, 'coadjoint.algebra_by_name("so(3)")')
-    field = Field([*algebra.basis, *_parameters(algebra)], slots=_room(algebra))
-    local = algebra.over(field.adopt)
+    local, field = take_field(algebra)
     structure = lie_poisson(local, field, local.basis)
     known = _search(algebra, structure, degree)
     claims, findings = _entries(algebra, structure, known)

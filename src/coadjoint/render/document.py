@@ -192,13 +192,15 @@ _COMMA: Final = re.compile(r", (?![^(]*\))")
 _NO_FORMULAS: Final = ("principle", "references")
 
 
-def set_prose(document: Mapping[str, Any], form: str) -> dict[str, Any]:
+def set_prose(
+    document: Mapping[str, Any], form: str, names: Mapping[str, Written] | None = None
+) -> dict[str, Any]:
     """A document in which formulas between words are set as formulas.
 
-    Names are written as its table of symbols has them. The title is words.
+    Names are written as its table of symbols has them, or as is given. The title is words.
     """
     sections = document["sections"]
-    setter = _Setter(_list_names(sections), form)
+    setter = _Setter({**(names or {}), **list_names(sections)}, form)
     made = [dict(part) for part in sections]
     for part in made:
         if part["kind"] == "cost":
@@ -286,7 +288,7 @@ def _with_commas(entries: Iterable[Sequence[Part]]) -> list[Part]:
     return listed
 
 
-def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
+def list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
     """How the table of symbols writes names."""
     return {
         label: Written(
@@ -302,9 +304,16 @@ def _list_names(sections: Sequence[Mapping[str, Any]]) -> dict[str, Written]:
     }
 
 
-def render_fragment(sections: Sequence[Mapping[str, Any]]) -> str:
-    """Sections as HTML without a page around them."""
-    filled = set_prose(_fill({"sections": sections}), "html")["sections"]
+def render_fragment(
+    sections: Sequence[Mapping[str, Any]], names: Mapping[str, Written] | None = None
+) -> str:
+    """Sections as HTML without a page around them.
+
+    Args:
+        sections: Those of a document.
+        names: How some names are written, in addition to a table of symbols among the sections.
+    """
+    filled = set_prose(_fill({"sections": sections}), "html", names)["sections"]
     return _environment("html").get_template("document/fragment.html.j2").render(sections=filled)
 
 

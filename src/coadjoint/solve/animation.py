@@ -80,6 +80,8 @@ def animate(
     from matplotlib.animation import FuncAnimation
 
     figure = draw(solution)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # found anew for each picture, it would take most of the time
     moves = list(_list_moves(figure, solution))
     times = np.linspace(solution.time[0], solution.time_reached, max(2, round(seconds * RATE)))
 

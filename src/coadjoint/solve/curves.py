@@ -1,7 +1,8 @@
 r"""Curves of strands at some times: sections in space, or a direction on the sphere.
 
-Sections of a strand are at :math:`\psi(s)`, by the group elements that its strain turns into, as
-the section at s = 0 sees them. Those of a chain of bodies are where their attitudes and places are.
+Sections of a strand are where its strain and its velocities take them, from the frame of the first
+one at the first sample on; as that section sees them where velocities do not follow from the state.
+Those of a chain of bodies are where their attitudes and places are.
 A vector of constant length at each point of a field is a curve on its sphere.
 Comes in: a `Solution`. Goes out: a `Curves`, and its picture.
 Read next: `coadjoint.solve.strands`.
@@ -98,28 +99,35 @@ def _find_strand(solution: Solution, system: FamilySystem) -> Iterator[_Found]:
     if not strands or strands[0].side != "left" or strands[0].size not in (3, 4):
         return
 
+    from coadjoint.solve.strands import FEWEST, find_first, find_frames, move
+
+    strand, first = strands[0], None
+    if strand.velocity and len(solution) >= FEWEST:
+        first = find_first(solution, strand)  # at all samples: between few it turns too far
+
     def frames(samples: Array) -> Array:
         from coadjoint.solve.solution import Solution
-        from coadjoint.solve.strands import find_frames
 
         time, state = solution.time[samples], solution.state[:, samples]
-        return find_frames(Solution(system, time, state, solution.parameters, "OK", ""))
+        along = find_frames(Solution(system, time, state, solution.parameters, "OK", ""))
+        return along if first is None else move(first[..., samples], along, strand.side)
 
     if not _are_turning(frames(np.array([len(solution) - 1]))):
         return
-    length, index = system.PARAMETERS[strands[0].length].unit, system.index.name
-    if strands[0].size == 4:
+    length, index = system.PARAMETERS[strand.length].unit, system.index.name
+    seen = f", seen from that at {index} = 0" * (first is None)
+    if strand.size == 4:
         yield _Found(
             show=lambda samples: frames(samples)[:3, 3],
             radius=0.0,
-            title=f"the strand in space, seen from its section at {index} = 0",
+            title="the strand in space" + seen.replace("that", "its section"),
             names=tuple(f"{name} {unit_label(length)}".strip() for name in "xyz"),
         )
         return
     yield _Found(
         show=lambda samples: frames(samples)[:, 2],
         radius=1.0,
-        title=f"the third axes of all sections, seen from that at {index} = 0",
+        title="the third axes of all sections" + seen,
         names=("x", "y", "z"),
     )
 
@@ -225,17 +233,17 @@ def draw_curves(figure: Any, place: Any, curves: Curves) -> Any:
         if curves.radius:  # a curve may turn along itself
             axes.plot(*path[:, :1], color=colour, marker="o", markersize=6, zorder=4)
     if not curves.radius:
-        half = 0.5 * np.maximum(high - low, 0.4 * (high - low).max() or 1.0)
+        half = 0.5 * np.maximum(high - low, 0.6 * (high - low).max() or 1.0)
         for limit, centre, size in zip(
             (axes.set_xlim, axes.set_ylim, axes.set_zlim), middle[:, 0], half, strict=True
         ):
             limit(centre - size, centre + size)
     style_space(axes, curves.names)
+    axes.set_box_aspect((1, 1, 1) if curves.radius else half, zoom=0.85)  # labels need room below
     if not curves.radius:
-        axes.set_box_aspect(half, zoom=0.9)
         for axis, size in zip((axes.xaxis, axes.yaxis, axes.zaxis), half, strict=True):
-            axis.get_major_locator().set_params(nbins=2 + 2 * (size == half.max()))
-            axis.labelpad = -4
+            axis.get_major_locator().set_params(nbins=4 if size == half.max() else 2)
+            axis.labelpad = -2 if size < half.max() else 1
     axes.set_proj_type("ortho")
     axes.view_init(*angles(toward))
     axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.2, 0.5))

@@ -25,7 +25,9 @@ SEEDS, NOISY_SPAN, STEP = (1, 2, 3), 6.0, 1 / 64
 RESOLUTION = 100
 #: Colours of it: with fewer, time along a path is seen in steps; 256 take a third more room, which
 #: colours over time and space need, since their bars would have steps.
-COLOURS, MANY_COLOURS = 64, 256
+COLOURS, MANY_COLOURS = 96, 256
+#: Of these, shades of time.
+TIMES = 32
 #: Why a motion ends before its time, by its status.
 ENDS = {
     "MAX_STEPS": "It stops at the largest number of steps.",
@@ -88,7 +90,7 @@ def _take_colours(place: io.BytesIO, count: int = COLOURS) -> bytes:
 
     small = io.BytesIO()
     with Image.open(place) as picture:
-        whole, own = picture.convert("RGB"), _list_line_colours()
+        whole, own = picture.convert("RGB"), [*_list_line_colours(), *_list_time_colours()]
         few = whole.quantize(count - len(own) // 3).getpalette() or []
         palette = Image.new("P", (1, 1))
         palette.putpalette([*few, *own])
@@ -105,6 +107,16 @@ def _list_line_colours() -> list[int]:
     from coadjoint.solve.panels import COLOURS as LINES
 
     return [round(255 * part) for colour in LINES for part in to_rgb(colour)]
+
+
+def _list_time_colours() -> list[int]:
+    """Those of times: the last ones are few dots, and would become colours of other lines."""
+    import matplotlib as mpl
+
+    from coadjoint.solve.scenes import TIME_MAP
+
+    shades = mpl.colormaps[TIME_MAP]([n / (TIMES - 1) for n in range(TIMES)])[:, :3]
+    return [round(255 * part) for shade in shades for part in shade]
 
 
 def describe(solution: Solution, *others: Solution) -> str:

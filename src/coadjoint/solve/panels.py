@@ -144,7 +144,7 @@ def place_rows(solution: Solution) -> tuple[Array, str]:
 
 
 def _list_density(solution: Solution) -> Iterator[Rows]:
-    """The energy of fields along a circle, per length."""
+    """The energy of fields along a line, per length."""
     from coadjoint.solve.spectral import find_densities
 
     system = solution.system

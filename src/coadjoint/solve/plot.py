@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 #: Heights in inches: of the strip of drift below a scene, and of curves above panels.
-STRIP, CURVES = 0.9, 3.2
+STRIP, CURVES = 0.9, 3.5
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -228,7 +228,10 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     axes.coadjoint_path = paths.members
     _limit_space(axes, paths)
     if several:
-        axes.legend(fontsize=8, frameon=False, **AT_RIGHT)
+        beside = (
+            {"bbox_to_anchor": (1.08, 0.5)} if in_space else {}
+        )  # the letter of an axis is there
+        axes.legend(fontsize=8, frameon=False, **{**AT_RIGHT, **beside})
     told = f"; between the spheres |{symbol_label(paths.names[0][:-1])}| = {{:.4g}} and {{:.4g}}"
     spheres = told.format(*paths.radii) if paths.radii else ""
     axes.set_title(f"open circle: start, filled: end{spheres}", fontsize=9, color="#5b6570")

@@ -96,7 +96,8 @@ class Quantities(Mapping[str, Quantity]):
         """Pickled as the quantities alone; the rest is made of them again."""
         return Quantities, tuple(self.values())
 
-    def _table(self) -> list[tuple[str, ...]]:
+    def table(self) -> list[tuple[str, ...]]:
+        """Name, shape, unit and default of each as text, below their heads."""
         rows: list[tuple[str, ...]] = [("name", "shape", "unit", "default")]
         for q in self.values():
             default = _list([f"{value:g}" for value in q.default or ()])
@@ -104,20 +105,18 @@ class Quantities(Mapping[str, Quantity]):
         return rows
 
     def __repr__(self) -> str:
-        widths = [max(map(len, column)) for column in zip(*self._table(), strict=True)]
+        widths = [max(map(len, column)) for column in zip(*self.table(), strict=True)]
         lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-            for row in self._table()
+            for row in self.table()
         ]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        from html import escape
+        from coadjoint.notebook import show_quantities
 
-        head, *rows = [[escape(cell) for cell in row] for row in self._table()]
-        body = "".join("<tr><td>" + "</td><td>".join(row) + "</td></tr>" for row in rows)
-        return f"<table><tr><th>{'</th><th>'.join(head)}</th></tr>{body}</table>"
+        return show_quantities(self)
 
 
 def _list(texts: Sequence[str]) -> str:

@@ -268,20 +268,46 @@ class Waves:
 
 
 def find_densities(solution: Solution) -> dict[str, Array]:
-    """The densities of the totals of fields along a circle, ``(N, *batch, T)``, by their names.
+    """The densities of the totals of fields along a line, ``(N, *batch, T)``, by their names.
 
-    Derivatives in them are those of Fourier series. Without a circle there are none.
+    Derivatives in them are those of Fourier series on a circle; between ends they have none. Of
+    what inputs or the time drive, and of fields in a plane, there are none.
     """
     system = solution.system
-    if not isinstance(system, FamilySystem) or system.spectral is None:
+    if not isinstance(system, FamilySystem) or not system.lengths or system.torus is not None:
+        return {}
+    if system.spectral is None and (system.INPUTS or system.TIME):
         return {}
     state, parameters = solution.state, solution.parameters
     if parameters.ndim > 1:  # each trajectory has its own at all of its samples
         parameters = np.broadcast_to(
             parameters[..., np.newaxis], (*parameters.shape, state.shape[-1])
         ).reshape(len(parameters), -1)
-    found = SpectralKernel(system).find_densities(state.reshape(len(state), -1), parameters)
+    flat = state.reshape(len(state), -1)
+    if system.spectral is not None:
+        found = SpectralKernel(system).find_densities(flat, parameters)
+    else:
+        found = _find_between_ends(system, flat, parameters)
     return {name: value.reshape(-1, *state.shape[1:]) for name, value in found.items()}
+
+
+def _find_between_ends(system: FamilySystem, state: Array, parameters: Array) -> dict[str, Array]:
+    """Densities of fields alone: at a point, the total of what is the same everywhere, by length.
+
+    Args:
+        system: Of fields between ends.
+        state: ``(n, members)``.
+        parameters: ``(k,)`` or ``(k, members)``.
+    """
+    (length,), few = system.lengths.values(), system.resize({system.index.name: system.small})
+    long = parameters[system.PARAMETERS.rows(length)]
+    fields = state.reshape(-1, system.size, state.shape[1])  # (fields, N, members)
+    totals = [
+        few.observables(np.repeat(fields[:, i], few.size, axis=0), parameters, target="numpy")
+        for i in range(system.size)
+    ]
+    rows = np.moveaxis(np.stack(totals) / long, 0, 1)  # (totals, N, members)
+    return dict(zip(few.OBSERVABLES.components, rows, strict=True))
 
 
 def solve_velocities(

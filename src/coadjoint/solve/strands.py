@@ -77,8 +77,23 @@ def find_frames(solution: Solution, *, moving: bool = False) -> Array:
         )
     (strand,) = strands
     along = _find_transports(solution, strand)
-    if not moving:
-        return along
+    return move(find_first(solution, strand), along, strand.side) if moving else along
+
+
+def find_first(solution: Solution, strand: Connection) -> Array:
+    """The group element at the first point of a strand, from 1 at the first sample on.
+
+    Args:
+        solution: Of a strand.
+        strand: Its strain.
+
+    Returns:
+        ``(n, n, *batch, T)``.
+
+    Raises:
+        KernelArgumentError: Its velocity does not follow from the state, or there is one sample.
+    """
+    system = solution.system
     if not strand.velocity:
         raise KernelArgumentError(
             f"velocities of {system.name} are no functions of its momenta and strains; expected "
@@ -95,13 +110,14 @@ def find_frames(solution: Solution, *, moving: bool = False) -> Array:
         )
     velocity = _evaluate(solution, strand, strand.velocity)[:, :, 0]
     first = _follow(np.moveaxis(velocity, -1, 2), solution.time, strand.side)
-    first = np.moveaxis(first, 2, -1)[:, :, np.newaxis]
-    product = "ij...,jk...->ik..."
-    return np.asarray(
-        np.einsum(product, first, along)
-        if strand.side == "left"
-        else np.einsum(product, along, first)
-    )
+    return np.moveaxis(first, 2, -1)
+
+
+def move(first: Array, along: Array, side: str) -> Array:
+    """All points of a strand as the first one has moved, which `find_first` finds."""
+    factors = (first[:, :, np.newaxis], along)
+    product: Array = np.einsum("ij...,jk...->ik...", *factors[:: 1 if side == "left" else -1])
+    return product
 
 
 def find_traces(solution: Solution) -> dict[str, Array]:
