@@ -25,7 +25,7 @@ from coadjoint.notation.written import (
     power,
     stack_latex,
 )
-from coadjoint.render.document import split_sides
+from coadjoint.render.sums import split_sides
 from coadjoint.spec.core.expressions import read_expression
 
 
@@ -258,3 +258,14 @@ def test_the_root_of_a_square_is_a_size():
     x, y = sympy.symbols("x y")
     assert write_sympy(sympy.sqrt((x - y) ** 2), name).latex == r"\lvert x - y\rvert"
     assert "sqrt" in write_sympy(sympy.sqrt(x - y), name).latex
+
+
+def test_the_rate_of_what_is_a_rate_by_its_name_has_two_dots():
+    """In every format; a word that ends like it, and no letter before, stays a word."""
+    made, rate = name("phidot"), name("phidot", dot=True)
+    assert (made.latex, rate.latex) == (r"\dot{\phi}", r"\ddot{\phi}")
+    assert (made.typst, rate.typst) == ("dot(phi.alt)", "dot.double(phi.alt)")
+    assert rate.mathml.count("..</mo>") == 1
+    assert (made.text, rate.text) == ("phidot", "dphidot/dt")
+    assert name("dot").latex == r"\mathrm{dot}"
+    assert name("robotdot").latex == r"\mathrm{robotdot}"

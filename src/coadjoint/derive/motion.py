@@ -99,7 +99,8 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         field = equations.setting.field
         pairs = list(zip(equations.variables, equations.exact.rates, strict=True))
         rates = {n: value for n, value in pairs if not _is_solved(field, value)}
-        lines = [_write_motion(equations, name, value) for name, value in rates.items()]
+        written = (_write_motion(equations, name, value) for name, value in rates.items())
+        lines = [each for each in written if not _says_nothing(each)]
         left = [value for n, value in pairs if n not in rates]
         owners = {n: v.name for v in equations.spec.variables for n in v.components}
         if vectors:
@@ -128,6 +129,12 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         vectors=vectors,
         kind="motion",
     )
+
+
+def _says_nothing(line: Line) -> bool:
+    """Whether both sides are written alike, as the rate of phi and its velocity phidot."""
+    left, _, right = line.latex.partition(" &= ")
+    return left == right
 
 
 def _write_motion(equations: Equations, name: str, value: Element) -> Line:

@@ -120,7 +120,7 @@ def bracket(part: Written, level: int) -> Written:
     return Written(
         text=f"({part.text})",
         latex=rf"\left({part.latex}\right)",
-        mathml=row(*fence("(", part.mathml, ")")),
+        mathml=row(*fence("(", fold(part), ")")),
         typst=f"({part.typst})",
     )
 
@@ -186,6 +186,21 @@ def stack_sides(left: Written, right: Written) -> str:
     equals = '<mspace width="1em"/><mo form="infix">=</mo>'  # which templates do not part
     behind = (f'<mrow><mspace width="2em"/>{each}</mrow>' for each in others)
     return _table([*_list_rows(left), f"<mrow>{equals}{first}</mrow>", *behind])
+
+
+def fold(part: Written) -> str:
+    """The MathML of a sum within a fraction or brackets, where no line ends: short rows."""
+    addends = [each for group in part.groups for each in group]
+    if len(part.text) <= WIDTH or not addends:
+        return part.mathml
+    rows, room = [list[Written]()], 0
+    for each in addends:
+        room += len(each.text) + 3
+        if room > WIDTH // 2 and rows[-1]:
+            rows.append([])
+            room = len(each.text) + 3
+        rows[-1].append(each)
+    return _table(_list_rows(replace(part, groups=tuple(map(tuple, rows)))))
 
 
 def _list_rows(part: Written) -> list[str]:
@@ -261,7 +276,7 @@ def divide(top: Written, bottom: Written) -> Written:
     return Written(
         text=f"{upper.text}/{lower.text}",
         latex=rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
-        mathml=f"<mfrac>{top.mathml}{bottom.mathml}</mfrac>",
+        mathml=f"<mfrac>{top.mathml}{fold(bottom)}</mfrac>",
         typst=f"frac({top.typst}, {bottom.typst})",
         level=PRODUCT,
         sign=sign,
@@ -401,7 +416,10 @@ def attach(
     '\\dot{\\Pi}_1'
     """
     latex, mathml, typst = base.latex, base.mathml, base.typst
-    if dot:
+    if dot and latex.startswith(r"\dot{"):  # the rate of what is a rate by its name
+        latex, typst = rf"\d{latex[1:]}", typst.replace("dot(", "dot.double(", 1)
+        mathml = mathml.replace(DOT_ABOVE, DOT_ABOVE.replace(".<", "..<"))
+    elif dot:
         latex = rf"\dot{{{latex}}}"
         mathml = f"<mover>{mathml}{DOT_ABOVE}</mover>"
         typst = f"dot({typst})"
