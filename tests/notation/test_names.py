@@ -269,3 +269,14 @@ def test_the_rate_of_what_is_a_rate_by_its_name_has_two_dots():
     assert (made.text, rate.text) == ("phidot", "dphidot/dt")
     assert name("dot").latex == r"\mathrm{dot}"
     assert name("robotdot").latex == r"\mathrm{robotdot}"
+
+
+def test_fractions_within_fractions_are_as_large_as_those_alone():
+    """In LaTeX and on pages; a fraction by itself stays what it is."""
+    a, b, c = map(name, "abc")
+    inner = divide(a, b)
+    outer = divide(inner, c)
+    assert inner.latex == r"\frac{a}{b}"
+    assert outer.latex == r"\frac{\dfrac{a}{b}}{c}"
+    assert "scriptlevel" in outer.mathml
+    assert "scriptlevel" not in inner.mathml

@@ -42,7 +42,8 @@ def test_a_sum_breaks_at_its_signs_and_nowhere_else():
     addends = [X * 9, inner, f"<mrow><mo>(</mo><mrow>{X}{PLUS}{X}</mrow><mo>)</mo></mrow>"]
     minus = "<mo>\u2212</mo>"
     rows = f"<mtr><mtd><mrow>{minus}{addends[0]}</mrow></mtd></mtr>"
-    rows += f"<mtr><mtd><mrow>{PLUS}{addends[1]}{minus}{addends[2]}</mrow></mtd></mtr>"
+    second = f"<mrow>{addends[1]}{minus}{addends[2]}</mrow>"
+    rows += f"<mtr><mtd><mrow>{PLUS}{second}</mrow></mtd></mtr>"
     plain = f'<mi>a</mi><mo>=</mo><mtable displaystyle="true">{rows}</mtable>'
     left, right = split_sides(whole(plain))
     assert left == '<math displaystyle="true"><mi>a</mi></math>'

@@ -275,12 +275,24 @@ def divide(top: Written, bottom: Written) -> Written:
     upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
     return Written(
         text=f"{upper.text}/{lower.text}",
-        latex=rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
-        mathml=f"<mfrac>{top.mathml}{fold(bottom)}</mfrac>",
+        latex=rf"\frac{{{_enlarge_latex(top.latex)}}}{{{_enlarge_latex(bottom.latex)}}}",
+        mathml=f"<mfrac>{_enlarge(top.mathml)}{_enlarge(fold(bottom))}</mfrac>",
         typst=f"frac({top.typst}, {bottom.typst})",
         level=PRODUCT,
         sign=sign,
     )
+
+
+def _enlarge(mathml: str) -> str:
+    """A part of a fraction; with fractions in it as large as a formula by itself."""
+    if "<mfrac>" not in mathml:
+        return mathml
+    return f'<mstyle displaystyle="true" scriptlevel="0">{mathml}</mstyle>'
+
+
+def _enlarge_latex(latex: str) -> str:
+    """The same of LaTeX."""
+    return latex.replace(r"\frac", r"\dfrac")
 
 
 def power(base: Written, exponent: Written | int) -> Written:

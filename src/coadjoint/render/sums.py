@@ -107,16 +107,14 @@ def _list_top(element: ET.Element) -> Iterator[ET.Element]:
     elif element.tag == "mtable" and element.get("displaystyle"):
         for row in element:
             (cell,) = row
-            yield from _list_top(ET.Element("mrow") if len(cell) == 0 else _as_row(cell))
+            content = list(cell)
+            if len(content) == 1 and content[0].tag == "mrow":
+                content = list(content[0])
+            if [each.tag for each in content] == ["mo", "mrow"]:  # its sign, and a sum behind it
+                content = [content[0], *content[1]]
+            yield from content
     else:
         yield from children
-
-
-def _as_row(cell: ET.Element) -> ET.Element:
-    """What is in a cell of a table."""
-    row = ET.Element("mrow")
-    row.extend(list(cell))
-    return row
 
 
 def _write(elements: Iterable[ET.Element]) -> str:
