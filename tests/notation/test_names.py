@@ -275,8 +275,16 @@ def test_fractions_within_fractions_are_as_large_as_those_alone():
     """In LaTeX and on pages; a fraction by itself stays what it is."""
     a, b, c = map(name, "abc")
     inner = divide(a, b)
-    outer = divide(inner, c)
+    outer = divide(add([inner, c]), c)
     assert inner.latex == r"\frac{a}{b}"
-    assert outer.latex == r"\frac{\dfrac{a}{b}}{c}"
+    assert outer.latex == r"\frac{\dfrac{a}{b} + c}{c}"
     assert "scriptlevel" in outer.mathml
     assert "scriptlevel" not in inner.mathml
+
+
+def test_a_fraction_over_something_is_one_fraction():
+    """With its sign, its number, and a text that says the same in one line."""
+    a, b, c = map(name, "abc")
+    made = divide(negate(divide(a, b)), c)
+    assert (made.latex, made.sign, made.text) == (r"\frac{a}{b\,c}", -1, "a/b/c")
+    assert divide(number(Fraction(1, 2)), a).latex == r"\frac{1}{2\,a}"

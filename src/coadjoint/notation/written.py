@@ -50,6 +50,7 @@ class Written:
         factors: Of a product, its factors; empty for all else.
         groups: Of a sum, the addends that fit on each line of a page.
         addends: Of a fraction whose numerator fills several lines, a fraction for each of them.
+        fraction: Of a fraction, what is above and below the line.
     """
 
     text: str
@@ -62,6 +63,7 @@ class Written:
     factors: tuple[Written, ...] = ()
     groups: tuple[tuple[Written, ...], ...] = ()
     addends: tuple[Written, ...] = ()
+    fraction: tuple[Written, ...] = ()
 
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
@@ -273,6 +275,10 @@ def divide(top: Written, bottom: Written) -> Written:
         return replace(add(own), addends=own)
     sign, top = top.sign, replace(top, sign=1)
     upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
+    if top.fraction:  # a fraction over something is one over the product
+        first, second = top.fraction
+        made = divide(first, multiply([second, bottom]))
+        return replace(made, text=f"{upper.text}/{lower.text}", sign=sign * made.sign)
     return Written(
         text=f"{upper.text}/{lower.text}",
         latex=rf"\frac{{{_enlarge_latex(top.latex)}}}{{{_enlarge_latex(bottom.latex)}}}",
@@ -280,6 +286,7 @@ def divide(top: Written, bottom: Written) -> Written:
         typst=f"frac({top.typst}, {bottom.typst})",
         level=PRODUCT,
         sign=sign,
+        fraction=(top, bottom),
     )
 
 
