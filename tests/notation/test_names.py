@@ -25,7 +25,7 @@ from coadjoint.notation.written import (
     power,
     stack_latex,
 )
-from coadjoint.render.document import split_sides
+from coadjoint.render.sums import split_sides
 from coadjoint.spec.core.expressions import read_expression
 
 
@@ -258,3 +258,33 @@ def test_the_root_of_a_square_is_a_size():
     x, y = sympy.symbols("x y")
     assert write_sympy(sympy.sqrt((x - y) ** 2), name).latex == r"\lvert x - y\rvert"
     assert "sqrt" in write_sympy(sympy.sqrt(x - y), name).latex
+
+
+def test_the_rate_of_what_is_a_rate_by_its_name_has_two_dots():
+    """In every format; a word that ends like it, and no letter before, stays a word."""
+    made, rate = name("phidot"), name("phidot", dot=True)
+    assert (made.latex, rate.latex) == (r"\dot{\phi}", r"\ddot{\phi}")
+    assert (made.typst, rate.typst) == ("dot(phi.alt)", "dot.double(phi.alt)")
+    assert rate.mathml.count("..</mo>") == 1
+    assert (made.text, rate.text) == ("phidot", "dphidot/dt")
+    assert name("dot").latex == r"\mathrm{dot}"
+    assert name("robotdot").latex == r"\mathrm{robotdot}"
+
+
+def test_fractions_within_fractions_are_as_large_as_those_alone():
+    """In LaTeX and on pages; a fraction by itself stays what it is."""
+    a, b, c = map(name, "abc")
+    inner = divide(a, b)
+    outer = divide(add([inner, c]), c)
+    assert inner.latex == r"\frac{a}{b}"
+    assert outer.latex == r"\frac{\dfrac{a}{b} + c}{c}"
+    assert "scriptlevel" in outer.mathml
+    assert "scriptlevel" not in inner.mathml
+
+
+def test_a_fraction_over_something_is_one_fraction():
+    """With its sign, its number, and a text that says the same in one line."""
+    a, b, c = map(name, "abc")
+    made = divide(negate(divide(a, b)), c)
+    assert (made.latex, made.sign, made.text) == (r"\frac{a}{b\,c}", -1, "a/b/c")
+    assert divide(number(Fraction(1, 2)), a).latex == r"\frac{1}{2\,a}"

@@ -448,3 +448,24 @@ def test_a_long_left_side_moves_no_other_line():
     (below,) = (row for row in rows[1:-1] if "=" in row)
     assert below.startswith("  = a0*b0")
     assert " ".join(" ".join(rows[1:-1]).split()) == f"{long} = {long}"
+
+
+def test_components_that_steps_have_are_not_printed_twice():
+    """Only on paper, and only if every line is there once more."""
+    line = {
+        "text": "x = y",
+        "latex": "x &= y",
+        "typst": "x = y",
+        "mathml": "<math><mi>x</mi></math>",
+    }
+    other = {**line, "mathml": "<math><mi>z</mi></math>"}
+    motion = {"title": "Motion", "law": "", "kind": "motion", "vectors": [line]}
+    step = {"title": "Step", "law": "", "kind": "step", "lines": [line]}
+    head = {"title": "T", "about": "", "source": "", "description": ""}
+
+    def shown(lines):
+        sections = [{**motion, "lines": lines}, step]
+        return render_document({**head, "sections": sections}, "html")
+
+    assert '<details class="told">' in shown([line])
+    assert '<details class="told">' not in shown([line, other])

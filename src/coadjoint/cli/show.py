@@ -96,15 +96,19 @@ def make_chapter(
     if "claims" not in certificate and (form != "text" or is_resized):
         certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
     record = complete(record, certificate, folder)
-    if form == "html":
-        record |= draw_motion(system, sizes=sizes, seconds=seconds)
+    if form in ("html", "latex"):
+        record |= draw_motion(system, form, sizes=sizes, seconds=seconds)
     return record
 
 
 def draw_motion(
-    system: str, *, sizes: Mapping[str, int] = MappingProxyType({}), seconds: int | None = None
+    system: str,
+    form: str,
+    *,
+    sizes: Mapping[str, int] = MappingProxyType({}),
+    seconds: int | None = None,
 ) -> dict[str, Any]:
-    """A picture of a motion as an address of data, with its caption.
+    """A picture of a motion, of a page or of LaTeX, with its caption.
 
     Empty without matplotlib, and where a spec can be derived and not be run.
     """
@@ -114,6 +118,6 @@ def draw_motion(
 
     try:
         loaded = load_system(system, seconds, sizes)
-        return illustrate(loaded, find_start(loaded, ()))
+        return illustrate(loaded, find_start(loaded, ()), form)
     except CoadjointError:
         return {}

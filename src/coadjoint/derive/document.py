@@ -16,7 +16,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.generic import count_written, fold_step
 from coadjoint.derive.lines import Line, Section, equal, formula, formula_line, whole_line
 from coadjoint.derive.motion import Names, find_form, list_motion
-from coadjoint.derive.records import Emitted, Step, symbol
+from coadjoint.derive.records import Emitted, Step, is_of_kernel, symbol
 from coadjoint.derive.setting import Declared
 from coadjoint.derive.theorems import find_theorem
 from coadjoint.exact import element_text
@@ -293,7 +293,7 @@ def _section(equations: Equations, step: Step, names: Names | None = None) -> Se
     for left, right in step.lines:
         written = write_element(field, right)
         if written.latex == left.latex:  # what has no other name, as what a kernel solves for
-            is_rate = left.text.endswith("/dt") and not words
+            is_rate = is_of_kernel(written.text) and not words
             words += (("the other rates", "as the kernel solves for them"),) * is_rate
         elif names is not None and left.text in declared:
             lines.append(equal(left, names.write(declared[left.text])))

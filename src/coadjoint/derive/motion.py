@@ -20,7 +20,7 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.derive.motion_names import complete_vectors, measure, write_names
 from coadjoint.derive.records import is_of_kernel, rate, symbol
 from coadjoint.derive.vectors import VectorForm, vector_form
-from coadjoint.derive.vectors.vocabulary import value_shape
+from coadjoint.derive.vectors.words import value_shape
 from coadjoint.exact import Element, Field
 from coadjoint.notation.elements import write_element
 from coadjoint.notation.trees import write_tree
@@ -99,11 +99,12 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         field = equations.setting.field
         pairs = list(zip(equations.variables, equations.exact.rates, strict=True))
         rates = {n: value for n, value in pairs if not _is_solved(field, value)}
-        lines = [_write_motion(equations, name, value) for name, value in rates.items()]
+        written = (_write_motion(equations, name, value) for name, value in rates.items())
+        lines = [each for each in written if not _says_nothing(each)]
         left = [value for n, value in pairs if n not in rates]
         owners = {n: v.name for v in equations.spec.variables for n in v.components}
         if vectors:
-            left = [v for n, v in pairs if n not in rates and owners.get(n) in missing]
+            left = [v for n, v in pairs if n not in rates and {n, owners.get(n)} & {*missing}]
         solved = list(_write_solved(equations, left)) if left else None
         law = _say_where(vectors, missing, solved)
         if any("_u1 " in line.text for line in solved or ()):
@@ -116,6 +117,8 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
                 bare = {n: (rates[n], _write_motion(equations, n, rates[n])) for n in rates}
                 short = solved if solved and measure(solved) <= SHORT_SOLVE else ()
                 vectors += (*short, *complete_vectors(equations, form, bare))
+        if form is not None and form.told:
+            law += f"; {form.told}"
         if equations.spec.noise:
             law += "; the noise is in the sense of Stratonovich"
     return Section(
@@ -126,6 +129,12 @@ def _motion(equations: Equations, form: VectorForm | None, names: Names) -> Sect
         vectors=vectors,
         kind="motion",
     )
+
+
+def _says_nothing(line: Line) -> bool:
+    """Whether both sides are written alike, as the rate of phi and its velocity phidot."""
+    left, _, right = line.latex.partition(" &= ")
+    return left == right
 
 
 def _write_motion(equations: Equations, name: str, value: Element) -> Line:

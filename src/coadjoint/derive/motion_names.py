@@ -61,8 +61,12 @@ def complete_vectors(
     """
     spec, field = equations.spec, equations.setting.field
     defined = {line.left.name for line in form.lines if isinstance(line.left, tree.Name)}
-    bare = [v for v in spec.state if v.name in form.missing or not v.value_shape]
-    further = [n for v in bare for n in v.components if n in rates]
+    further = [
+        n
+        for v in spec.state
+        for n in v.components
+        if n in rates and ({v.name, n} & {*form.missing} or not v.value_shape)
+    ]
     lines = [rates[n][1] for n in further]
     if measure(lines) > LONGEST_NAMES:
         further, lines = [], []

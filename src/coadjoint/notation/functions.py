@@ -29,6 +29,7 @@ from coadjoint.notation.written import (
     row,
 )
 
+LAPLACIAN: Final = literal("Laplacian", r"\Delta", '<mi mathvariant="normal">Δ</mi>', "Delta")
 #: Relations, as LaTeX, MathML and Typst have them.
 RELATIONS: Final[Mapping[str, tuple[str, str, str]]] = {
     "=": ("=", "=", "="),
@@ -46,9 +47,11 @@ CALLS: Final[Mapping[str, Callable[..., Written]]] = {
     "cross": lambda a, b: between(a, CROSS, b),
     "outer": lambda a, b: between(a, OUTER, b),
     "commutator": lambda a, b: enclose([a, b]),
+    "jacobian": lambda a, b: enclose([a, b], "{}"),
+    "laplacian": lambda a: multiply([LAPLACIAN, a]),
     "qmul": lambda a, b: multiply([a, b]),
-    "transpose": lambda a: _raise(a, "T", "⊤"),
-    "conjugate": lambda a: _raise(a, "*", "*"),
+    "transpose": lambda a: raise_mark(a, "T", "⊤"),
+    "conjugate": lambda a: raise_mark(a, "*", "*"),
     "inverse": lambda a: power(a, -1),
     "norm": lambda a: enclose([a], "||"),
     "abs": lambda a: enclose([a], "||"),
@@ -60,15 +63,15 @@ CALLS: Final[Mapping[str, Callable[..., Written]]] = {
 }
 
 
-def _raise(base: Written, text: str, mark: str) -> Written:
-    """A mark above: of a transpose, a conjugate."""
+def raise_mark(base: Written, text: str, mark: str) -> Written:
+    """A mark above: of a transpose, of its inverse, a conjugate."""
     own = bracket(base, ATOM)
-    latex = r"\top" if text == "T" else text
+    latex = text.replace("T", r"\top")
     return Written(
         text=f"{own.text}^{text}",
         latex=f"{own.latex}^{{{latex}}}",
         mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
-        typst=f"{own.typst}^({'top' if text == 'T' else 'ast'})",
+        typst=f"{own.typst}^({text.replace('T', 'top').replace('*', 'ast')})",
     )
 
 

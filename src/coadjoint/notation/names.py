@@ -19,6 +19,7 @@ from markupsafe import escape
 
 from coadjoint.notation.functions import write_rate
 from coadjoint.notation.written import (
+    DOT_ABOVE,
     SUM,
     Written,
     add,
@@ -97,6 +98,8 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
     >>> name("_k1").latex
     '\\tilde{k}_1'
+    >>> name("phidot").latex, name("phidot", dot=True).latex, name("M_phidot1").latex
+    ('\\dot{\\phi}', '\\ddot{\\phi}', 'M_{\\dot{\\phi},1}')
     """
     shown = f"d{text}/dt" if dot else text
     if text.startswith("_"):
@@ -155,9 +158,10 @@ def spell(text: str) -> tuple[str, str]:
     (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('C', '1'))
     """
     symbol, below = _split_name(text.removeprefix("_"), bold=False)
-    plain = [unescape(re.sub("<[^>]+>", "", each.mathml)) for each in (symbol, *below)]
-    for _, letter, _, shown in _OWN.values():
-        plain[0] = plain[0].replace(letter, shown)  # which fonts of pictures lack
+    shown = [each.mathml.replace(DOT_ABOVE, "\u0307") for each in (symbol, *below)]
+    plain = [unescape(re.sub("<[^>]+>", "", each)) for each in shown]
+    for _, letter, _, own in _OWN.values():
+        plain[0] = plain[0].replace(letter, own)  # which fonts of pictures lack
     return plain[0].replace("\xa0", " "), ",".join(plain[1:]).replace("\xa0", " ")
 
 
@@ -251,8 +255,11 @@ def _write_below(words: str) -> Written:
 
 
 def _letter(base: str, *, bold: bool) -> Written | None:
-    """A letter, Latin or Greek; None for a word."""
+    """A letter, Latin or Greek, which may have a dot, as ``phidot``; None for a word."""
     base = _SHORT.get(base, base)
+    if base.endswith("dot"):
+        of = _letter(base.removesuffix("dot"), bold=bold)
+        return None if of is None else replace(attach(of, dot=True), text=base)
     typst = _TYPST_GREEK.get(base, base)
     if base in _OWN:
         latex, letter, typst, _ = _OWN[base]

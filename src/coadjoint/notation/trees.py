@@ -11,7 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
-from coadjoint.notation.functions import CALLS, write_noise, write_rate, write_sum
+from coadjoint.notation.functions import CALLS, raise_mark, write_noise, write_rate, write_sum
 from coadjoint.notation.names import differential, differentiate_along, name, partial
 from coadjoint.notation.written import (
     ATOM,
@@ -39,6 +39,10 @@ ALONG: Final = "along_space"
 DIFFERENTIAL: Final = "differential_of"
 IN_TIME: Final = "in_time"
 BY_PROCESS: Final = "by_process"
+#: Functions whose value is a matrix.
+_MATRICES: Final = frozenset(
+    ["transpose", "inverse", "hat", "diag", "outer", "rows", "commutator", "rotation"]
+)
 
 
 def write_tree(
@@ -75,7 +79,8 @@ def write_tree(
             case tree.Name(name=text):
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
-                whole = attach(name(text), below=[number(i) for i in indices])
+                row = len(shapes.get(text, ())) == 2 and len(indices) == 1
+                whole = attach(name(text, bold=row), below=[number(i) for i in indices])
                 return replace(whole, text=_number(text, indices, shapes.get(text, ())))
             case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
@@ -83,7 +88,8 @@ def write_tree(
                 made = attach(whole, below=[place, *map(number, indices)])
                 return replace(made, text=f"{text}[{', '.join([place.text, *map(str, indices)])}]")
             case tree.Entry(name=text):
-                return attach(name(text), below=below)
+                places = ", ".join(each.text for each in below)
+                return replace(attach(name(text), below=below), text=f"{text}[{places}]")
             case tree.Component(indices=indices):
                 whole = bracket(below[0], ATOM)
                 made = attach(whole, below=[number(i) for i in indices])
@@ -96,8 +102,10 @@ def write_tree(
                 return add(below)
             case tree.Binary(operator="-"):
                 return add([below[0], negate(below[1])])
-            case tree.Binary(operator="*"):
-                return multiply(below)
+            case tree.Binary(operator="*", left=left):
+                # A b x c could be taken for (A b) x c
+                parted = below[1].between and _is_matrix(left, shapes)
+                return multiply([below[0], bracket(below[1], ATOM)] if parted else below)
             case tree.Binary(operator="/"):
                 return _divide(part, *below)
             case tree.Sum(indices=indices, sign=sign):
@@ -129,6 +137,11 @@ def write_tree(
             case tree.Call(function="rows", arguments=rows) if all(map(_is_vector, rows)):
                 own = [row.arguments for row in rows if isinstance(row, tree.Call)]
                 return matrix([[write_tree(one, shapes, names) for one in row] for row in own])
+            case tree.Call(
+                function="inverse",
+                arguments=(tree.Call(function="transpose", arguments=(turned,)),),
+            ):
+                return raise_mark(write_tree(turned, shapes, names), "-T", "−⊤")
             case tree.Call(function=function) if function in CALLS:
                 return CALLS[function](*below)
             case tree.Call(function=function):
@@ -143,6 +156,18 @@ def _number(text: str, indices: Sequence[int], shape: Shape) -> str:
     joint = "_" if len(indices) == 2 and max(*shape, *indices) > 9 else ""
     lead = f"{text}_" if joint or text[-1].isdigit() else text
     return lead + joint.join(map(str, indices))
+
+
+def _is_matrix(node: tree.Node, shapes: Mapping[str, Shape]) -> bool:
+    """Whether a factor is a matrix, as far as it is seen by its names and functions."""
+    match node:
+        case tree.Name(name=text):
+            return len(shapes.get(text, ())) == 2
+        case tree.Call(function=function):
+            return function in _MATRICES
+        case tree.Binary(operator="*", left=left, right=right):
+            return _is_matrix(left, shapes) and _is_matrix(right, shapes)
+    return False
 
 
 def _is_vector(node: tree.Node) -> bool:

@@ -50,6 +50,7 @@ class Written:
         factors: Of a product, its factors; empty for all else.
         groups: Of a sum, the addends that fit on each line of a page.
         addends: Of a fraction whose numerator fills several lines, a fraction for each of them.
+        fraction: Of a fraction, what is above and below the line.
     """
 
     text: str
@@ -62,6 +63,7 @@ class Written:
     factors: tuple[Written, ...] = ()
     groups: tuple[tuple[Written, ...], ...] = ()
     addends: tuple[Written, ...] = ()
+    fraction: tuple[Written, ...] = ()
 
 
 def literal(text: str, latex: str = "", mathml: str = "", typst: str = "") -> Written:
@@ -120,7 +122,7 @@ def bracket(part: Written, level: int) -> Written:
     return Written(
         text=f"({part.text})",
         latex=rf"\left({part.latex}\right)",
-        mathml=row(*fence("(", part.mathml, ")")),
+        mathml=row(*fence("(", fold(part), ")")),
         typst=f"({part.typst})",
     )
 
@@ -186,6 +188,21 @@ def stack_sides(left: Written, right: Written) -> str:
     equals = '<mspace width="1em"/><mo form="infix">=</mo>'  # which templates do not part
     behind = (f'<mrow><mspace width="2em"/>{each}</mrow>' for each in others)
     return _table([*_list_rows(left), f"<mrow>{equals}{first}</mrow>", *behind])
+
+
+def fold(part: Written) -> str:
+    """The MathML of a sum within a fraction or brackets, where no line ends: short rows."""
+    addends = [each for group in part.groups for each in group]
+    if len(part.text) <= WIDTH or not addends:
+        return part.mathml
+    rows, room = [list[Written]()], 0
+    for each in addends:
+        room += len(each.text) + 3
+        if room > WIDTH // 2 and rows[-1]:
+            rows.append([])
+            room = len(each.text) + 3
+        rows[-1].append(each)
+    return _table(_list_rows(replace(part, groups=tuple(map(tuple, rows)))))
 
 
 def _list_rows(part: Written) -> list[str]:
@@ -258,14 +275,31 @@ def divide(top: Written, bottom: Written) -> Written:
         return replace(add(own), addends=own)
     sign, top = top.sign, replace(top, sign=1)
     upper, lower = bracket(top, PRODUCT), bracket(bottom, POWER)
+    if top.fraction:  # a fraction over something is one over the product
+        first, second = top.fraction
+        made = divide(first, multiply([second, bottom]))
+        return replace(made, text=f"{upper.text}/{lower.text}", sign=sign * made.sign)
     return Written(
         text=f"{upper.text}/{lower.text}",
-        latex=rf"\frac{{{top.latex}}}{{{bottom.latex}}}",
-        mathml=f"<mfrac>{top.mathml}{bottom.mathml}</mfrac>",
+        latex=rf"\frac{{{_enlarge_latex(top.latex)}}}{{{_enlarge_latex(bottom.latex)}}}",
+        mathml=f"<mfrac>{_enlarge(top.mathml)}{_enlarge(fold(bottom))}</mfrac>",
         typst=f"frac({top.typst}, {bottom.typst})",
         level=PRODUCT,
         sign=sign,
+        fraction=(top, bottom),
     )
+
+
+def _enlarge(mathml: str) -> str:
+    """A part of a fraction; with fractions in it as large as a formula by itself."""
+    if "<mfrac>" not in mathml:
+        return mathml
+    return f'<mstyle displaystyle="true" scriptlevel="0">{mathml}</mstyle>'
+
+
+def _enlarge_latex(latex: str) -> str:
+    """The same of LaTeX."""
+    return latex.replace(r"\frac", r"\dfrac")
 
 
 def power(base: Written, exponent: Written | int) -> Written:
@@ -401,7 +435,10 @@ def attach(
     '\\dot{\\Pi}_1'
     """
     latex, mathml, typst = base.latex, base.mathml, base.typst
-    if dot:
+    if dot and latex.startswith(r"\dot{"):  # the rate of what is a rate by its name
+        latex, typst = rf"\d{latex[1:]}", typst.replace("dot(", "dot.double(", 1)
+        mathml = mathml.replace(DOT_ABOVE, DOT_ABOVE.replace(".<", "..<"))
+    elif dot:
         latex = rf"\dot{{{latex}}}"
         mathml = f"<mover>{mathml}{DOT_ABOVE}</mover>"
         typst = f"dot({typst})"

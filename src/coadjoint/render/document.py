@@ -28,7 +28,7 @@ from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.written import LONG_LEFT, Written
 from coadjoint.render.strict import make_environment
-from coadjoint.render.widths import fit_paper
+from coadjoint.render.sums import fit_paper, is_narrow, split_sides
 
 FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -84,8 +84,17 @@ def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
     empty = {"vectors": (), "rows": (), "kind": "step", "lines": (), "words": (), "table": ()}
     empty |= {"theorem": "", "law_latex": ""}
     sections = [{**empty, **section} for section in document["sections"]]
+    _mark_told(sections)
     heads = {"picture": "", "caption": "", "description": ""}
     return {**heads, **document, "sections": sections}
+
+
+def _mark_told(sections: Sequence[dict[str, Any]]) -> None:
+    """Mark components of the motion that steps have too: paper has no folds and needs them once."""
+    told = {line["mathml"] for each in sections if each["kind"] == "step" for line in each["lines"]}
+    for each in sections:
+        lines = {line["mathml"] for line in each["lines"]}
+        each["told_below"] = each["kind"] == "motion" and lines <= told
 
 
 def leave_out_repeated(sections: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -359,6 +368,7 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         "fit": fit_paper,
         "listed": list_rows,
         "law": write_law,
+        "narrow": is_narrow,
         "sides": split_sides,
         "tabulated": tabulate,
         "wrapped": wrap,
@@ -415,21 +425,6 @@ def write_law(section: Mapping[str, Any]) -> Markup | str:
             return Markup(maths)  # noqa: S704 - made of elements alone, its letters escaped
     law: str = section["law"]
     return law
-
-
-def split_sides(mathml: str) -> tuple[str, str]:
-    """The two sides of an equation as formulas of their own, the sign with the second one.
-
-    >>> split_sides("<math><mrow><mi>a</mi><mo>=</mo><mi>b</mi></mrow></math>")[0]
-    '<math displaystyle="true"><mi>a</mi></math>'
-    """
-    inner = mathml.removeprefix("<math>").removesuffix("</math>")
-    inner = inner.removeprefix("<mrow>").removesuffix("</mrow>")
-    left, sign, right = inner.partition("<mo>=</mo>")
-    if not sign:
-        return "", mathml
-    shown = f'<mrow><mo rspace="0.3em">=</mo>{right}</mrow>'
-    return f'<math displaystyle="true">{left}</math>', f'<math displaystyle="true">{shown}</math>'
 
 
 #: Characters of a line of a table in text, with the blanks between columns.

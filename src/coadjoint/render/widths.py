@@ -1,8 +1,8 @@
 """How wide formulas are on a page, about: those that paper cannot hold are set smaller there.
 
 On a screen a wide formula is moved sideways in a box of its own; paper has none. No browser breaks
-a root or a product over lines. Comes in: MathML. Goes out: a width in units of its letters' size,
-and the part of their size that fits. Read next: `coadjoint.render.document`.
+a root or a product over lines. Comes in: MathML. Goes out: a width in units of its letters' size.
+Read next: `coadjoint.render.sums`.
 """
 
 from __future__ import annotations
@@ -20,16 +20,13 @@ _BETWEEN: Final = frozenset("+−-=×⋅∘⊗→≤≥<>≠≈")
 _SCRIPT: Final = 0.75
 
 
-def fit_paper(mathml: str) -> float:
-    """The part of the size of letters at which a formula fits on paper: 1 for most.
+def measure(mathml: str) -> float:
+    """The width of a formula.
 
-    >>> fit_paper("<math><mi>x</mi><mo>=</mo><mn>1</mn></math>")
-    1.0
-    >>> fit_paper("<math><mrow>" + "<mi>x</mi><mo>+</mo>" * 40 + "</mrow></math>")
-    0.5
+    >>> measure("<math><mi>x</mi><mo>=</mo><mn>1</mn></math>")
+    2.4
     """
-    width = _measure(ET.fromstring(mathml))  # noqa: S314 - made of elements by this package
-    return 1.0 if width <= PAPER else round(max(SMALLEST, PAPER / width), 2)
+    return _measure(ET.fromstring(mathml))  # noqa: S314 - made of elements by this package
 
 
 def _measure(element: ET.Element) -> float:

@@ -1,4 +1,4 @@
-"""Pictures of motions for documents: drawn from the generated code, as an address of data.
+"""Pictures of motions for documents: drawn from the generated code, as dots or as TikZ.
 
 Comes in: a System. Goes out: the picture and its caption. Read next: `coadjoint.solve.plot`.
 """
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Units of time that a picture covers, and samples along it.
 SPAN, SAMPLES = 20.0, 1500
+#: Samples of a picture of LaTeX, in which each is a few letters.
+FEW_SAMPLES = 500
 #: Of what has noise: seeds of paths from one start, the units of time that they cover, and a step.
 #: Longer paths would cover each other.
 SEEDS, NOISY_SPAN, STEP = (1, 2, 3), 6.0, 1 / 64
@@ -37,8 +39,13 @@ ENDS = {
 }
 
 
-def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
+def illustrate(system: System, state: Sequence[float], form: str = "html") -> dict[str, str]:
     """A motion from a state, with the default parameters.
+
+    Args:
+        system: What moves.
+        state: Where it begins.
+        form: ``"html"`` for dots as an address of data, ``"latex"`` for a ``tikzpicture``.
 
     Raises:
         CoadjointError: matplotlib is not installed, or the motion cannot begin there.
@@ -47,23 +54,28 @@ def illustrate(system: System, state: Sequence[float]) -> dict[str, str]:
 
     with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
         warnings.simplefilter("ignore")
-        solutions = _simulate(system, state)
-    place, figure = io.BytesIO(), draw(*solutions)
+        solutions = _simulate(system, state, SAMPLES if form == "html" else FEW_SAMPLES)
+    figure, caption = draw(*solutions), describe(*solutions)
+    if form == "latex":
+        from coadjoint.solve.tikz import write_tikz
+
+        return {"picture": write_tikz(figure), "caption": caption}
+    place = io.BytesIO()
     figure.savefig(place, format="png", dpi=RESOLUTION)
     count = MANY_COLOURS if _has_colours_of_values(figure) else COLOURS
     data = base64.b64encode(_take_colours(place, count)).decode("ascii")
-    return {"picture": f"data:image/png;base64,{data}", "caption": describe(*solutions)}
+    return {"picture": f"data:image/png;base64,{data}", "caption": caption}
 
 
-def _simulate(system: System, state: Sequence[float]) -> list[Solution]:
+def _simulate(system: System, state: Sequence[float], samples: int) -> list[Solution]:
     """The motion from a state; with noise some paths, one for each seed."""
     from coadjoint.solve.noisy import has_noise
 
     if has_noise(system):
-        samples = 1 + round(NOISY_SPAN / STEP)  # at the ends of steps
+        ends = 1 + round(NOISY_SPAN / STEP)  # of steps
         return [
             system.simulate(
-                state, (0.0, NOISY_SPAN), step=STEP, seed=seed, samples=samples, progress=False
+                state, (0.0, NOISY_SPAN), step=STEP, seed=seed, samples=ends, progress=False
             )
             for seed in SEEDS
         ]
@@ -71,7 +83,7 @@ def _simulate(system: System, state: Sequence[float]) -> list[Solution]:
     reconstruct = bool(system.RECONSTRUCTED)
     return [
         system.simulate(
-            state, (0.0, SPAN), samples=SAMPLES, progress=False, reconstruct=reconstruct
+            state, (0.0, SPAN), samples=samples, progress=False, reconstruct=reconstruct
         )
     ]
 

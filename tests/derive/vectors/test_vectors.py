@@ -16,9 +16,14 @@ from coadjoint.derive.vectors.balance import (
     momentum_balance,
     speeds_of,
 )
+from coadjoint.derive.vectors.brackets import (
+    commutator_lines,
+    plane_lines,
+    weigh_commutators,
+)
 from coadjoint.derive.vectors.gradients import gradient, total_of
 from coadjoint.derive.vectors.recognise import recognise
-from coadjoint.derive.vectors.vocabulary import make_vocabulary
+from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.notation.trees import write_tree
 from coadjoint.notation.written import add
 from coadjoint.spec.core.expressions import read_expression
@@ -45,6 +50,38 @@ BOOKS = {
     "stochastic_rigid_body": [
         "dPi = (Pi x Omega) dt + (Pi x (sigma1, 0, 0)) o dW1"
         " + (Pi x (0, sigma2, 0)) o dW2 + (Pi x (0, 0, sigma3)) o dW3"
+    ],
+    "heavy_top_damped": ["dPi/dt = tau - diag(d) Omega + Pi x Omega + m g Gamma x chi"],
+    "kapitza_top": ["dPi/dt = m (g - a w^2 cos(w t)) Gamma x chi + Pi x Omega"],
+    "two_field_top": ["dPi/dt = Pi x Omega + (a, 0, 0) x R1 + (0, b, 0) x R2"],
+    "coupled_bodies": [
+        "dPi1/dt = epsilon (A w2) x w1 + Pi1 x Omega1",
+        "dPi2/dt = epsilon (A^T w1) x w2 + Pi2 x Omega2",
+        "dA/dt = A hat(Omega2) - hat(Omega1) A",
+    ],
+    "quadratic_potential_so3": ["dM/dt = [M, Omega] + [diag(a), S]", "dS/dt = [S, Omega]"],
+    "ellipsoidal_motion": ["dQ/dt = P", "dP/dt = b Q^-T/det(Q) - k Q"],
+    "spd_motion": ["dS/dt = S P S", "dP/dt = -P S P - 1/2 p (x) p", "dq/dt = S p"],
+    "sphere_vortices": [
+        "dx[i]/dt = sum(j, j != i, Gamma[j] x[j] x x[i]/(4 pi R (R^2 - x[i] . x[j])))"
+    ],
+    "se3_strand": [
+        "dPi/dt = diag(K) k_s + e x (diag(A) d) + Pi x Omega + k x (diag(K) k)",
+        "dP/dt = diag(A) d_s + k x (diag(A) d) + P x Omega",
+        "dk/dt = Omega_s + k x Omega",
+        "de/dt = v_s + e x Omega + k x v",
+    ],
+    "sp2_strand": ["dM/dt = S_s + [N, T^2] + [S^2, N]", "dS/dt = T_s + T N S - S N T"],
+    "two_time_body": [
+        "dPi/dt = -diag(B) Omega_s + diag(K) Xi_s + Pi x Omega"
+        " + (diag(B) Omega) x Xi + Xi x (diag(K) Xi)"
+    ],
+    "quadrotor": ["dP/dt = m g down - (0, 0, f) + P x Omega", "ddown/dt = down x Omega"],
+    "zeitlin_su_4": ["dW/dt = [W, V]", "w[k] = -trace(W E[k])", "V = sum(k, Psi[k] E[k])"],
+    "euler_2d": [
+        "dw/dt = {psi, w}",
+        "{psi, w} = psi_x w_y - psi_y w_x",
+        "w = -Laplacian psi",
     ],
     "veselova": ["d(diag(I) Omega)/dt = twistless_reaction Gamma + (diag(I) Omega) x Omega"],
 }
@@ -96,6 +133,54 @@ def test_no_line_is_printed_for_a_spoiled_component(system, place):
     assert not any(line.left == name for line in spoiled.lines) or place == -1
     whole = {line.left for line in vector_form(equations).lines}
     assert len([line for line in spoiled.lines if line.left in whole]) < len(whole)
+
+
+def test_a_part_is_printed_only_if_its_own_components_are_right():
+    """With the strain's fifth rate spoiled the rod keeps its turns and loses its steps."""
+    equations = derive(shipped("se3_strand"))
+    place = equations.variables.index("X5")
+    spoiled = vector_form(spoil(equations, place))
+    found = [line.split(" = ")[0] for line in lines(spoiled)]
+    assert "dk/dt" in found
+    assert "de/dt" not in found
+    assert spoiled.missing == ("X4", "X5", "X6")
+    text = document(spoil(equations, place)).sections[0].law
+    assert "those of X4, X5, X6 in components" in text
+
+
+def test_a_derivative_along_space_is_that_of_the_matrix_that_is_printed():
+    """Off the diagonal the strain of Sp(2) is half of its component, and so is its slope."""
+    equations = derive(shipped("sp2_strand"))
+    field, values = equations.setting.field, make_vocabulary(equations).values
+    assert values["S"][0][1] == field["S12"] / 2
+    assert values["S_s"][0][1] == field["S12_s"] / 2
+
+
+def test_a_commutator_is_printed_only_if_every_component_is_one():
+    """Each of the 15 rates decides alone."""
+    equations = derive(shipped("zeitlin_su_4"))
+    (momentum,) = equations.spec.having_role("momentum")
+    assert len(commutator_lines(equations, momentum)) == 3
+    own = equations.setting.field["w4"]  # the first three rates are 0 once velocities are put in
+    for place in range(15):
+        rates = [r + own if n == place else r for n, r in enumerate(equations.exact.rates)]
+        spoiled = replace(equations, exact=replace(equations.exact, rates=tuple(rates)))
+        assert commutator_lines(spoiled, momentum) == [], place
+
+
+def test_no_commutator_stands_where_traces_do_not_see_the_algebra():
+    """The affine group's nilpotent matrix has the trace 0 with every other."""
+    equations = derive(shipped("affine_line"))
+    (momentum,) = equations.spec.having_role("momentum")
+    assert commutator_lines(equations, momentum) == []
+    assert weigh_commutators([{(0, 0): 1}, {(0, 1): 1}]) == []
+
+
+def test_a_jacobian_is_printed_only_if_it_is_the_rate():
+    """With the other sign there is none."""
+    equations = derive(shipped("euler_2d"))
+    assert len(plane_lines(equations)) == 3
+    assert plane_lines(spoil(equations, 0)) == []
 
 
 @pytest.mark.parametrize("process", [0, 1, 2])
@@ -177,16 +262,31 @@ def test_velocities_that_a_route_replaces_have_no_balance():
         ("I1*Omega1^2/2", "Omega", "(I1 Omega1, 0, 0)"),
         ("exp(dot(Gamma, chi))", "Gamma", "exp(Gamma . chi) chi"),
         ("dot(Gamma, Gamma)^2", "Gamma", "4 (Gamma . Gamma) Gamma"),
+        ("trace(transpose(A)*A)/2", "A", "A"),
+        ("trace(A^3)", "A", "3 A^T A^T"),
+        ("g/det(A)^2", "A", "-2 g A^-T/det(A)^2"),
+        ("dot(chi, A*Gamma)", "A", "chi (x) Gamma"),
+        ("trace(A*S*transpose(A))/2 + trace(S*S)", "S", "1/2 A^T A + 2 S"),
+        ("trace(S*A*S*A)/2", "S", "A^T S A^T"),
     ],
 )
 def test_gradients_are_those_done_by_hand(formula, by, expected):
     """The adjoint of each operation."""
     names = ("Gamma", "chi", "Omega", "I")
     scope = dict.fromkeys(names, (3,)) | dict.fromkeys(("m", "g", "mu"), ())
-    parts = [f"{by}{n}" for n in (1, 2, 3)]
+    scope |= dict.fromkeys(("A", "S"), (3, 3))
+    parts = [f"{by}{n}" for n in (1, 2, 3)] if len(scope[by]) == 1 else []
     scope |= dict.fromkeys([*parts, "I1"], ())
-    found = gradient(read_expression(formula), Name(by), parts, scope)
+    found = gradient(read_expression(formula), Name(by), parts, scope, symmetric=["S"])
     assert add([write_tree(total_of(found), scope)]).text == expected
+
+
+def test_a_matrix_times_a_product_of_vectors_is_in_brackets():
+    """A (b x c) is not (A b) x c."""
+    scope = {"A": (3, 3), "b": (3,), "c": (3,), "m": ()}
+    formulas = ("A*cross(b, c)", "cross(A*b, c)", "m*cross(b, c)", "transpose(A)*cross(b, c)")
+    found = [write_tree(read_expression(each), scope).text for each in formulas]
+    assert found == ["A (b x c)", "(A b) x c", "m b x c", "A^T (b x c)"]
 
 
 def test_a_gradient_that_is_not_known_is_none():

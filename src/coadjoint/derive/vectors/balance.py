@@ -19,7 +19,7 @@ from coadjoint.derive.vectors.recognise import (
     rate_of,
     recognise,
 )
-from coadjoint.derive.vectors.vocabulary import make_vocabulary
+from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.exact import Element
 from coadjoint.notation.names import name
 from coadjoint.spec.core import tree

@@ -12,6 +12,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.setting import assemble
 from coadjoint.derive.vectors.balance import balance_lines, momentum_of
+from coadjoint.derive.vectors.brackets import BASIS, commutator_lines, plane_lines
 from coadjoint.derive.vectors.gradients import total_of
 from coadjoint.derive.vectors.members import member_form
 from coadjoint.derive.vectors.recognise import (
@@ -22,7 +23,8 @@ from coadjoint.derive.vectors.recognise import (
     recognise,
     tree_name,
 )
-from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary, make_vocabulary
+from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
+from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.notation.trees import BY_PROCESS, DIFFERENTIAL, IN_TIME
 from coadjoint.notation.written import Written
 from coadjoint.spec import Spec
@@ -34,13 +36,11 @@ def vector_form(equations: Equations) -> VectorForm:
     if equations.spec.family is not None:
         return member_form(equations)
     vocabulary = make_vocabulary(equations)
-    lines, missing = list[VectorLine](), list[str]()
+    lines, missing = plane_lines(equations), list[str]()
     for target in vocabulary.targets:
-        line = _find_line(equations, vocabulary, target)
-        if line is None:
-            missing.append(tree_name(target.node))
-        else:
-            lines.append(line)
+        found, left = _find_lines(equations, vocabulary, target)
+        lines += found
+        missing += left
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and equations.spec.constraints:
@@ -51,7 +51,35 @@ def vector_form(equations: Equations) -> VectorForm:
             written |= balance.written
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
-    return VectorForm(tuple(lines), tuple(missing), shapes, written)
+    told = f"E_k is the basis of {equations.setting.algebra.name}" if _names_basis(lines) else ""
+    return VectorForm(tuple(lines), tuple(missing), shapes, written, told)
+
+
+def _names_basis(lines: Sequence[VectorLine]) -> bool:
+    """Whether lines name the basis of the algebra."""
+    nodes = (node for line in lines for node in tree.walk(line.right))
+    return any(isinstance(node, tree.Entry) and node.name == BASIS for node in nodes)
+
+
+def _find_lines(
+    equations: Equations, vocabulary: Vocabulary, target: Candidate
+) -> tuple[list[VectorLine], list[str]]:
+    """The equation of a whole quantity, or those of its parts, and what is left of it."""
+    whole = _find_line(equations, vocabulary, target)
+    if whole is not None:
+        return [whole], []
+    name = tree_name(target.node)
+    lines, told = list[VectorLine](), set[str]()
+    for part in vocabulary.parts.get(name, ()) if not equations.spec.noise else ():
+        line = _find_line(equations, vocabulary, part.rate)
+        if line is not None:
+            lines.append(line)
+            told |= set(part.components)
+    (variable,) = (v for v in equations.spec.state if v.name == name)
+    if not lines and variable.role == "momentum" and not equations.spec.noise:
+        lines = commutator_lines(equations, variable)
+        told = {*variable.components} if lines else told
+    return lines, [n for n in variable.components if n not in told] if lines else [name]
 
 
 def _find_line(

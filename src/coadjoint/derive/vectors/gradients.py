@@ -11,11 +11,17 @@ Read next: `coadjoint.derive.vectors`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
+from coadjoint.derive.vectors.transposes import (
+    drop_transposes,
+    multiply,
+    pull_trace,
+    turn,
+)
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError
@@ -57,7 +63,7 @@ class Addend:
         lower = list[tree.Node]()
         if size.denominator != 1:
             lower.append(tree.Number(Fraction(size.denominator)))
-        lower += under
+        lower += sorted(under, key=lambda each: each != tree.Name("pi"))
         if lower:
             bottom = lower[0]
             for part in lower[1:]:
@@ -90,7 +96,11 @@ def total_of(addends: list[Addend]) -> tree.Node:
 
 
 def gradient(
-    formula: tree.Node, by: tree.Node, parts: Sequence[str], scope: Mapping[str, Shape]
+    formula: tree.Node,
+    by: tree.Node,
+    parts: Sequence[str],
+    scope: Mapping[str, Shape],
+    symmetric: Collection[str] = (),
 ) -> list[Addend] | None:
     """The gradient of a scalar formula by a whole variable; None where it is not found.
 
@@ -99,10 +109,12 @@ def gradient(
         by: The variable: a name.
         parts: Names of its components, by which formulas may be written too.
         scope: Shapes of quantities and components.
+        symmetric: Names of matrices that are symmetric.
     """
     try:
         known = shapes(formula, scope)
-        found = _collect(_pull(formula, Addend(), by, known))
+        pulled = _pull(formula, Addend(), by, known)
+        found = _collect(_drop_transposes(each, symmetric) for each in pulled)
         slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
     except (_GivesUpError, AssertionError, ExpressionError):
         return None
@@ -111,6 +123,13 @@ def gradient(
             Addend(vector=tree.Call(function="vector", arguments=tuple(map(total_of, slopes))))
         )
     return found
+
+
+def _drop_transposes(addend: Addend, symmetric: Collection[str]) -> Addend:
+    """An addend in which matrices that are symmetric have no transposes."""
+    if addend.vector is None or not symmetric:
+        return addend
+    return replace(addend, vector=drop_transposes(addend.vector, symmetric))
 
 
 def _collect(addends: Iterable[Addend]) -> list[Addend]:
@@ -153,9 +172,9 @@ def _pull(
             turned = replace(adjoint, number=-adjoint.number if sign == "-" else adjoint.number)
             yield from down(right, turned)
         case tree.Binary(operator="/", left=left, right=right):
-            yield from down(left, _over(adjoint, right))
+            yield from down(left, over(adjoint, right))
             if _names(right, by):
-                grown = _times(_over(_over(adjoint, right), right), left, known[id(left)])
+                grown = _by_factor(over(over(adjoint, right), right), left, known[id(left)])
                 yield from down(right, replace(grown, number=-grown.number))
         case tree.Binary(operator="*", left=left, right=right):
             yield from _pull_product(left, right, adjoint, down, known, by)
@@ -163,7 +182,7 @@ def _pull(
             slope = replace(adjoint, number=adjoint.number * n)
             if n != 1:
                 raised = base if n == 2 else tree.Power(base=base, exponent=abs(n - 1))
-                slope = _over(slope, raised) if n < 1 else _by_scalar(slope, raised)
+                slope = over(slope, raised) if n < 1 else times(slope, raised)
             yield from down(base, slope)
         case tree.Call(function="dot", arguments=(a, b)):
             yield from down(a, _with(adjoint, b))
@@ -176,12 +195,19 @@ def _pull(
             yield from down(
                 b, replace(adjoint, vector=tree.Call(function="cross", arguments=(g, a)))
             )
+        case tree.Call(function="trace", arguments=(a,)) if adjoint.vector is None:
+            yield from _pull_traces(a, adjoint, down, known)
+        case tree.Call(function="det", arguments=(a,)) if adjoint.vector is None:
+            cofactors = tree.Call(function="inverse", arguments=(turn(a),))
+            yield from down(a, replace(times(adjoint, node), vector=cofactors))
+        case tree.Call(function="transpose", arguments=(a,)):
+            yield from down(a, replace(adjoint, vector=turn(_vector_of(adjoint))))
         case tree.Call(function="norm", arguments=(a,)):
-            yield from down(a, _over(_with(adjoint, a), node))
+            yield from down(a, over(_with(adjoint, a), node))
         case tree.Call(function=function, arguments=(a,)) if function in _SLOPES:
-            yield from down(a, _by_scalar(adjoint, _SLOPES[function](a)))
+            yield from down(a, times(adjoint, _SLOPES[function](a)))
         case tree.Call(function="sqrt", arguments=(a,)):
-            yield from down(a, _over(replace(adjoint, number=adjoint.number / 2), node))
+            yield from down(a, over(replace(adjoint, number=adjoint.number / 2), node))
         case _:
             raise _GivesUpError
 
@@ -197,33 +223,42 @@ def _pull_product(
     """A product: of scalars and anything, or a matrix times a vector."""
     first, second = known[id(left)], known[id(right)]
     if not first:
-        yield from down(right, _by_scalar(adjoint, left))
+        yield from down(right, times(adjoint, left))
         if _names(left, by):
-            yield from down(left, _times(adjoint, right, second))
+            yield from down(left, _by_factor(adjoint, right, second))
     elif not second:
-        yield from down(left, _by_scalar(adjoint, right))
+        yield from down(left, times(adjoint, right))
         if _names(right, by):
-            yield from down(right, _times(adjoint, left, first))
+            yield from down(right, _by_factor(adjoint, left, first))
     elif len(first) == 2 and len(second) == 1 and not _names(left, by):
-        turned = left if _is_symmetric(left) else tree.Call(function="transpose", arguments=(left,))
-        g = _vector_of(adjoint)
-        yield from down(
-            right, replace(adjoint, vector=tree.Binary(operator="*", left=turned, right=g))
-        )
+        yield from down(right, replace(adjoint, vector=multiply(turn(left), _vector_of(adjoint))))
+    elif len(first) == 2 and len(second) == 1 and not _names(right, by):
+        outer = tree.Call(function="outer", arguments=(_vector_of(adjoint), right))
+        yield from down(left, replace(adjoint, vector=outer))
     else:
         raise _GivesUpError
 
 
-def _is_symmetric(node: tree.Node) -> bool:
-    """Whether a matrix is diagonal, made of diagonal ones."""
+def _pull_traces(
+    node: tree.Node,
+    adjoint: Addend,
+    down: Callable[[tree.Node, Addend], Iterator[Addend]],
+    known: Mapping[int, Shape],
+) -> Iterator[Addend]:
+    """The trace of a product of matrices, of multiples and of sums of them."""
     match node:
-        case tree.Call(function="diag"):
-            return True
-        case tree.Call(function="inverse", arguments=(a,)) | tree.Power(base=a):
-            return _is_symmetric(a)
-        case tree.Binary(left=a, right=b):
-            return all(_is_symmetric(x) or isinstance(x, tree.Number) for x in (a, b))
-    return False
+        case tree.Negate(operand=a):
+            yield from _pull_traces(a, replace(adjoint, number=-adjoint.number), down, known)
+        case tree.Binary(operator="+" | "-" as sign, left=a, right=b):
+            yield from _pull_traces(a, adjoint, down, known)
+            turned = replace(adjoint, number=-adjoint.number if sign == "-" else adjoint.number)
+            yield from _pull_traces(b, turned, down, known)
+        case _:
+            found = list(pull_trace(node, known))
+            if not found:
+                raise _GivesUpError
+            for factor, slope in found:
+                yield from down(factor, replace(adjoint, vector=slope))
 
 
 def _vector_of(adjoint: Addend) -> tree.Node:
@@ -242,43 +277,47 @@ def _with(adjoint: Addend, vector: tree.Node) -> Addend:
     return replace(adjoint, vector=vector, number=sign * adjoint.number)
 
 
-def _times(adjoint: Addend, value: tree.Node, shape: Shape) -> Addend:
+def _by_factor(adjoint: Addend, value: tree.Node, shape: Shape) -> Addend:
     """The adjoint of a scalar factor: the product of the adjoint with what it multiplies."""
     if not shape:
-        return _by_scalar(adjoint, value)
+        return times(adjoint, value)
+    if len(shape) != 1:
+        raise _GivesUpError
     product = tree.Call(function="dot", arguments=(_vector_of(adjoint), value))
-    return _by_scalar(replace(adjoint, vector=None), product)
+    return times(replace(adjoint, vector=None), product)
 
 
-def _by_scalar(adjoint: Addend, factor: tree.Node) -> Addend:
-    """An adjoint times a scalar, numbers kept apart."""
+def times(adjoint: Addend, factor: tree.Node) -> Addend:
+    """An addend times a scalar, numbers kept apart."""
     match factor:
         case tree.Number(value=value):
             return replace(adjoint, number=adjoint.number * value)
         case tree.Negate(operand=operand):
-            return _by_scalar(replace(adjoint, number=-adjoint.number), operand)
+            return times(replace(adjoint, number=-adjoint.number), operand)
         case tree.Binary(operator="*", left=left, right=right):
-            return _by_scalar(_by_scalar(adjoint, left), right)
+            return times(times(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
-            return _over(_by_scalar(adjoint, left), right)
+            return over(times(adjoint, left), right)
         case tree.Power(base=base, exponent=n) if n < 0:
-            return _over(adjoint, base if n == -1 else tree.Power(base=base, exponent=-n))
-    if factor in adjoint.below:
-        rest = list(adjoint.below)
-        rest.remove(factor)
-        return replace(adjoint, below=tuple(rest))
+            return over(adjoint, base if n == -1 else tree.Power(base=base, exponent=-n))
+    for n, each in enumerate(adjoint.below):
+        if each == factor or (isinstance(each, tree.Power) and each.base == factor):
+            power = each.exponent - 1 if isinstance(each, tree.Power) and each != factor else 0
+            left = tree.Power(base=factor, exponent=power) if power > 1 else factor
+            below = (*adjoint.below[:n], *((left,) if power else ()), *adjoint.below[n + 1 :])
+            return replace(adjoint, below=below)
     return replace(adjoint, above=(*adjoint.above, factor))
 
 
-def _over(adjoint: Addend, divisor: tree.Node) -> Addend:
-    """An adjoint over a scalar; equal divisors become a power."""
+def over(adjoint: Addend, divisor: tree.Node) -> Addend:
+    """An addend over a scalar; equal divisors become a power."""
     match divisor:
         case tree.Number(value=value):
             return replace(adjoint, number=adjoint.number / value)
         case tree.Binary(operator="*", left=left, right=right):
-            return _over(_over(adjoint, left), right)
+            return over(over(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
-            return _by_scalar(_over(adjoint, left), right)
+            return times(over(adjoint, left), right)
     if divisor in adjoint.above:
         rest = list(adjoint.above)
         rest.remove(divisor)

@@ -18,7 +18,7 @@ from coadjoint.derive.vectors.recognise import (
     recognise,
     tree_name,
 )
-from coadjoint.derive.vectors.vocabulary import make_vocabulary
+from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.spec.core import tree
 
 

@@ -14,27 +14,33 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import tee
 
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.vectors.gradients import Addend, total_of
+from coadjoint.derive.vectors.gradients import Addend, over, times, total_of
 from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import scale, subtract
 from coadjoint.notation.written import Written
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.shapes import shapes
 
 #: Terms of components beyond which nothing is searched for.
 MOST_TERMS = 4000
 #: Nodes of a formula beyond which it is no shorter than its components.
 LONGEST = 70
+#: Nodes of a product of two names: none is shorter.
+SHORTEST = 3
 #: Words beyond which products whose terms cancel are not searched for.
 MOST_WORDS = 20
 #: Products that one line may have.
 MOST_PRODUCTS = 8
 #: Terms of what remains with which a term of a candidate is compared.
 MOST_RATIOS = 12
+#: A component that is not there.
+ZERO = tree.Number(Fraction(0))
 
 
 @dataclass(frozen=True)
@@ -59,12 +65,14 @@ class VectorForm:
         missing: Names of whole quantities of the state whose equations stand in components alone.
         shapes: Shapes of whole quantities, for printing.
         written: How some names are written.
+        told: What is said of names that stand in the lines alone.
     """
 
     lines: tuple[VectorLine, ...]
     missing: tuple[str, ...]
     shapes: Mapping[str, Shape]
     written: Mapping[str, Written]
+    told: str = ""
 
 
 def rate_of(node: tree.Node) -> tree.Node:
@@ -122,9 +130,10 @@ def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend]
 def _best(
     vocabulary: Vocabulary, candidates: Iterable[Candidate], rest: Value, *, whole: bool
 ) -> tuple[Addend, Value] | None:
-    """The candidate that leaves fewest terms, with what it leaves."""
+    """The candidate that leaves fewest terms, the shortest of them, with what it leaves."""
     field, best = vocabulary.field, None
-    fewest = before = _count(field, rest)
+    before = _count(field, rest)
+    fewest, shortest = before - 1, LONGEST
     wanted = [
         [(term, vocabulary.powers_outside(term)) for term in field.terms(each)[:MOST_RATIOS]]
         for each in entries(rest)
@@ -133,28 +142,66 @@ def _best(
         for factor in _factors(vocabulary, candidate.value, wanted):
             left = subtract(rest, scale(factor, candidate.value))
             count = _count(field, left)
-            if count >= fewest or (whole and before - count < _count(field, candidate.value)):
+            if count > fewest or (whole and before - count < _count(field, candidate.value)):
                 continue
             written = vocabulary.write_scalar(factor)
             if written is None:
                 continue
-            fewest, best = count, (_put(written, candidate.node), left)
-            if not count:
+            addend = _put(vocabulary, written, candidate.node)
+            length = sum(1 for _ in tree.walk(addend.tree))
+            if (count, length) >= (fewest, shortest):
+                continue
+            fewest, shortest, best = count, length, (addend, left)
+            if not count and length <= SHORTEST:
                 return best
     return best
 
 
-def _put(scalar: Addend, vector: tree.Node) -> Addend:
+def _put(vocabulary: Vocabulary, scalar: Addend, vector: tree.Node) -> Addend:
     """A scalar times a vector; minus a vector product is the product of the factors exchanged."""
     match vector:
         case tree.Call(function="cross" | "commutator" as function, arguments=(a, b)):
-            if scalar.number < 0:
-                return replace(
-                    scalar,
-                    number=-scalar.number,
-                    vector=tree.Call(function=function, arguments=(b, a)),
-                )
-    return Addend(scalar.number, scalar.above, scalar.below, vector)
+            for side in (a, b):
+                scalar = _take_scalars(vocabulary, scalar, side)
+            a, b = (_bare(vocabulary, side) for side in (a, b))
+            sides = (a, b) if scalar.number > 0 else (b, a)
+            return replace(
+                scalar,
+                number=abs(scalar.number),
+                vector=tree.Call(function=function, arguments=sides),
+            )
+    return _take_scalars(vocabulary, scalar, vector)
+
+
+def _bare(vocabulary: Vocabulary, node: tree.Node) -> tree.Node:
+    """A vector without its scalars."""
+    bare = _take_scalars(vocabulary, Addend(), node).vector
+    assert bare is not None, node
+    return bare
+
+
+def _take_scalars(vocabulary: Vocabulary, scalar: Addend, node: tree.Node) -> Addend:
+    """A scalar times a vector, of which all that stands before it or below it is taken out."""
+
+    def is_scalar(part: tree.Node) -> bool:
+        return not shapes(part, {"pi": (), **vocabulary.shapes})[id(part)]
+
+    match node:
+        case tree.Binary(operator="*", left=left, right=right) if is_scalar(left):
+            return _take_scalars(vocabulary, times(scalar, left), right)
+        case tree.Binary(operator="/", left=left, right=right):
+            return _take_scalars(vocabulary, over(scalar, right), left)
+        case tree.Call(function="vector", arguments=parts) if any(map(_is_minus, parts)):
+            plain = [each.operand if isinstance(each, tree.Negate) else each for each in parts]
+            if all(_is_minus(each) or each == ZERO for each in parts):
+                turned = tree.Call(function="vector", arguments=tuple(plain))
+                return replace(scalar, number=-scalar.number, vector=turned)
+    return replace(scalar, vector=node)
+
+
+def _is_minus(node: tree.Node) -> bool:
+    """Whether a formula begins with a minus."""
+    return isinstance(node, tree.Negate)
 
 
 def _factors(

@@ -1,0 +1,359 @@
+"""The vectors and matrices of which printed equations may be made, and what they are found for.
+
+Comes in: Equations. Goes out: a `Vocabulary`: what the rates of whole quantities are, the spec's
+own vectors and matrices, its velocities, and the gradients of its energy.
+Read next: `coadjoint.derive.vectors.recognise`, which searches among their products.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+from coadjoint.derive.equations import Equations
+from coadjoint.derive.interpret import Value, entries, interpret
+from coadjoint.derive.mechanics.legendre import legendre
+from coadjoint.derive.setting import assemble, weigh
+from coadjoint.derive.vectors.gradients import Addend, gradient, total_of
+from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, measure
+from coadjoint.errors import DerivationError
+from coadjoint.exact import Element
+from coadjoint.spec.core import tree
+from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.faults import ExpressionError
+from coadjoint.spec.core.shapes import shapes
+from coadjoint.spec.model import Variable
+
+#: Vectors of a vocabulary; their products are as many as the square of it.
+MOST_WORDS = 24
+
+
+def make_vocabulary(equations: Equations, *, closed: bool = True) -> Vocabulary:
+    """The vocabulary of Equations in the declared state.
+
+    Args:
+        equations: What was derived.
+        closed: Whether definitions are put in; else velocities and multipliers are symbols.
+    """
+    return _Maker(equations, closed=closed).make()
+
+
+class _Maker:
+    """The making of one vocabulary."""
+
+    def __init__(self, equations: Equations, *, closed: bool) -> None:
+        self.equations, self.spec, self.closed = equations, equations.spec, closed
+        self.setting, self.field = equations.setting, equations.setting.field
+        spec = self.spec
+        quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
+        self.shapes: dict[str, Shape] = {q.name: value_shape(q) for q in quantities}
+        self.shapes |= {name: () for q in quantities for name in q.components}
+        self.velocities = self._find_velocities()
+        whole = [name for name, shape in self.shapes.items() if shape]
+        if spec.time is not None:
+            self.shapes[spec.time.name] = ()
+        self.values = {name: self._close(self.setting.values[name]) for name in whole}
+        self.short = dict(self._short_values())
+        self.named = list[tuple[tree.Node, tree.Node]]()
+
+    def make(self) -> Vocabulary:
+        targets = tuple(self._targets())
+        words = list(self._words())
+        words += self._velocity(targets)
+        return Vocabulary(
+            field=self.field,
+            targets=targets,
+            words=tuple(_without_equal(words)),
+            scalars=self._scalar_names(),
+            named=tuple(self.named),
+            shapes=self.shapes,
+            values=self._name_values(words),
+            parts=self._parts(),
+        )
+
+    def _name_values(self, words: Iterable[Candidate]) -> dict[str, Value]:
+        """What every name stands for in a printed tree."""
+        field, setting = self.field, self.setting
+        values = {name: self._close(value) for name, value in setting.values.items()}
+        values |= {word.node.name: word.value for word in words if isinstance(word.node, tree.Name)}
+        values |= {name: field[name] for name in self._scalar_names() if name not in values}
+        return {**self._pi(), **values}
+
+    def _pi(self) -> dict[str, Element]:
+        """Half a turn, where a formula of the spec has it."""
+        uses = {each.function for each in self.field.adjoined.values()}
+        return {"pi": 4 * self.field.call("atan", self.field.one)} if "atan" in uses else {}
+
+    def _close(self, value: Value) -> Value:
+        if isinstance(value, tuple):
+            return tuple(map(self._close, value))
+        if not self.closed:
+            return value
+        closed = self.equations.close(value)
+        return self.field.substitute(closed, self.velocities) if self.velocities else closed
+
+    def _find_velocities(self) -> dict[str, Element]:
+        """The velocities of fields, which rates do not name, by momenta."""
+        spec, setting = self.spec, self.setting
+        if spec.space is None or spec.lagrangian is None or spec.diffeomorphisms is not None:
+            return {}
+        return dict(zip(setting.velocities, legendre(setting).velocities, strict=True))
+
+    @cached_property
+    def _rates(self) -> dict[str, Element]:
+        """The rates of the components of the state."""
+        names, rates = self.equations.variables, self.equations.exact.rates
+        return {name: self._close(rate) for name, rate in zip(names, rates, strict=True)}
+
+    def _targets(self) -> Iterator[Candidate]:
+        """The rates of whole vectors and matrices of the state."""
+        for variable in self.spec.state:
+            if variable.value_shape and set(variable.components) <= self._rates.keys():
+                yield Candidate(tree.Name(variable.name), assemble(variable, self._rates))
+
+    def _parts(self) -> dict[str, list[Part]]:
+        """The rates of those parts of a quantity that the spec gives short names."""
+        owners = {n: v.name for v in self.spec.state for n in v.components if n in self._rates}
+        symbols, parts = {self.field[n]: n for n in owners}, dict[str, list[Part]]()
+        for short, value in self.short.items():
+            names = tuple(symbols.get(entry, "") for entry in value)
+            whole = {owners.get(n, "") for n in names}
+            if len(whole) == 1 and "" not in whole:
+                rate = Candidate(tree.Name(short), tuple(self._rates[n] for n in names))
+                parts.setdefault(whole.pop(), []).append(Part(rate, names))
+        return parts
+
+    def _short_values(self) -> Iterator[tuple[str, tuple[Element, ...]]]:
+        """Vectors that the spec gives short names, with their values, nothing put in."""
+        for short in self.spec.definitions:
+            if len(short.shape or ()) == 1 and not short.arguments:
+                try:
+                    yield short.name, interpret(short.tree, self.setting.values, self.field)
+                except (DerivationError, KeyError):
+                    continue
+
+    def _words(self) -> Iterator[Candidate]:
+        """Declared vectors, then those in formulas, then gradients of the energy."""
+        variables = {v.name for v in self.spec.variables}
+        given = {v.name for v in self.spec.defined} if self.spec.constraints and self.closed else ()
+        diagonal = set(_diagonals(self._formulas()))
+        hidden = {*diagonal, *given, *self._slopes}
+        whole = [n for n in self.values if n not in hidden]
+        yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n in variables)
+        yield from self._slopes_along_space()
+        yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n not in variables)
+        for row in self._rows():
+            yield Candidate(row, self.values[row.name][row.indices[0] - 1])
+        yield from self._others()
+        yield from self._further_slopes()
+        formulas, gradients = list(self._formulas()), list(self._gradients())
+        found = gradients + [node for each in formulas for node in self._vectors_in(each)]
+        found += [node for each in gradients for node in self._vectors_in(each)]
+        values = {**self._pi(), **self.setting.values, **self.short, **self._slopes}
+        for node in list(dict.fromkeys(found))[:MOST_WORDS]:
+            if any(isinstance(n, tree.Name) and n.name in given for n in tree.walk(node)):
+                continue
+            try:
+                value = self._close(interpret(node, values, self.field))
+            except (DerivationError, KeyError):
+                continue
+            yield Candidate(node, value)
+
+    def _others(self) -> Iterator[Candidate]:
+        """Multipliers of constraints, and vectors that the spec gives short names."""
+        if not self.closed:
+            for each in self.spec.constraints:
+                if len(each.shape) == 1:
+                    self.shapes[each.reaction] = each.shape
+                    yield Candidate(tree.Name(each.reaction), self.setting.reactions[each.reaction])
+        for name, value in self.short.items():
+            self.shapes[name] = (len(value),)
+            yield Candidate(tree.Name(name), self._close(value))
+
+    def _formulas(self) -> Iterator[tree.Node]:
+        spec = self.spec
+        declared = [spec.lagrangian, spec.hamiltonian, *spec.forces.values(), spec.dissipation]
+        declared += [each.left for each in spec.constraints]
+        declared += [each.right for each in spec.constraints]
+        declared += [force.formula for force in spec.newton if hasattr(force, "formula")]
+        short = spec.family is None  # else names as typed are those of any member
+        for each in declared:
+            if each is not None:
+                yield from dict.fromkeys((each.typed, each.tree) if short else (each.tree,))
+
+    def _vectors_in(self, formula: tree.Node) -> Iterator[tree.Node]:
+        """Vectors that a formula is made of: matrices times vectors, and other parts of it."""
+        try:
+            known = shapes(formula, {"pi": (), **self.shapes})
+        except (ExpressionError, KeyError):  # of multipliers, or of functions of the spec
+            return
+        for node in tree.walk(formula):
+            if len(known[id(node)]) == 1 and not isinstance(node, tree.Name):
+                if isinstance(node, tree.Negate):
+                    continue
+                yield node
+                moved = self._along(node)
+                if moved is not None:
+                    yield moved
+
+    def _along(self, node: tree.Node) -> tree.Node | None:
+        """A constant matrix times a field, differentiated along space."""
+        match node:
+            case tree.Binary(operator="*", left=left, right=tree.Name(name=name)):
+                slope = f"{name}_s"
+                if slope in self._slopes or any(slope == jet.name for jet in self.spec.jets):
+                    return tree.Binary(operator="*", left=left, right=tree.Name(slope))
+        return None
+
+    @cached_property
+    def _slopes(self) -> dict[str, Value]:
+        """Derivatives along space of fields and of short names, by the chain rule."""
+        if self.spec.space is None or self.spec.space.across is not None:
+            return {}
+        jets = {jet.name for jet in self.spec.jets}
+        fields = (*self.spec.defined, *self.spec.state)
+        own = [v.name for v in fields if v.value_shape and f"{v.name}_s" in jets]
+        whole = {name: self.values[name] for name in own}
+        whole |= {name: self._close(value) for name, value in self.short.items()}
+        return {f"{name}_s": self._slope(value) for name, value in whole.items()}
+
+    def _slope(self, value: Value) -> Value:
+        """The derivative of a function of the state along space."""
+        if isinstance(value, tuple):
+            return tuple(map(self._slope, value))
+        field = self.field
+        moved = [n for n in self.setting.state if f"{n}_s" in field.names]
+        return field.sum([field.derivative(value, n) * field[f"{n}_s"] for n in moved])
+
+    def _slopes_along_space(self) -> Iterator[Candidate]:
+        for name, value in self._slopes.items():
+            self.shapes[name] = measure(value)
+            yield Candidate(tree.Name(name), value)
+
+    def _further_slopes(self) -> Iterator[Candidate]:
+        """Higher derivatives of fields along space, as far as rates name them."""
+        reached = frozenset[str]().union(*map(self.field.reach, self._rates.values()))
+        for variable in self.spec.state:
+            for order in ("ss", "sss", "ssss"):
+                parts = [f"{name}_{order}" for name in variable.components]
+                if variable.value_shape and reached & set(parts):
+                    name = f"{variable.name}_{order}"
+                    self.shapes[name] = variable.value_shape
+                    yield Candidate(tree.Name(name), self.setting.elements(parts))
+
+    def _gradients(self) -> Iterator[tree.Node]:
+        """Gradients of the declared energies by whole vectors, and of Hamiltonians of noise."""
+        noise = [each.formula for each in self.spec.noise]
+        symmetric = [v.name for v in self.spec.variables if v.form == "symmetric"]
+        scope = {"pi": (), **self.shapes}
+        formulas = [
+            each
+            for each in (self.spec.hamiltonian, self.spec.lagrangian, *noise)
+            if each is not None
+        ]
+        for formula, (node, parts) in product(formulas, list(self._unknowns())):
+            found = gradient(formula.tree, node, parts, scope, symmetric)
+            if found:
+                own = [self._without_scalars(each).tree for each in found if each.vector]
+                yield from map(self._shorten, (*own, total_of(found)))
+
+    def _shorten(self, node: tree.Node) -> tree.Node:
+        """A formula in which vectors stand by their short names."""
+        known = {each.tree: each.name for each in self.spec.definitions if each.name in self.short}
+        if not known:
+            return node
+        below = [self._shorten(each) for each in tree.children(node)]
+        return tree.Name(known[node]) if node in known else tree.rebuild(node, below)
+
+    def _unknowns(self) -> Iterator[tuple[tree.Node, tuple[str, ...]]]:
+        """What gradients are taken by: vectors with their components, matrices, rows of these."""
+        for variable in self.spec.variables:
+            if variable.value_shape:
+                is_vector = len(variable.value_shape) == 1
+                yield tree.Name(variable.name), tuple(variable.components) if is_vector else ()
+        for row in self._rows():
+            yield row, tuple(f"{row.name}{row.indices[0]}{n}" for n in (1, 2, 3))
+
+    def _rows(self) -> Iterator[tree.Index]:
+        """Rows of three of attitudes of which formulas name entries."""
+        attitudes = [v.name for v in self.spec.state if v.value_shape == (3, 3)]
+        nodes = (node for formula in self._formulas() for node in tree.walk(formula))
+        named = [node for node in nodes if isinstance(node, tree.Index) and len(node.indices) == 2]
+        rows = dict.fromkeys((n.name, n.indices[0]) for n in named if n.name in attitudes)
+        for name, place in rows:
+            yield tree.Index(name=name, indices=(place,))
+
+    def _without_scalars(self, addend: Addend) -> Addend:
+        """An addend without its number and its parameters, which a line has before it."""
+        names = {"pi", *self._scalar_names()}
+        above, below = (
+            tuple(each for each in part if not _is_power_of(each, names))
+            for part in (addend.above, addend.below)
+        )
+        return Addend(Fraction(1), above, below, addend.vector)
+
+    def _scalar_names(self) -> frozenset[str]:
+        scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
+        scalars |= {self.spec.time.name} if self.spec.time is not None else set()
+        scalars |= {v.name for v in self.spec.state if not v.value_shape}
+        if not self.closed:
+            scalars |= {each.reaction for each in self.spec.constraints if not each.shape}
+        return frozenset(scalars)
+
+    def _velocity(self, targets: Iterable[Candidate]) -> Iterator[Candidate]:
+        """The velocity of a momentum that is a matrix, where it has no name: dh/dM."""
+        energy = self.equations.exact.energy
+        if energy is None or self.setting.velocities or self.spec.algebra is None:
+            return
+        whole = [v for v in self.spec.state if v.role == "momentum" and v.value_shape]
+        if len(whole) != 1:
+            return
+        (momentum,) = whole
+        name = "Omega" if "Omega" not in self.shapes else "xi"
+        slopes = self.field.gradient(self.equations.close(energy), momentum.components)
+        value = (
+            assemble(momentum, dict(zip(momentum.components, slopes, strict=True)))
+            if not momentum.elements
+            else weigh(slopes, momentum.elements)
+        )
+        self.shapes[name] = momentum.value_shape
+        slope = tree.Call(function="slope_of", arguments=(tree.Name("h"), tree.Name(momentum.name)))
+        self.named.append((tree.Name(name), slope))
+        yield Candidate(tree.Name(name), value)
+
+
+def value_shape(quantity: object) -> Shape:
+    """The shape of a declared quantity in formulas."""
+    if isinstance(quantity, Variable) and quantity.elements:
+        from coadjoint.algebra.matrices import size
+
+        return (size(quantity.elements),) * 2
+    return getattr(quantity, "value_shape", getattr(quantity, "shape", ()))
+
+
+def _diagonals(formulas: Iterable[tree.Node]) -> Iterator[str]:
+    """Names that formulas use as diagonal matrices: moments of inertia are no vectors."""
+    for formula in formulas:
+        for node in tree.walk(formula):
+            match node:
+                case tree.Call(function="diag", arguments=(tree.Name(name=name),)):
+                    yield name
+
+
+def _without_equal(words: Iterable[Candidate]) -> Iterator[Candidate]:
+    """Words without zeros and without those whose value an earlier word has."""
+    seen = set[tuple[Element, ...]]()
+    for word in words:
+        key = entries(word.value)
+        if key not in seen and any(map(bool, key)):
+            seen.add(key)
+            yield word
+
+
+def _is_power_of(node: tree.Node, names: Collection[str]) -> bool:
+    """Whether a factor is a power of one of some names."""
+    base = node.base if isinstance(node, tree.Power) else node
+    return isinstance(base, tree.Name) and base.name in names
