@@ -124,9 +124,6 @@ def test_generated_solvers_are_refused_with_the_reason(options):
         own.simulate(np.zeros(32), (0, 1), **options)
     found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
     assert not found.state.any()
-    with pytest.raises(KernelArgumentError, match=r"method 'midpoint' keeps none; .* series") as no:
-        own.simulate(np.zeros(32), (0, 1), method="midpoint", step=0.1, checkpoint="run.npz")
-    assert str(no.value).endswith("Python leads the steps. Remove checkpoint.")
     settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
     assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
     assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
@@ -180,6 +177,13 @@ def test_sums_are_kept_as_certificates_say(name, total, is_kept, N):
     rows = np.atleast_1d(np.arange(after.shape[1])[system.OBSERVABLES.rows(total)])
     sizes = np.abs(after[0, rows]) + np.abs(before[0, rows])
     assert (np.abs(after - before)[0, rows] < 1e-10 * sizes).all() == is_kept
+
+
+def test_the_drift_of_a_run_is_that_of_the_energy_alone():
+    """J is kept by the field and not by points, so that its change is no error of a method."""
+    own, w = fourier(kdv.system, 32), 2 * np.pi * np.arange(32) / 32
+    assert {*own.differences.simulate(np.cos(w) / 3, (0, 0.01), samples=2).drift} == {"energy", "M"}
+    assert {*own.simulate(np.cos(w) / 3, (0, 0.01), samples=2).drift} == {"energy"}
 
 
 @pytest.mark.parametrize(
