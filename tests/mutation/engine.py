@@ -719,7 +719,7 @@ MUTANTS = (
         "anywhere: use + along for - along in missing",
         "anywhere: use 1.0 for 2.0 in chord middle low",
         "anywhere: use - for + in rates added",
-        tests=("tests/solve/test_family_gradients.py -k 'bits or stays_where'",),
+        tests=("tests/solve/test_family_gradients.py -k 'bits and 3'",),
     ),
     *of(
         "c/methods/family_steps.c.j2",
@@ -727,9 +727,13 @@ MUTANTS = (
         "anywhere: use rise for 0.5 * rise in state low",
         "anywhere: use && for || in solved good",
         "anywhere: use 1.0 for 0.5 in half square",
-        "anywhere: use == for != in positions shifts",
         "anywhere: use |= for &= in accepted solved",
-        tests=("tests/solve/test_family_methods.py -k 'written_out or bands or ends_a_step'",),
+        tests=("tests/solve/test_family_methods.py -k 'led_by_the_twin or bands_have'",),
+    ),
+    *of(
+        "c/methods/family_steps.c.j2",
+        "anywhere: use == for != in positions shifts",
+        tests=("tests/solve/test_family_methods.py -k 'orders_and_drifts and toda'",),
     ),
     *of(
         "c/methods/family_kinks.c.j2",
@@ -738,7 +742,7 @@ MUTANTS = (
         "anywhere: use ? -1.0 for ? 1.0 in a return",
         "anywhere: use + for * in gaps sides n",
         "anywhere: use ? start : for ? start + outside[l] : in time",
-        tests=("tests/solve/test_family_kinks.py -k 'parabolas or batch'",),
+        tests=("tests/solve/test_family_kinks.py -k 'parabolas and rk4'",),
     ),
     *of(
         "solve/wave_gauss",

@@ -135,6 +135,8 @@ def simulate(
         if system.obstacle:  # whose methods are Python's, not generated ones
             for each in system.METHODS:
                 obstacles.pop(each.name)
+            reason = _explain_gradients(system)
+            obstacles |= {name: reason for name in obstacles if "_gradient" in name}
         without = (
             ""
             if obstacle
@@ -225,6 +227,22 @@ def _explain_obstacle(system: System, name: str, obstacle: str) -> KernelArgumen
         f"{obstacle}.",
         found=name,
         reason=obstacle,
+    )
+
+
+def _explain_gradients(system: System) -> str:
+    """Why discrete gradients are refused where Python leads the steps.
+
+    Of a quadratic energy the mean of the gradient along a chord is that in its middle.
+    """
+    if any(each.name == "midpoint" and "energy" in each.exactly for each in system.METHODS):
+        return (
+            "its energy is quadratic, so that the mean of the gradient along a step is that in its "
+            "middle: 'midpoint' is this method, and keeps the energy"
+        )
+    return (
+        f"{system.obstacle} by rates as a whole, and a discrete gradient needs the bracket and the "
+        "gradient of the energy apart"
     )
 
 
