@@ -657,7 +657,7 @@ MUTANTS = (
         "anywhere: use before for after in arange before",
         "anywhere: use i[:whole] for np.delete(i, one) in terms one",
         "anywhere: use lanes[:1] for np.add.accumulate(lanes, axis=0)[-1] in for",
-        tests=("tests/solve/test_family.py -k 'numpy and (rates_are or all_pairs)'",),
+        tests=("tests/solve/test_family.py -k 'numpy and (energy_of or all_pairs)'",),
     ),
     *of(
         "numpy/family.py.j2",
@@ -665,7 +665,7 @@ MUTANTS = (
         "solves: use + for - in total weight step",
         "level: flip np in slopes _level",
         "solves: use 3 for 2 in step size %",
-        tests=("tests/solve/test_fields.py -k 'solves_its_equation or as_each_alone'",),
+        tests=("tests/crosscheck/test_solved.py -k solve_their_equations",),
     ),
     *of(
         "python/family_python.py.j2",
@@ -673,7 +673,7 @@ MUTANTS = (
         "anywhere: use i < j for i != j in if",
         "anywhere: use first for s in _add first parts",
         "anywhere: use before for size in range before after",
-        tests=("tests/solve/test_family.py -k 'python and (rates_are or all_pairs)'",),
+        tests=("tests/solve/test_family.py -k 'python and (energy_of or all_pairs)'",),
     ),
     *of(
         "c/family.c.j2",
@@ -692,7 +692,7 @@ MUTANTS = (
         "solves: use + for - in behind first",
         "level: use = total; for = -total; in right i",
         "solves: use 3 for 2 in step size %",
-        tests=("tests/solve/test_fields.py -k 'solves_its_equation or as_each_alone'",),
+        tests=("tests/crosscheck/test_solved.py -k solve_their_equations",),
     ),
     *of(
         "js/family.js.j2",

@@ -16,7 +16,7 @@ from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests import specs
-from tests.families import NECKLACE, RING, TOPS, VORTICES
+from tests.families import CHAIN, NECKLACE, RING, TOPS, VORTICES
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +112,25 @@ def test_springs_and_all_pairs_act_together(necklace, size, target):
     found = system.rhs({"q": q, "p": p}, {"k": k, "c": c}, target=target)
     np.testing.assert_allclose(found[:size], p)
     np.testing.assert_allclose(found[size:], pull(q, k, c), rtol=1e-12, atol=1e-12)
+
+
+@pytest.fixture(scope="module")
+def chain():
+    """Masses on a line, whose first and last one have one neighbour each."""
+    with load_texts(pipeline.render(read_spec_text(CHAIN, "chain.toml")).texts) as system:
+        yield system
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "python"])
+@pytest.mark.parametrize("size", [5, 17, 40])
+def test_the_energy_of_a_chain_has_terms_of_all_neighbours(chain, size, target):
+    """Sums of p_i^2/2, exp(q_i - q_(i+1)) and k_i (q_(i-1) - q_(i+1))^2/2, as far as these are."""
+    system, source = chain.resize({"i": size}), np.random.default_rng(size)
+    (q, p), k = source.normal(size=(2, size)), source.uniform(1, 2, size)
+    springs = k[1:-1] * (q[:-2] - q[2:]) ** 2
+    expected = (p**2).sum() / 2 + np.exp(q[:-1] - q[1:]).sum() + springs.sum() / 2
+    found = system.energy({"q": q, "p": p}, {"k": k}, target=target)
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
 
 
 def test_a_batch_has_the_bits_of_its_members(ring):
