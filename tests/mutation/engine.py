@@ -684,7 +684,7 @@ MUTANTS = (
         "pair_sums: use , 0, _sums for , 1, _sums in _other",
         "anywhere: use size for size - 1 in places return -",
         "anywhere: use ? i : for ? i + places : in places size",
-        tests=("tests/solve/test_family.py -k 'c- or -c or batch_has_the_bits'",),
+        tests=("tests/solve/test_family.py -k 'act_together or rates_are or pairs_has_the_bits'",),
     ),
     *of(
         "c/family.c.j2",
@@ -710,7 +710,7 @@ MUTANTS = (
         "anywhere: use j for j + 1 in slice j size",
         "anywhere: use series[k - 1, for series[k, in own members",
         "anywhere: flip places in own _find members",
-        tests=("tests/crosscheck/test_family_text.py -k wrong_series",),
+        tests=("tests/solve/test_family.py -k series_of_numpy",),
     ),
     *of(
         "c/methods/family_gradients.c.j2",
@@ -737,10 +737,8 @@ MUTANTS = (
     ),
     *of(
         "c/methods/family_kinks.c.j2",
-        "anywhere: use > for < in falls later here",
-        "anywhere: use half for took in places part 3",
         "anywhere: use ? -1.0 for ? 1.0 in a return",
-        "anywhere: use + for * in gaps sides n",
+        "anywhere: use held[l] ? inside[l] : for held[l] ? middle[l] : in inside",
         "anywhere: use ? start : for ? start + outside[l] : in time",
         tests=("tests/solve/test_family_kinks.py -k 'parabolas and rk4'",),
     ),

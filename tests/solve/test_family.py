@@ -151,6 +151,32 @@ def test_a_batch_has_the_bits_of_its_members(ring):
             assert np.array_equal(many, np.stack(each, axis=-1))
 
 
+@pytest.mark.parametrize("name", ["chain", "vortices"])
+def test_series_of_numpy_follow_the_motion(name, request):
+    """Of neighbours with parameters of their own and of all pairs, next to SciPy's order 8."""
+    system, source = request.getfixturevalue(name).resize({"i": 6}), np.random.default_rng(6)
+    state, own = source.normal(size=12), source.uniform(1, 2, 6)
+    given = {"samples": 3, "target": "numpy", "rtol": 1e-11, "atol": 1e-12}
+    one, other = (
+        system.simulate(state, (0, 0.5), own, method=method, **given)
+        for method in ("taylor", "scipy:DOP853")
+    )
+    assert np.abs(one.state[:, -1] - state).max() > 0.1
+    np.testing.assert_allclose(one.state, other.state, atol=1e-8)
+
+
+@pytest.mark.parametrize("size", [5, 53])
+def test_a_batch_with_all_pairs_has_the_bits_of_its_members(vortices, size):
+    """No member meets itself, and each pair has both its terms, in blocks and without."""
+    system, source = vortices.resize({"i": size}), np.random.default_rng(size)
+    states, c = source.normal(size=(2 * size, 3)), source.uniform(1, 2, size)
+    many = system.rhs(states, c, target="c")
+    for n in range(3):
+        alone = system.rhs(states[:, n].copy(), c, target="numpy")
+        assert np.isfinite(alone).all()
+        np.testing.assert_array_equal(many[:, n], alone)
+
+
 def test_the_derivative_along_a_vector_is_that_of_the_rates(vortices):
     """Of sums over partners, too: against differences of rates."""
     system, source = vortices.resize({"i": 9}), np.random.default_rng(1)
