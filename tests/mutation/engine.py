@@ -733,7 +733,7 @@ MUTANTS = (
     *of(
         "c/methods/family_steps.c.j2",
         "anywhere: use == for != in positions shifts",
-        tests=("tests/solve/test_family_methods.py -k 'orders_and_drifts and toda'",),
+        tests=("tests/solve/test_family_methods.py -k splittings_of_a_chain",),
     ),
     *of(
         "c/methods/family_kinks.c.j2",
