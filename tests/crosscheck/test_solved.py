@@ -1,5 +1,6 @@
 """Linear equations around a ring in kernels: a wrong text is seen by a rung of the ladder."""
 
+import numpy as np
 import pytest
 
 from coadjoint.crosscheck import families as ladder
@@ -56,6 +57,23 @@ def climb(rendered, texts, targets):
     with load_texts(texts) as system:
         given = own.windows, own.declared, own.family, own.context
         crosscheck_family(*given, texts, texts, system, targets)
+
+
+@pytest.mark.parametrize("target", ["numpy", "python", "c"])
+@pytest.mark.parametrize("N", [9, 16])
+def test_texts_solve_their_equations(rendered, rendered_level, N, target):
+    """L/N sum m u/2 with u by the pseudoinverse of the matrix a - b D_2, of m with any mean."""
+    m, L = np.random.default_rng(N).normal(size=N), 3.0
+    matrix = sum(
+        c * (np.roll(np.eye(N), r, axis=1) + np.roll(np.eye(N), -r, axis=1))
+        for r, c in ((0, 5 / 4), (1, -4 / 3), (2, 1 / 12))
+    )
+    for own, share, parameters in ((rendered, 1, [0.9, L]), (rendered_level, 0, [L])):
+        weight = (parameters[0] ** 2 if share else 1) * (N / L) ** 2
+        u = np.linalg.pinv(share * np.eye(N) + weight * matrix, rcond=1e-9) @ m
+        with load_texts(own.texts) as system:
+            found = system.resize({"s": N}).evaluate("energy", m, parameters, target=target)
+        np.testing.assert_allclose(found, L / N * np.sum(m * u) / 2, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("file", "old", "new", "targets", "seen"), WRONG)

@@ -91,3 +91,15 @@ def test_lines_of_templates_are_found_by_their_block():
     assert changed_template(template, "state: flip n in row") == template.replace("+", "-", 1)
     with pytest.raises(AddressError, match="fits 0 lines"):
         changed_template(template, "parameters: flip n in row")
+
+
+def test_lines_of_templates_without_a_block_are_found_anywhere():
+    """Of several lines with the same words the one that has what is changed, once."""
+    template = "a = b + c;\nif (a == b)\n    a = b - c;\n{% if x %}\nc = a - b;\n{% endif %}"
+    found = changed_template(template, "anywhere: use + c for - c in a b")
+    assert found == template.replace("- c", "+ c")
+    assert changed_template(template, "x: use a + for a - in c") == template.replace("a - ", "a + ")
+    with pytest.raises(AddressError, match="fits 2 lines:\na = b"):
+        changed_template(template, "anywhere: use d for = b in c")
+    with pytest.raises(AddressError, match="fits 0 lines:\na = b"):
+        changed_template(template, "anywhere: use d for * c in b")

@@ -171,9 +171,11 @@ def test_an_equivalent_mutant_survives(mutant, judge, tmp_path):
 
 
 def unchanged():
-    """The judges of every run, and those of campaigns, marked."""
+    """The judges of every run, and those of campaigns and of single mutants, marked."""
+    own = {" ".join(mutant.tests) for mutant in MUTANTS if mutant.tests}
+    judges = JUDGES | {tests: shlex.split(tests) for tests in sorted(own)}
     campaign = [
-        pytest.param(JUDGES[start], marks=pytest.mark.campaign, id=start) for start in JUDGES
+        pytest.param(tests, marks=pytest.mark.campaign, id=name) for name, tests in judges.items()
     ]
     return [pytest.param(BOOK, id="book"), *campaign]
 

@@ -5,7 +5,7 @@ A formula has the operators of `tests.mutation.addresses`, after the path of its
     lax.L: flip S
     claims.casimirs[1]: flip X3
 
-A template has two, after a name in a block that stands around the line:
+A template has two, after a name in a block that stands around the line, or ``anywhere``:
 
     state_inputs: flip _n in state_stride           the sign before a name, on the line with these
     of_member: use name ~ '-' for name in to        another text in the place of a word
@@ -57,39 +57,39 @@ def _to_python(formula: str) -> str:
 
 
 def changed_template(text: str, line: str) -> str:
-    """A template with one change of one line."""
+    """A template with one change of the only line that has its words and what it changes, once."""
     block, what = split_once(line, ": ")
     what, words = split_once(what, " in ")
     lines, around = text.split("\n"), list[str]()
-    fitting = []
+    fitting, changed = list[int](), list[int]()
     for place, each in enumerate(lines):
-        for end, inside in _BLOCK.findall(each):
+        for end, opened in _BLOCK.findall(each):
             if end:
                 around.pop()
             else:
-                around.append(inside)
+                around.append(opened)
         known = _WORD.findall(_BLOCK.sub("", each))
-        if block in _WORD.findall(" ".join(around)) and {*words.split()} <= {*known}:
+        inside = block == "anywhere" or block in _WORD.findall(" ".join(around))
+        if inside and {*words.split()} <= {*known}:
             fitting.append(place)
-    if len(fitting) != 1:
-        listed = "\n".join(lines[place] for place in fitting)
-        raise AddressError(f"{line!r} fits {len(fitting)} lines:\n{listed}")
-    (place,) = fitting
-    lines[place] = _changed_line(lines[place], what)
+            changed += [place] * (_changed_line(each, what) is not None)
+    if len(changed) != 1:
+        listed = "\n".join(lines[place] for place in changed or fitting)
+        raise AddressError(f"{line!r} fits {len(changed)} lines:\n{listed}")
+    (place,) = changed
+    lines[place] = _changed_line(lines[place], what) or ""
     return "\n".join(lines)
 
 
-def _changed_line(text: str, what: str) -> str:
-    """A line with another sign or word."""
+def _changed_line(text: str, what: str) -> str | None:
+    """A line with another sign or word; None where that is not at one place of it."""
     operator, rest = split_once(what, " ")
     if operator == "flip":
         pattern = re.compile(rf"([+-])(?= *\b{re.escape(rest)}\b)")
         new = {"+": "-", "-": "+"}[pattern.search(text)[1]] if pattern.search(text) else ""
     else:
         new, old = split_once(rest, " for ")
-        edge = r"\b" if old[0].isalnum() or old[0] == "_" else ""
-        pattern = re.compile(f"{edge}{re.escape(old)}{edge}")
+        first, last = (r"\b" if re.match(r"\w", old[n]) else "" for n in (0, -1))
+        pattern = re.compile(f"{first}{re.escape(old)}{last}")
     changed, count = pattern.subn(lambda _: new, text)
-    if count != 1:
-        raise AddressError(f"{what!r} fits {count} places in {text!r}")
-    return changed
+    return changed if count == 1 else None

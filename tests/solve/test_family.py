@@ -16,7 +16,7 @@ from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests import specs
-from tests.families import NECKLACE, RING, TOPS, VORTICES
+from tests.families import CHAIN, NECKLACE, RING, TOPS, VORTICES
 
 
 @pytest.fixture(scope="module")
@@ -114,6 +114,25 @@ def test_springs_and_all_pairs_act_together(necklace, size, target):
     np.testing.assert_allclose(found[size:], pull(q, k, c), rtol=1e-12, atol=1e-12)
 
 
+@pytest.fixture(scope="module")
+def chain():
+    """Masses on a line, whose first and last one have one neighbour each."""
+    with load_texts(pipeline.render(read_spec_text(CHAIN, "chain.toml")).texts) as system:
+        yield system
+
+
+@pytest.mark.parametrize("target", ["c", "numpy", "python"])
+@pytest.mark.parametrize("size", [5, 17, 40])
+def test_the_energy_of_a_chain_has_terms_of_all_neighbours(chain, size, target):
+    """Sums of p_i^2/2, exp(q_i - q_(i+1)) and k_i (q_(i-1) - q_(i+1))^2/2, as far as these are."""
+    system, source = chain.resize({"i": size}), np.random.default_rng(size)
+    (q, p), k = source.normal(size=(2, size)), source.uniform(1, 2, size)
+    springs = k[1:-1] * (q[:-2] - q[2:]) ** 2
+    expected = (p**2).sum() / 2 + np.exp(q[:-1] - q[1:]).sum() + springs.sum() / 2
+    found = system.energy({"q": q, "p": p}, {"k": k}, target=target)
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
+
+
 def test_a_batch_has_the_bits_of_its_members(ring):
     """Many trajectories of many members, with parameters of their own or shared."""
     system, source = ring.resize({"i": 20}), np.random.default_rng(0)
@@ -130,6 +149,32 @@ def test_a_batch_has_the_bits_of_its_members(ring):
                 )
             ]
             assert np.array_equal(many, np.stack(each, axis=-1))
+
+
+@pytest.mark.parametrize("name", ["chain", "vortices"])
+def test_series_of_numpy_follow_the_motion(name, request):
+    """Of neighbours with parameters of their own and of all pairs, next to SciPy's order 8."""
+    system, source = request.getfixturevalue(name).resize({"i": 6}), np.random.default_rng(6)
+    state, own = source.normal(size=12), source.uniform(1, 2, 6)
+    given = {"samples": 3, "target": "numpy", "rtol": 1e-11, "atol": 1e-12}
+    one, other = (
+        system.simulate(state, (0, 0.5), own, method=method, **given)
+        for method in ("taylor", "scipy:DOP853")
+    )
+    assert np.abs(one.state[:, -1] - state).max() > 0.1
+    np.testing.assert_allclose(one.state, other.state, atol=1e-8)
+
+
+@pytest.mark.parametrize("size", [5, 53])
+def test_a_batch_with_all_pairs_has_the_bits_of_its_members(vortices, size):
+    """No member meets itself, and each pair has both its terms, in blocks and without."""
+    system, source = vortices.resize({"i": size}), np.random.default_rng(size)
+    states, c = source.normal(size=(2 * size, 3)), source.uniform(1, 2, size)
+    many = system.rhs(states, c, target="c")
+    for n in range(3):
+        alone = system.rhs(states[:, n].copy(), c, target="numpy")
+        assert np.isfinite(alone).all()
+        np.testing.assert_array_equal(many[:, n], alone)
 
 
 def test_the_derivative_along_a_vector_is_that_of_the_rates(vortices):

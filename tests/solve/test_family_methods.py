@@ -177,6 +177,19 @@ def test_steps_of_a_chain_are_those_of_the_masses_written_out(chain):
             np.testing.assert_allclose(one.state, other.state, atol=bound)
 
 
+@pytest.mark.parametrize("method", ["splitting", "splitting4"])
+def test_splittings_of_a_chain_are_those_of_numpy(chain, method):
+    """Steps of C and of NumPy, but for what their exponential functions round otherwise."""
+    start = np.random.default_rng(1).normal(size=12)
+    given = {"method": method, "step": 0.05, "samples": 3}
+    one, other = (
+        chain.resize({"i": 6}).simulate(start, (0, 2), np.ones(6), target=target, **given)
+        for target in ("c", "numpy")
+    )
+    assert np.abs(one.state[:, -1] - start).max() > 0.1
+    np.testing.assert_allclose(one.state, other.state, atol=1e-11)
+
+
 @pytest.mark.parametrize("method", ["spherical_midpoint", "midpoint6"])
 def test_laws_of_ten_thousand_spins(method):
     """Lengths and the total spin to rounding, the energy within a bound; RK4 loses them."""

@@ -190,6 +190,8 @@ def test_a_momentum_with_a_mean_has_no_level_velocity():
         small.simulate(m, (0, 0.1), **options)
     assert error.value.found == pytest.approx(m[:, 1].mean())
     assert "Subtract the mean" in str(error.value)
+    with pytest.raises(KernelArgumentError, match="mean of m of hunter_saxton is -"):
+        small.simulate(-m, (0, 0.1), **options)
     found = small.simulate(m - m.mean(axis=0), (0, 0.1), **options)
     assert np.abs(found.state.mean(axis=0)).max() < 1e-12
 
@@ -237,6 +239,22 @@ def test_a_run_says_when_its_shock_comes(amplitude, end, warns):
         said = float(re.search(r"shock at t = ([\d.]+)", messages[0])[1])
         np.testing.assert_allclose(said, 1 / (3 * amplitude), rtol=1e-3)
         assert "earlier end" in messages[0]
+
+
+def test_the_steepest_fall_tells_the_time_of_a_shock():
+    """Of u = sin s + 0.3 sin 2 s that is 0.8083 at cos s = -1/2.4; the steepest rise is 1.6.
+
+    The time is that after the beginning of a run, which is at t = 2.
+    """
+    s, place = 2 * np.pi * np.arange(128) / 128, -1 / 2.4
+    steepest = -(place + 0.6 * (2 * place**2 - 1))
+    state = np.sin(s) + 0.3 * np.sin(2 * s)
+    options = {"samples": 2, "target": "numpy", "method": "rk4", "step": 2e-3}
+    with pytest.warns(ShockWarning) as told:
+        burgers.system.simulate(state, (2, 2.5), **options)
+    (message,) = (str(each.message) for each in told if each.category is ShockWarning)
+    said = float(re.search(r"shock at t = ([\d.]+)", message)[1])
+    np.testing.assert_allclose(said - 2, 1 / (3 * steepest), rtol=1e-3)
 
 
 def test_before_its_shock_the_motion_is_that_of_characteristics():

@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 
 import coadjoint
+from coadjoint import pipeline
 from coadjoint.errors import KernelArgumentError, PeriodicityWarning
 from coadjoint.resources import derivations_folder
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.spectral import SpectralSystem, find_jump
 from coadjoint.solve.strands import transport
+from coadjoint.spec import read_spec_text
 from coadjoint.systems import (
     camassa_holm,
     kdv,
+    landau_lifshitz,
     rigid_body,
     spin_chain,
     spin_chain_chiral,
@@ -124,12 +128,34 @@ def test_generated_solvers_are_refused_with_the_reason(options):
         own.simulate(np.zeros(32), (0, 1), **options)
     found = own.simulate(np.zeros(32), (0, 1), method="scipy:DOP853", samples=2)
     assert not found.state.any()
-    with pytest.raises(KernelArgumentError, match=r"method 'midpoint' keeps none; .* series") as no:
-        own.simulate(np.zeros(32), (0, 1), method="midpoint", step=0.1, checkpoint="run.npz")
-    assert str(no.value).endswith("Python leads the steps. Remove checkpoint.")
     settings = own.simulate(np.zeros(32), (0, 1), samples=2).settings
     assert (settings["method"], settings["derivatives"]) == ("scipy:DOP853", "fourier")
     assert "derivatives" not in rigid_body.system.simulate([1.0, 2.0, 3.0], (0, 1)).settings
+
+
+@pytest.mark.parametrize("method", ["discrete_gradient", "average_gradient", "discrete_gradient4"])
+def test_the_midpoint_is_the_discrete_gradient_of_a_quadratic_energy(method):
+    """That is the reason of the refusal, and the advice keeps the energy to rounding."""
+    own = fourier(kdv.system, 32)
+    state = np.cos(2 * np.pi * np.arange(32) / 32) / 3
+    run = {"step": 0.01, "samples": 2}
+    with pytest.raises(KernelArgumentError, match="'midpoint' is this method, and keeps") as error:
+        own.simulate(state, (0, 1), method=method, **run)
+    assert "energy is quadratic" in str(error.value)
+    assert own.simulate(state, (0, 1), method="midpoint", **run).drift["energy"] < 1e-13
+
+
+def test_a_discrete_gradient_needs_the_bracket_and_the_gradient_apart():
+    """Of an energy of degree 4 the refusal says so, and names no method that would lose it."""
+    text = read_file(landau_lifshitz.system)
+    old = "dot(S_s, S_s)/2 -"
+    assert old in text
+    spec = read_spec_text(text.replace(old, "S3^2*dot(S_s, S_s)/2 -"), "magnet.toml")
+    with load_texts(pipeline.render(spec).texts) as system:
+        own = fourier(system, 16)
+        with pytest.raises(KernelArgumentError, match="needs the bracket and the gradient") as no:
+            own.simulate(None, (0, 1), method="discrete_gradient", step=0.1)
+    assert "midpoint' is this method" not in str(no.value)
 
 
 @pytest.mark.campaign
@@ -180,6 +206,13 @@ def test_sums_are_kept_as_certificates_say(name, total, is_kept, N):
     rows = np.atleast_1d(np.arange(after.shape[1])[system.OBSERVABLES.rows(total)])
     sizes = np.abs(after[0, rows]) + np.abs(before[0, rows])
     assert (np.abs(after - before)[0, rows] < 1e-10 * sizes).all() == is_kept
+
+
+def test_the_drift_of_a_run_is_that_of_the_energy_alone():
+    """J is kept by the field and not by points, so that its change is no error of a method."""
+    own, w = fourier(kdv.system, 32), 2 * np.pi * np.arange(32) / 32
+    assert {*own.differences.simulate(np.cos(w) / 3, (0, 0.01), samples=2).drift} == {"energy", "M"}
+    assert {*own.simulate(np.cos(w) / 3, (0, 0.01), samples=2).drift} == {"energy"}
 
 
 @pytest.mark.parametrize(

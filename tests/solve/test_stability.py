@@ -6,7 +6,9 @@ import warnings
 import numpy as np
 import pytest
 
+from coadjoint import pipeline
 from coadjoint.errors import StabilityWarning
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.stability import find_interval, find_rates
 from coadjoint.systems import (
     camassa_holm,
@@ -16,6 +18,7 @@ from coadjoint.systems import (
     spin_chain,
     spin_chain_chiral,
 )
+from tests.derive.test_ends import spec_of
 
 #: Intervals on the imaginary axis by roots of |R(i y)|^2 - 1 to 50 digits, by order.
 TAYLOR = {
@@ -75,6 +78,15 @@ def test_rates_of_the_shortest_waves():
     waves_of = (-61 / 30, 169 / 120, -3 / 10, 7 / 240)
     size = np.abs(sum(2 * c * np.sin(r * t) for r, c in enumerate(waves_of, 1))).max()
     np.testing.assert_allclose(waves, 0.7 * size * (N / L) ** 3, rtol=1e-5)
+
+
+@pytest.mark.parametrize(("order", "largest"), [(2, 2**0.5), (4, 1.93633)])
+def test_rates_of_waves_between_ends(order, largest):
+    """With L/(N - 1) between points: sqrt(3) times the spectral radius of the differences."""
+    with load_texts(dict(pipeline.render(spec_of("free", order)).texts)) as system:
+        own = system.resize({"s": 17})
+        found = find_rates(own, np.ones((102, 1)), np.array([1.0, 2.0, 3.0, 3.0, 2.0, 1.0, 10.0]))
+    np.testing.assert_allclose(found, np.sqrt(3) * largest * 16 / 10, rtol=1e-5)
 
 
 @pytest.mark.parametrize(("method", "interval"), [("rk4", 8**0.5), ("dop853", 5.9604)])

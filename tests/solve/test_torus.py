@@ -139,6 +139,15 @@ def test_a_run_keeps_energy_and_enstrophy():
     assert abs(run["w"][..., -1] - run["w"][..., 0]).max() > 1
 
 
+def test_points_stand_at_equal_distances_from_zero():
+    """Along both coordinates, each with its own length; of several lengths there are none."""
+    system = plane(4, 5)
+    found = system.find_coordinates(np.array([2.0, 10.0]))
+    np.testing.assert_array_equal(found["x"], [0, 0.5, 1, 1.5])
+    np.testing.assert_array_equal(found["y"], [0, 2, 4, 6, 8])
+    assert system.find_coordinates(np.array([[2.0, 3.0], [10.0, 10.0]])) == {}
+
+
 def test_several_trajectories_at_once():
     """Each with its own lengths."""
     w, system = np.stack([mix((8, 9), seed) for seed in (0, 1)], axis=-1), plane(8, 9)
@@ -197,6 +206,8 @@ def test_fields_that_do_not_fit_are_refused():
         system.simulate({"w": w + 1}, (0, 1))
     with pytest.raises(KernelArgumentError, match="waves beyond 2 and 2"):
         system.simulate({"w": w + (-1.0) ** np.arange(8)}, (0, 1))
+    with pytest.raises(KernelArgumentError, match="waves beyond 2 and 3"):
+        plane(9, 10).simulate({"w": mix((9, 10)) + (-1.0) ** np.arange(10)}, (0, 1))
     assert system.simulate({"w": w}, (0, 1e-3), samples=2).status == "OK"
     with pytest.raises(KernelArgumentError, match="'fourier', which a plane has alone"):
         system.with_derivatives("spectral")

@@ -41,7 +41,7 @@ def about_grid(grid: Grid) -> Iterator[Examined]:
     space = first.spec.space
     assert space is not None, first.spec.name
     where = f"at N >= {family.small} points, with differences of order {space.order}"
-    where += f" and {space.ends} ends" * space.has_ends
+    where += f" and of order {space.order // 2} near {space.ends} ends" * space.has_ends
     rings = "lines" if space.has_ends else "rings"
     sizes = " and ".join(str(count_points(each, grid)) for each in grid.windows)
     yield (

@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import os
 import time
+from collections.abc import Mapping
 from dataclasses import fields
 from hashlib import sha256
 from pathlib import Path
@@ -73,83 +74,56 @@ def check_checkpoint(path: Any) -> Path | None:
     return place
 
 
-class Checkpoint:
-    """The file of a run.
+class RunFile:
+    """A file of arrays that belongs to one run.
 
     Args:
         path: Where it stands, or will stand.
-        system: The System.
-        request: What was asked for.
-        run: Its members, begun.
+        asked: What was asked for, as JSON values.
         build: What the bits depend on beyond the files of the system; "" if nothing.
-        recording: Who looks at the steps; None for nobody.
-        signal: Inputs over time, or constants of each member; None without inputs.
 
     Attributes:
+        path: The same.
         seconds: How long to compute before the next one is written.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        system: System,
-        request: Request,
-        run: Ensemble,
-        build: str,
-        recording: Recording | None,
-        signal: Signal | Array | None,
-    ) -> None:
+    def __init__(self, path: Path, asked: dict[str, Any], build: str) -> None:
         self.path, self.seconds = path, SECONDS
-        self._asked = _describe(system, request, run, signal)
-        self._build, self._recording = build, recording
+        self._asked, self._build = asked, build
 
-    def resume(self, run: Ensemble) -> None:
-        """Take a run to where the file has it; nothing where there is no file.
+    def _take_arrays(self) -> tuple[dict[str, Array], str] | None:
+        """What the file has, and the build that wrote it; None where there is no file.
 
         Raises:
             KernelArgumentError: The file is no checkpoint, or that of another run.
         """
         if not self.path.exists():
-            return
+            return None
         arrays, head = self._read()
         self._check(head)
-        for name, array in _arrays(run).items():
-            found = arrays.get(name, np.empty(0))
-            if (found.shape, found.dtype) != (array.shape, array.dtype):
-                raise self._explain_unread(f"its {name} has the shape {found.shape}")
-            array[...] = found
-        if run.kinks is not None:
-            met = arrays.get(_MET, np.empty(0))
-            if met.shape[1:] != (MET,) or met.dtype != np.float64:
-                raise self._explain_unread(f"its {_MET} has the shape {met.shape}")
-            run.met[:] = [met]
-        if self._recording is not None:
-            try:
-                self._recording.restore(take_below(arrays, _RECORDING))
-            except (KeyError, ValueError, TypeError, IndexError) as error:
-                raise self._explain_unread(f"its record is damaged: {error}") from error
-        if head["build"] != self._build:
+        return arrays, head["build"]
+
+    def _tell_build(self, build: str, depth: int) -> None:
+        """Say that another build may have other bits."""
+        if build != self._build:
             say_once(
                 f"{self.path} was written by another build of the solver (compiler, processor or "
                 "NumPy). The run goes on from there, and its bits may differ from those of a run "
                 "that was not broken off.",
-                depth=8,
+                depth=depth,
             )
 
-    def write(self, run: Ensemble) -> None:
-        """Replace the file by what a run is now: whole, or not at all.
+    def _write(self, arrays: Mapping[str, Any]) -> None:
+        """Replace the file: whole, or not at all.
 
         Raises:
             OutputError: It cannot be written; what stood there before is untouched.
         """
         begun = time.monotonic()
         head = json.dumps({"form": _FORM, "build": self._build, "asked": self._asked})
+        whole: dict[str, Any] = {_HEAD: np.array(head), **arrays}
         with write_whole(self.path) as place, place.open("wb") as file:
-            arrays: dict[str, Any] = {_HEAD: np.array(head), **_arrays(run)}
-            arrays |= {_MET: run.list_met()} if "kinks" in arrays else {}
-            known = {} if self._recording is None else self._recording.save()
-            arrays |= {f"{_RECORDING}.{name}": array for name, array in known.items()}
-            np.savez(file, **arrays)
+            np.savez(file, **whole)
             file.flush()
             os.fsync(file.fileno())
         self.seconds = max(SECONDS, (time.monotonic() - begun) / SHARE)
@@ -207,6 +181,71 @@ class Checkpoint:
         )
 
 
+class Checkpoint(RunFile):
+    """The file of a run.
+
+    Args:
+        path: Where it stands, or will stand.
+        system: The System.
+        request: What was asked for.
+        run: Its members, begun.
+        build: What the bits depend on beyond the files of the system; "" if nothing.
+        recording: Who looks at the steps; None for nobody.
+        signal: Inputs over time, or constants of each member; None without inputs.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        system: System,
+        request: Request,
+        run: Ensemble,
+        build: str,
+        recording: Recording | None,
+        signal: Signal | Array | None,
+    ) -> None:
+        super().__init__(path, _describe(system, request, run, signal), build)
+        self._recording = recording
+
+    def resume(self, run: Ensemble) -> None:
+        """Take a run to where the file has it; nothing where there is no file.
+
+        Raises:
+            KernelArgumentError: The file is no checkpoint, or that of another run.
+        """
+        taken = self._take_arrays()
+        if taken is None:
+            return
+        arrays, build = taken
+        for name, array in _arrays(run).items():
+            found = arrays.get(name, np.empty(0))
+            if (found.shape, found.dtype) != (array.shape, array.dtype):
+                raise self._explain_unread(f"its {name} has the shape {found.shape}")
+            array[...] = found
+        if run.kinks is not None:
+            met = arrays.get(_MET, np.empty(0))
+            if met.shape[1:] != (MET,) or met.dtype != np.float64:
+                raise self._explain_unread(f"its {_MET} has the shape {met.shape}")
+            run.met[:] = [met]
+        if self._recording is not None:
+            try:
+                self._recording.restore(take_below(arrays, _RECORDING))
+            except (KeyError, ValueError, TypeError, IndexError) as error:
+                raise self._explain_unread(f"its record is damaged: {error}") from error
+        self._tell_build(build, depth=9)
+
+    def write(self, run: Ensemble) -> None:
+        """Replace the file by what a run is now: whole, or not at all.
+
+        Raises:
+            OutputError: It cannot be written; what stood there before is untouched.
+        """
+        arrays: dict[str, Any] = _arrays(run)
+        arrays |= {_MET: run.list_met()} if "kinks" in arrays else {}
+        known = {} if self._recording is None else self._recording.save()
+        self._write(arrays | {f"{_RECORDING}.{name}": array for name, array in known.items()})
+
+
 def _arrays(run: Ensemble) -> dict[str, Array]:
     """The arrays of an ensemble that change on its way."""
     changing = ("state", "out", *(each.name for each in fields(run) if not each.init))
@@ -223,7 +262,20 @@ def _describe(
     """
     times = np.append(request.start, run.samples)
     asked = [signal.over(times)] if isinstance(signal, Function) else []
-    inputs, choice = run.inputs, request.choice
+    inputs = run.inputs
+    return describe_request(system, request) | {
+        "parameters": hash_arrays(run.parameters),
+        "inputs": hash_arrays(inputs.knots, inputs.values, inputs.slopes, *asked),
+        "samples": hash_arrays(run.samples, np.array(run.out is None)),
+        "reconstruct": hash_arrays(run.state[system.STATE.size :])
+        if len(run.state) > system.STATE.size
+        else "no",
+    }
+
+
+def describe_request(system: System, request: Request) -> dict[str, Any]:
+    """What every run is asked for, as JSON values."""
+    choice = request.choice
     return {
         "system": system.name,
         "id": system.id,
@@ -235,20 +287,14 @@ def _describe(
         "step": request.step,
         "seed": request.seed,
         "max_steps": request.max_steps,
-        "initial state": _hash(request.state),
-        "parameters": _hash(run.parameters),
+        "initial state": hash_arrays(request.state),
         "start": request.start,
-        "inputs": _hash(inputs.knots, inputs.values, inputs.slopes, *asked),
-        "samples": _hash(run.samples, np.array(run.out is None)),
-        "reconstruct": _hash(run.state[system.STATE.size :])
-        if len(run.state) > system.STATE.size
-        else "no",
         "events": [str(each.event) for each in request.events],
         "dense": request.dense,
     }
 
 
-def _hash(*arrays: Array) -> str:
+def hash_arrays(*arrays: Array) -> str:
     """One hash of the shapes and bits of arrays."""
     whole = sha256()
     for array in arrays:

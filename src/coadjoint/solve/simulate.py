@@ -64,11 +64,14 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
     from coadjoint.solve.system import System
+    from coadjoint.solve.wave_checkpoints import WaveCheckpoint
     from coadjoint.solve.wave_gauss import Made
 
     Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
 
+#: Methods of SciPy that know no more of earlier steps than how long the next one is.
+OF_ONE_STEP = ("RK23", "RK45", "DOP853")
 #: The methods with steps of one length of fields by Fourier derivatives, and their orders.
 _BY_WAVES = {"midpoint": 2, "gauss4": 4, "gauss6": 6, "gauss8": 8}
 #: How the reason begins for which a step of it fails.
@@ -132,6 +135,8 @@ def simulate(
         if system.obstacle:  # whose methods are Python's, not generated ones
             for each in system.METHODS:
                 obstacles.pop(each.name)
+            reason = _explain_gradients(system)
+            obstacles |= {name: reason for name in obstacles if "_gradient" in name}
         without = (
             ""
             if obstacle
@@ -225,18 +230,35 @@ def _explain_obstacle(system: System, name: str, obstacle: str) -> KernelArgumen
     )
 
 
+def _explain_gradients(system: System) -> str:
+    """Why discrete gradients are refused where Python leads the steps.
+
+    Of a quadratic energy the mean of the gradient along a chord is that in its middle.
+    """
+    if any(each.name == "midpoint" and "energy" in each.exactly for each in system.METHODS):
+        return (
+            "its energy is quadratic, so that the mean of the gradient along a step is that in its "
+            "middle: 'midpoint' is this method, and keeps the energy"
+        )
+    return (
+        f"{system.obstacle} by rates as a whole, and a discrete gradient needs the bracket and the "
+        "gradient of the energy apart"
+    )
+
+
 def _check_alone(system: System, request: Request, obstacle: str) -> None:
-    """The methods of SciPy keep no checkpoint, and follow a batch where nothing else does.
+    """The methods of SciPy follow a batch where nothing else does, and keep no checkpoint then.
 
     Raises:
         KernelArgumentError: The state is a batch that other methods follow, or there is to be a
-            checkpoint.
+            checkpoint of what has none.
     """
-    if request.checkpoint is not None:
+    if request.checkpoint is not None and system.obstacle:
+        _check_kept(system, request)
+    elif request.checkpoint is not None:
         reason = f": {obstacle}" if obstacle else ""
-        whose = "" if system.obstacle else " of SciPy"  # Python leads the steps of some systems
         raise KernelArgumentError(
-            f"checkpoint is given, and method {request.method!r}{whose} keeps none; expected a "
+            f"checkpoint is given, and method {request.method!r} of SciPy keeps none; expected a "
             f"generated solver{', which does not apply here' if obstacle else ''}{reason}. Remove "
             "checkpoint.",
             found=str(request.checkpoint),
@@ -253,6 +275,30 @@ def _check_alone(system: System, request: Request, obstacle: str) -> None:
             found=list(request.state.shape),
             expected=[system.STATE.size],
         )
+
+
+def _check_kept(system: System, request: Request) -> None:
+    """What a checkpoint by Fourier derivatives does not have.
+
+    Raises:
+        KernelArgumentError: The run has some of it.
+    """
+    known = [*_BY_WAVES, *(f"{SCIPY}{name}" for name in OF_ONE_STEP)]
+    found = f"method {request.method!r}, of which SciPy keeps earlier steps,"
+    advice = f"Take one of {', '.join(known)}"
+    if request.method in known:
+        found, advice = "a batch", "Call it for each member with a file of its own"
+        if request.state.ndim == 1:
+            found, advice = "events or dense output", "Leave them out"
+            if not (request.events or request.dense):
+                return
+    raise KernelArgumentError(
+        f"checkpoint is given, and {found} of {system.name} stands in none; expected one "
+        "trajectory at samples, by a method that knows one step, since Python leads the steps. "
+        f"{advice}, or remove checkpoint.",
+        found=str(request.checkpoint),
+        expected=known,
+    )
 
 
 def _simulate_alone(system: System, request: Request) -> Solution:
@@ -295,11 +341,20 @@ def _simulate_alone(system: System, request: Request) -> Solution:
         method: Callable[..., OdeSolver] = getattr(scipy.integrate, name)
         return method(rates, time, state, end, rtol=rtol, atol=atol, **options)
 
+    checkpoint = None
+    if request.checkpoint is not None:
+        from coadjoint.solve.wave_checkpoints import WaveCheckpoint
+
+        checkpoint = WaveCheckpoint(
+            request.checkpoint, system, request, packed, times, followed, driving, made
+        )
     stretches = _Stretches(begin, [times[0], *driving.breaks, times[-1]])
     trail = _make_trail(system, packed, driving, request, followed.size)
     most = request.max_steps
     with np.errstate(all="ignore"):
-        run = _follow(stretches, initial, times, most, latest, domain, constraints, trail)
+        run = _follow(
+            stretches, initial, times, most, latest, domain, constraints, trail, checkpoint
+        )
     ending = trail.finish()
     if ending is not None:
         run = _cut_at_event(*run[:2], ending)
@@ -404,6 +459,10 @@ class _Stretches:
     ) -> None:
         self._begin, self._ends = begin, ends
 
+    def skip(self, time: float) -> None:
+        """Begin at a later time than the start."""
+        self._ends = [time, *(end for end in self._ends[1:-1] if end > time), self._ends[-1]]
+
     def next(self, state: Array) -> OdeSolver | None:
         """The integrator of the next stretch; None after the last."""
         start, *self._ends = self._ends
@@ -419,17 +478,25 @@ def _follow(
     domain: Domain,
     constraints: Constraints,
     trail: Trail,
+    checkpoint: WaveCheckpoint | None,
 ) -> _Run:
     """The times that were reached, states there, status and reason.
 
     A loop of our own over SciPy's steps: its `solve_ivp` has no bound on their number, and keeps
     nothing of a trajectory that ends in an exception.
     """
+    if checkpoint is not None and (time := checkpoint.find_time()) is not None:
+        stretches.skip(time)
+        initial = checkpoint.state
     solver = stretches.next(initial)
     assert solver is not None, "a run has an end"
     states = np.empty((solver.n, times.size))
     states[:, 0] = solver.y
     reached, steps, reason = 1, 0, ""
+    if checkpoint is not None:
+        reached, steps = checkpoint.resume(solver, states)
+        if reached == times.size:
+            return times, states, "OK", ""
     here = (solver.t, solver.y.copy())
     try:
         while solver.status == "running" and steps < max_steps:
@@ -453,6 +520,9 @@ def _follow(
             reached, steps = after, steps + 1
             if after < times.size and solver.status != "running":
                 solver = stretches.next(here[1]) or solver
+            if checkpoint is not None:
+                is_end = reached == times.size
+                checkpoint.write_sometimes(solver, states, reached, steps, now=is_end)
     except FloatingPointError:  # from the Jacobian
         latest[:] = np.nan
     place = f"near t = {solver.t:.6g}{domain.describe_nearest(solver.t, solver.y)}"

@@ -330,6 +330,7 @@ class System(Functions):
                 often where writing it takes longer than half a second, and at the end. Called again
                 with the same arguments, it goes on from there, with the bits and events of a run
                 that was not broken off. A finished run stands there, too: remove it to begin anew.
+                By Fourier derivatives one trajectory has one, without events and dense output.
             events: What to look for: names of components or scalar quantities, where these are 0;
                 formulas such as ``"Gamma3 == 0.5"``; or `Event` records, which have a direction or
                 end the trajectory. `Solution.events` has them by name.

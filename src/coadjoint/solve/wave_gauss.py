@@ -104,6 +104,14 @@ class WaveGauss(OdeSolver):
         self._factors = np.linalg.solve(self._matrix.T, weights)
         self._left_out: Array = np.zeros_like(self.y)
 
+    def save(self) -> tuple[float, int, Array]:
+        """When steps began, how many were made since then, and what the last one left out."""
+        return self._start, self._count, self._left_out
+
+    def resume(self, start: float, count: int, left_out: Array) -> None:
+        """Go on as an integrator that `save` is of."""
+        self._start, self._count, self._left_out = start, count, left_out
+
     def _step_impl(self) -> tuple[bool, str | None]:
         """One step: whether it was solved, and what to say if not."""
         self._count += 1
