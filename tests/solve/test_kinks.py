@@ -389,6 +389,19 @@ def test_a_bead_bounces_after_hertz(tmp_path, method):
     assert abs(found.final["q"] + (4 - 1 - touch)) < 1e-6
 
 
+def test_a_bead_that_touches_is_followed_from_there(tmp_path):
+    """On a kink there is no series of a root: the methods left to us are others."""
+    system = system_of_spec(tmp_path, BEAD)
+    touch = 0.8 * 0.5**0.4 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
+    found = system.simulate([0, 1], (0, 4))
+    assert (found.status, found.settings["method"]) == ("OK", "dop853")
+    assert abs(found.final["q"] + (4 - touch)) < 1e-9
+    assert found.drift["energy"] < 1e-9
+    stopped = system.simulate([0, 1], (0, 4), method="taylor")
+    assert stopped.status == "STEP_UNDERFLOW"
+    assert "take method='dop853'" in stopped.message
+
+
 def test_powers_of_what_is_cut_off_need_no_positive_base(monkeypatch):
     """Of ``max(x, 0)`` and ``abs(x)``, above 1; of others, and below, there is no real value."""
     for written in ("max(q, 0)^(3/2)", "max(0, 1 - 2*q)^(7/3)", "abs(q + 1)^(5/2)"):
