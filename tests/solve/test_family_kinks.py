@@ -361,16 +361,16 @@ def test_kinks_that_no_tolerance_sees_end_no_step(monkeypatch):
         assert strike(system, 10, t=(0, 2), target="numpy").status == "SLIDING"
 
 
-def test_springs_that_touch_have_the_same_bits_in_c_and_numpy():
+@pytest.mark.parametrize("index", ["size = 6", "size = 6, written_out = true"])
+def test_springs_that_touch_have_the_same_bits_in_c_and_numpy(index):
     """Rates are compared on both sides of kinks, for one trajectory and for some at a time."""
     chain = f'{HEAD}h = "sum(i, p[i]^2/(2*k[i])) + sum(i, max(q[i] - q[i+1], 0)^2)"\n'
-    p = np.zeros((6, 5))
-    p[0] = [1, 2, 0.5, 1e-3, 1]
-    with load(chain) as system:
-        for own in (p, p[:, 0]):
-            given = {"q": np.zeros(own.shape), "p": own}
+    starts = np.zeros((12, 5))
+    starts[6] = [1, 2, 0.5, 1e-3, 1]
+    with load(chain.replace("size = 6", index)) as system:
+        for own in (starts, starts[:, 0]):
             for method in ({}, {"method": "dop853"}, {"method": "rk4", "step": 0.01}):
-                runs = [system.simulate(given, (0, 8), target=t, **method) for t in ("c", "numpy")]
+                runs = [system.simulate(own, (0, 8), target=t, **method) for t in ("c", "numpy")]
                 assert np.all(runs[0].status == "OK"), method
                 assert np.array_equal(runs[0].state, runs[1].state), method
                 assert np.array_equal(runs[0].kinks.rows, runs[1].kinks.rows), method

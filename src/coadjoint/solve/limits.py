@@ -51,7 +51,7 @@ class Limits:
         strict: For each row, whether it may not be zero.
         projection: The nearest states on the constraints; None where none are kept.
         kinks: Rows whose signs are the sides of kinks; None where there are none.
-        rates: The rates on the sides of lanes; None where there are no kinks.
+        rates: The rates on the sides of lanes; without them all kinks count.
         branches: Whether they have roots, or other branch points.
     """
 
@@ -138,7 +138,8 @@ class Step:
         Beads that only just touch push each other by next to nothing.
         """
         limits, lanes = self.limits, self.lanes
-        assert limits.rates is not None
+        if limits.rates is None:
+            return beyond.any(axis=0)
         assert lanes.sides is not None
         sides = np.where(beyond, limits.choose_sides(lanes, after, state), lanes.sides)
         there = limits.rates(replace(lanes, sides=sides), after, state)
