@@ -352,6 +352,17 @@ def test_a_struck_chain_of_touching_beads_has_a_solitary_wave():
         assert "take method='dop853'" in stopped.message
 
 
+def test_beads_with_gaps_are_followed_through_exact_touches():
+    """The base of a root is a square as a whole, so that no rounding of it is below zero."""
+    with load(BEADS.replace("max(q[i] - q[i+1], 0)", "max(q[i] - q[i+1] + 1/10, 0)")) as small:
+        system = small.resize({"i": 20})
+        touching = np.append(-0.1, np.zeros(19))
+        assert np.isfinite(system.rhs(np.append(touching, np.zeros(20)))).all()
+        found = strike(system, 20, t=(0, 30))
+        assert found.status == "OK"
+        assert found.drift["energy"] < 1e-8
+
+
 def test_kinks_that_no_tolerance_sees_end_no_step(monkeypatch):
     """If all of them did, beads that touch by roundings of their places would slide."""
     with load(BEADS) as small:

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from coadjoint.declared import Quantity
 from coadjoint.derive import derive, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.lower import kinks
+from coadjoint.lower import kinks, sums
 from coadjoint.lower.lowering import lower
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.solve.events import Event
@@ -400,6 +400,20 @@ def test_a_bead_that_touches_is_followed_from_there(tmp_path):
     stopped = system.simulate([0, 1], (0, 4), method="taylor")
     assert stopped.status == "STEP_UNDERFLOW"
     assert "take method='dop853'" in stopped.message
+
+
+def test_roots_of_squares_have_no_roundings_below_zero(tmp_path, monkeypatch):
+    """``(q + 1/10)^2`` multiplied out is -2e-18 at -0.1, where its logarithm has no value."""
+    text = BEAD.replace("max(q, 0)", "max(q + 1/10, 0)")
+    assert text != BEAD
+    system = system_of_spec(tmp_path, text)
+    for target in ("c", "numpy"):
+        assert system.rhs([-0.1, 1.0], target=target)[1] == 0.0
+    monkeypatch.setattr(sums, "find_square_root", lambda number: None)
+    other = tmp_path / "multiplied_out"
+    other.mkdir()
+    spoiled = system_of_spec(other, text)
+    assert np.isnan(spoiled.rhs([-0.1, 1.0], target="numpy")[1])
 
 
 def test_powers_of_what_is_cut_off_need_no_positive_base(monkeypatch):

@@ -139,7 +139,7 @@ class Step:
         """
         limits, lanes = self.limits, self.lanes
         if limits.rates is None:
-            return beyond.any(axis=0)
+            return np.asarray(beyond.any(axis=0))
         assert lanes.sides is not None
         sides = np.where(beyond, limits.choose_sides(lanes, after, state), lanes.sides)
         there = limits.rates(replace(lanes, sides=sides), after, state)
