@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import coadjoint
 from coadjoint import pipeline
@@ -17,7 +18,7 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.lower import families, family_kinks
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
-from coadjoint.solve import kernels
+from coadjoint.solve import ensemble, kernels
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import family_of, read
@@ -307,3 +308,81 @@ def test_a_chain_of_beads_has_forces_after_hertz():
         for target in ("numpy", "c"):
             found = system.rhs([*q, *p], {"k": k}, target=target)
             assert np.allclose(found, expected, rtol=1e-12, atol=1e-14), target
+
+
+def strike(system, n, speed=1.0, **given):
+    """Beads at rest, all in touch, of which the first one is struck."""
+    p = np.zeros(n)
+    p[0] = speed
+    return system.simulate({"q": np.zeros(n), "p": p}, **given)
+
+
+def test_a_struck_chain_of_touching_beads_has_a_solitary_wave():
+    """Times scale by ``v^(-1/5)``, so that Nesterenko's wave has a speed ~ ``v^(1/5)``."""
+    n, times = 30, np.linspace(0, 60, 9)
+
+    def rates(_, y):
+        force = np.maximum(y[: n - 1] - y[1:n], 0) ** 1.5
+        return [*y[n:], *(np.append(0, force) - np.append(force, 0))]
+
+    start = np.zeros(2 * n)
+    start[n] = 1.0
+    expected = solve_ivp(rates, (0, 60), start, "DOP853", times, rtol=1e-12, atol=1e-15)
+    with load(BEADS) as small:
+        system = small.resize({"i": n})
+        found = strike(system, n, t=times)
+        assert found.status == "OK"
+        assert found.settings["method"] == "dop853"
+        assert found.steps < 1000
+        assert np.abs(found.state - expected.y).max() < 1e-7
+        assert found.drift["energy"] < 1e-9
+        assert abs(found["p"][:, -1].sum() - 1) < 1e-12
+        passed = []
+        for speed in (1.0, 32.0):
+            given = {"t": (0, 30 / speed**0.2), "events": ["p[8] - p[9]", "p[18] - p[19]"]}
+            wave = strike(system, n, speed, **given)
+            begun, ended = (wave.events[each].time[0] for each in given["events"])
+            passed.append(10 / (ended - begun))
+        assert abs(passed[1] / passed[0] - 2) < 1e-8
+        fixed = strike(system, n, t=(0, 20), method="rk4", step=1 / 128)
+        assert fixed.status == "OK"
+        assert fixed.drift["energy"] < 1e-7
+        stopped = strike(system, n, t=(0, 1), method="taylor")
+        assert stopped.status == "STEP_UNDERFLOW"
+        assert "take method='dop853'" in stopped.message
+
+
+def test_beads_with_gaps_are_followed_through_exact_touches():
+    """The base of a root is a square as a whole, so that no rounding of it is below zero."""
+    with load(BEADS.replace("max(q[i] - q[i+1], 0)", "max(q[i] - q[i+1] + 1/10, 0)")) as small:
+        system = small.resize({"i": 20})
+        touching = np.append(-0.1, np.zeros(19))
+        assert np.isfinite(system.rhs(np.append(touching, np.zeros(20)))).all()
+        found = strike(system, 20, t=(0, 30))
+        assert found.status == "OK"
+        assert found.drift["energy"] < 1e-8
+
+
+def test_kinks_that_no_tolerance_sees_end_no_step(monkeypatch):
+    """If all of them did, beads that touch by roundings of their places would slide."""
+    with load(BEADS) as small:
+        system = small.resize({"i": 10})
+        assert strike(system, 10, t=(0, 2), target="numpy").status == "OK"
+        monkeypatch.setattr(ensemble, "ALIKE", 0.0)
+        assert strike(system, 10, t=(0, 2), target="numpy").status == "SLIDING"
+
+
+@pytest.mark.parametrize("index", ["size = 6", "size = 6, written_out = true"])
+def test_springs_that_touch_have_the_same_bits_in_c_and_numpy(index):
+    """Rates are compared on both sides of kinks, for one trajectory and for some at a time."""
+    chain = f'{HEAD}h = "sum(i, p[i]^2/(2*k[i])) + sum(i, max(q[i] - q[i+1], 0)^2)"\n'
+    starts = np.zeros((12, 5))
+    starts[6] = [1, 2, 0.5, 1e-3, 1]
+    with load(chain.replace("size = 6", index)) as system:
+        for own in (starts, starts[:, 0]):
+            for method in ({}, {"method": "dop853"}, {"method": "rk4", "step": 0.01}):
+                runs = [system.simulate(own, (0, 8), target=t, **method) for t in ("c", "numpy")]
+                assert np.all(runs[0].status == "OK"), method
+                assert np.array_equal(runs[0].state, runs[1].state), method
+                assert np.array_equal(runs[0].kinks.rows, runs[1].kinks.rows), method
+                assert np.max(runs[0].drift["energy"]) < 1e-6, method

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from coadjoint.declared import Quantity
 from coadjoint.derive import derive, interpret
 from coadjoint.errors import DerivationError
-from coadjoint.lower import kinks
+from coadjoint.lower import kinks, sums
 from coadjoint.lower.lowering import lower
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.solve.events import Event
@@ -387,6 +387,33 @@ def test_a_bead_bounces_after_hertz(tmp_path, method):
     assert found.status == "OK"
     assert abs(found.final["p"] + 1) < 1e-6
     assert abs(found.final["q"] + (4 - 1 - touch)) < 1e-6
+
+
+def test_a_bead_that_touches_is_followed_from_there(tmp_path):
+    """On a kink there is no series of a root: the methods left to us are others."""
+    system = system_of_spec(tmp_path, BEAD)
+    touch = 0.8 * 0.5**0.4 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
+    found = system.simulate([0, 1], (0, 4))
+    assert (found.status, found.settings["method"]) == ("OK", "dop853")
+    assert abs(found.final["q"] + (4 - touch)) < 1e-9
+    assert found.drift["energy"] < 1e-9
+    stopped = system.simulate([0, 1], (0, 4), method="taylor")
+    assert stopped.status == "STEP_UNDERFLOW"
+    assert "take method='dop853'" in stopped.message
+
+
+def test_roots_of_squares_have_no_roundings_below_zero(tmp_path, monkeypatch):
+    """``(q + 1/10)^2`` multiplied out is -2e-18 at -0.1, where its logarithm has no value."""
+    text = BEAD.replace("max(q, 0)", "max(q + 1/10, 0)")
+    assert text != BEAD
+    system = system_of_spec(tmp_path, text)
+    for target in ("c", "numpy"):
+        assert system.rhs([-0.1, 1.0], target=target)[1] == 0.0
+    monkeypatch.setattr(sums, "find_square_root", lambda number: None)
+    other = tmp_path / "multiplied_out"
+    other.mkdir()
+    spoiled = system_of_spec(other, text)
+    assert np.isnan(spoiled.rhs([-0.1, 1.0], target="numpy")[1])
 
 
 def test_powers_of_what_is_cut_off_need_no_positive_base(monkeypatch):

@@ -96,12 +96,24 @@ class Inserting:
         base, exponent = (factor, sympy.S.One) if factor.is_Function else factor.as_base_exp()
         if exponent == 1:
             return self.node(factor)
-        graph, node = self.graph, self.node(base)
+        graph = self.graph
         if not (2 * exponent).is_Integer:
-            power = graph.multiply(self.node(exponent), graph.call("log", node))
+            power = graph.multiply(self.node(exponent), graph.call("log", self._base(base)))
             return graph.call("exp", power)
+        node = self.node(base)
         whole, half = divmod(int(2 * exponent), 2)
         return graph.product([node] * whole + [graph.call("sqrt", node)] * half)
+
+    def _base(self, base: Tree) -> int:
+        """The base of a root, as the square that it is: multiplied out it rounds to below zero."""
+        if not base.is_Add:
+            return self.node(base)
+        number, factors = sympy.sqf_list(base)
+        if not sympy.sqrt(number).is_Rational or any(power % 2 for _, power in factors):
+            return self.node(base)
+        root = sympy.sqrt(number) * sympy.prod(each ** (power // 2) for each, power in factors)
+        node = self.node(root)
+        return self.graph.multiply(node, node)
 
 
 def _as_fraction(number: Tree) -> Fraction:

@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isqrt
 from typing import Any, Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, Field
 from coadjoint.exact.factored import place_of
+from coadjoint.exact.factors import factors_of, to_fraction
 from coadjoint.exact.rationals import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, list_products, nest
@@ -50,6 +52,17 @@ _SIDED: Final = 2
 Form = tuple[Ratio, ...]
 #: What to compute before it is shared: coefficients by product, for each such denominator.
 _Sums = dict[Any, tuple[list[tuple[Element, int]], dict[Product, Element]]]
+
+
+@dataclass(frozen=True)
+class Square:
+    """An argument of a function that is a square.
+
+    Attributes:
+        root: What it is the square of.
+    """
+
+    root: Element
 
 
 @dataclass(frozen=True)
@@ -100,7 +113,8 @@ class Lowering:
         self._constants: dict[tuple[Fraction, tuple[tuple[str, int], ...]], Element] = {}
         self._numbers = equations.numbers
         self._kept: list[Element] = []
-        self._arguments: dict[str, list[Element | Sided]] = {}
+        self._arguments: dict[str, list[Element | Sided | Square]] = {}
+        self._writers = {"sign": _keep, "log": self._write_as_square}
         self._products: dict[int, list[Product]] = {_FIXED: [], _DRIVEN: [], _MEMBER: []}
         written = list(elements)
         self._loops = loops_under(equations, written)
@@ -223,13 +237,25 @@ class Lowering:
                 for argument in self._list_arguments(name):
                     self._note_argument(argument)
 
-    def _list_arguments(self, name: str) -> list[Element | Sided]:
+    def _list_arguments(self, name: str) -> list[Element | Sided | Square]:
         """The arguments of a function, by their values on either side of kinks if that is short."""
         if name not in self._arguments:
             known = self.field.adjoined[name]
-            write = _keep if known.function == "sign" else self._write_by_sides
+            write = self._writers.get(known.function, self._write_by_sides)
             self._arguments[name] = [write(argument) for argument in known.arguments]
         return self._arguments[name]
+
+    def _write_as_square(self, argument: Element) -> Element | Sided | Square:
+        """An argument as the square that it is: multiplied out it has roundings below zero."""
+        top, bottom = self.field.fraction(argument.combine())
+        content, factors = factors_of(top)
+        number = find_square_root(to_fraction(content))
+        if bottom or number is None or any(power % 2 for _, power in factors):
+            return self._write_by_sides(argument)
+        root = self.field.number(number)
+        for factor, power in factors:
+            root = root * self.field.from_polynomial(factor) ** (power // 2)
+        return Square(root)
 
     def _write_by_sides(self, argument: Element) -> Element | Sided:
         """An argument by its values on either side of a kink, if these have fewer terms."""
@@ -255,8 +281,10 @@ class Lowering:
     def _count_terms(self, element: Element) -> int:
         return sum(len(written.monomials) for written in self.field.quotients(element))
 
-    def _note_argument(self, argument: Element | Sided) -> None:
-        if isinstance(argument, Sided):
+    def _note_argument(self, argument: Element | Sided | Square) -> None:
+        if isinstance(argument, Square):
+            self._note_argument(argument.root)
+        elif isinstance(argument, Sided):
             self._note_functions((argument.sign,))
             for value in argument.values.values():
                 self._note_argument(value)
@@ -388,8 +416,11 @@ class Lowering:
             return self.graph.node_of_name(name, self._numbers)
         return self.graph.call(known.function, *map(self._argument, self._list_arguments(name)))
 
-    def _argument(self, argument: Element | Sided) -> int:
+    def _argument(self, argument: Element | Sided | Square) -> int:
         """The node of an argument of a function."""
+        if isinstance(argument, Square):
+            root = self._argument(argument.root)
+            return self.graph.multiply(root, root)
         if not isinstance(argument, Sided):
             level = self._level(argument)
             return self._build(self._form(argument, level), level)
@@ -425,9 +456,21 @@ def loops_under(equations: Equations, elements: Iterable[Element]) -> list[Solve
     return [each for each in equations.exact.solves if names.intersection(each.loop_symbols)]
 
 
-def _keep(argument: Element) -> Element:
+def _keep(argument: Element) -> Element | Sided | Square:
     """An argument as it is."""
     return argument
+
+
+def find_square_root(number: Fraction) -> Fraction | None:
+    """The square root of a rational number; None where that is none.
+
+    >>> find_square_root(Fraction(4, 9))
+    Fraction(2, 3)
+    """
+    if number < 0:
+        return None
+    root = Fraction(isqrt(number.numerator), isqrt(number.denominator))
+    return root if root**2 == number else None
 
 
 def _mark(element: Element) -> Any:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.limits import NEAR, NONE, Limits, Step
-from coadjoint.solve.steps import Lanes, add_low, reaches_end
+from coadjoint.solve.limits import ALIKE, NONE, Limits, Step
+from coadjoint.solve.steps import ROUNDING, Lanes, add_low, reaches_end
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -317,25 +317,34 @@ class Ensemble:
         finite = np.isfinite(state).all(axis=0)
         stuck = (time == lanes.time) | (took < 1e-300)
         accepted = attempt.accepted & finite & ~stuck
-        step = Step(lanes=lanes, attempt=attempt, limits=limits, accepted=accepted)
+        step = Step(
+            lanes=lanes,
+            attempt=attempt,
+            limits=limits,
+            accepted=accepted,
+            allowed=self._find_allowed(state, took),
+        )
         outside = step.find_dips()
-        if method.halves:  # the error of a step is that of its end, which is far beyond the kink
-            far = accepted & (outside <= took * 0.5) & (outside > took * NEAR)
-            lanes.step = np.where(far, took * 0.5, lanes.step)
+        if method.halves:
+            far, shorter = step.find_retries(outside)
+            lanes.step = np.where(far, shorter, lanes.step)
             accepted &= ~far
             outside = np.where(far, took, outside)
         inside, outside = self._store_samples(going, step, time, outside)
         left = outside < took
-        left |= accepted & ~limits.are_held(lanes, took, state)
-        met = np.zeros(left.shape, bool)
+        left |= accepted & ~step.are_held(took, state)
+        beyond = accepted & ~left & limits.find_beyond(lanes, took, state)
+        met = beyond.any(axis=0)
+        self._store_kinks(going, beyond, time)
         if left.any():
-            inside, outside = step.find_exit(inside, outside)
+            inside, beyond_it = step.find_exit(inside, outside)
+            outside = np.where(left, beyond_it, outside)
             state = np.where(left, step.find_state(inside), state)
             time = np.where(left, lanes.time + inside, time)
             crossing = step.cross(left, outside, (state, time))
-            met, state, time = crossing.met, crossing.state, crossing.time
+            met, state, time = met | crossing.met, crossing.state, crossing.time
             late = np.where(left, 0.0, late)
-            left &= ~met
+            left &= ~crossing.met
             self._store_kinks(going, crossing.kinks, time)
         if record is not None and accepted.any():
             self._record(record, going, attempt, time - lanes.time, accepted)
@@ -360,6 +369,17 @@ class Ensemble:
         if attempt.left is not None:
             status[~accepted & ~attempt.left.solved] = Status.NOT_SOLVED
         self.status[going] = status
+
+    def _find_allowed(self, end: Array, took: Array) -> Array:
+        """How much rates may differ on the two sides of a kink that does not end a step.
+
+        That is a part of what its error may be; with a fixed step of what rounding makes of it.
+        """
+        rtol, atol = (0.0, 0.0) if self.size > 0 else (self.rtol, self.atol)
+        sizes = np.abs(end)
+        rounding = ROUNDING * np.fmax.reduce(sizes, axis=0, initial=0.0)
+        least = np.where(atol > rounding, atol, rounding)
+        return np.asarray((least + rtol * sizes) * ALIKE / took)
 
     def _take_left(
         self, going: NDArray[np.intp], attempt: Attempt, accepted: Mask, limits: Limits
@@ -494,7 +514,7 @@ class Ensemble:
             within = wanted & ~(whole & (at == time))
             after = np.where(within, at - step.lanes.time, took)
             state = step.find_state(after)
-            good = step.limits.are_held(step.lanes, after, state)
+            good = step.are_held(after, state)
             outside = np.where(wanted & ~good, after, outside)
             open_ &= ~wanted | good
             wanted &= good

@@ -153,7 +153,11 @@ class FamilyTwin(StepwiseStepper):
         self._rates_name = "sided_rhs" if "kinks" in system.functions else "rhs"
         if "kinks" in system.functions:
             self._sizes |= {n: system.rows(n).size for n in ("kinks", "sided_rhs")}
-            self._limits = replace(self._limits, kinks=partial(self._evaluate, ("kinks",)))
+            kinks, branches = (
+                partial(self._evaluate, ("kinks",)),
+                bool(system.series.value("BRANCHES")),
+            )
+            self._limits = replace(self._limits, kinks=kinks, rates=self._rates, branches=branches)
         #: The flows of which steps of splittings are products; without any these are shifts.
         self._flows = tuple(name for name in system.functions if name.startswith("flow"))
         if choice.name == "taylor":

@@ -65,6 +65,10 @@ ALONE: Final = (
 )
 
 
+#: Why the method of Taylor is not taken where `_has_roots_at_kinks`.
+NO_SERIES: Final = "its rates have roots at kinks, and at a kink no series"
+
+
 def find_obstacle(system: System, target: str, reconstruct: Any) -> str:
     """Why generated methods do not apply to a run, as a clause; "" where they do.
 
@@ -217,11 +221,21 @@ def find_series_obstacle(
     if isinstance(system, FamilySystem):
         if stepwise and stepwise != system.stepwise:
             return f"it needs rates of all orders, and {stepwise}"
-        if is_auto and "kinks" in system.functions and system.series.value("BRANCHES"):
-            return "its rates have roots at kinks, and at a kink no series"
+        if is_auto and _has_roots_at_kinks(system):
+            return NO_SERIES
         order = choose_order(rtol, of_waves=is_of_waves(system))
         return tell_series_obstacle(system, order, members, is_auto=is_auto)
-    return f"it needs rates of all orders, and {stepwise}" if stepwise else ""
+    if stepwise:
+        return f"it needs rates of all orders, and {stepwise}"
+    return NO_SERIES if is_auto and _has_roots_at_kinks(system) else ""
+
+
+def _has_roots_at_kinks(system: System) -> bool:
+    """Whether rates have kinks and roots, as beads that touch after Hertz: these are 0 at once."""
+    module = KernelModule(system, SOLVER.files[2])
+    is_family = isinstance(system, FamilySystem)
+    has_kinks = "kinks" in system.functions if is_family else module.has("KINKS")
+    return has_kinks and bool(module.value("BRANCHES"))
 
 
 def simulate(system: System, request: Request) -> Solution:
@@ -556,13 +570,19 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
     place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
-        Status.STEP_UNDERFLOW: f"no step was small enough {place}"
+        Status.STEP_UNDERFLOW: f"no step was small enough {place}{_advise_dop853(system, request)}"
         if request.step is None
         else f"the motion cannot be followed by a step of {request.step:.12g} {place}",
         Status.NOT_SOLVED: f"the equation of a step of {request.step or 0.0:.12g} was not solved "
         f"{place}; take shorter steps{_advise_newton(system, request)}",
         Status.MAX_STEPS: f"{request.max_steps} steps came only {place}; raise max_steps",
     }[status]
+
+
+def _advise_dop853(system: System, request: Request) -> str:
+    """What else may go on where rates have no series; "" for nothing."""
+    is_it = request.method == "taylor" and not request.stepwise and _has_roots_at_kinks(system)
+    return f": {NO_SERIES}; take method='dop853'" if is_it else ""
 
 
 def _advise_newton(system: System, request: Request) -> str:

@@ -8,7 +8,7 @@ Read next: `coadjoint.solve.ensemble`, which ends steps there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,10 +30,16 @@ if TYPE_CHECKING:
 HALVINGS, KINK_HALVINGS = 40, 64
 #: Halvings that look for the place of a step that is nearest to a kink.
 DIP_HALVINGS = 32
+#: Halvings until a step is tried again that is to end behind a kink; how far behind, as a factor;
+#: and the part of a step after which a kink is close to its end.
+ROUGH_HALVINGS, BEHIND, CLOSE = 10, 1.0 + 2.0**-8, 1.0 - 2.0**-7
 #: The part of a step over which straight lines are drawn.
 NEAR = 2.0**-20
 #: The part of a step, or of the time, within which a kink follows another one briefly.
 BRIEF = 2.0**-30
+#: The part of an allowed error by which a step may differ on the two sides of a kink that does not
+#: end it.
+ALIKE = 0.0625
 
 
 @dataclass(frozen=True)
@@ -45,17 +51,27 @@ class Limits:
         strict: For each row, whether it may not be zero.
         projection: The nearest states on the constraints; None where none are kept.
         kinks: Rows whose signs are the sides of kinks; None where there are none.
+        rates: The rates on the sides of lanes; without them all kinks count.
+        branches: Whether they have roots, or other branch points.
     """
 
     domain: Function | None = None
     strict: tuple[bool, ...] = ()
     projection: Function | None = None
     kinks: Function | None = None
+    rates: Function | None = None
+    branches: bool = False
 
     def find_sides(self, lanes: Lanes) -> None:
         """Set lanes on the sides on which they are: rates are those of these sides for a step."""
         if self.kinks is not None:
-            lanes.sides = np.sign(self.kinks(lanes, np.zeros(lanes.time.shape), lanes.state))
+            none = np.zeros(lanes.time.shape)
+            lanes.sides = self.choose_sides(lanes, none, lanes.state)
+
+    def choose_sides(self, lanes: Lanes, after: Array, state: Array) -> Array:
+        """The sides on which states are, some time after that of the lanes, ``(m, N)``."""
+        assert self.kinks is not None
+        return np.sign(self.kinks(lanes, after, state))
 
     def are_inside(self, lanes: Lanes, after: Array, state: Array) -> Mask:
         """Where states are in the domain, some time after that of the lanes."""
@@ -65,13 +81,12 @@ class Limits:
         least = np.where(self.strict, np.nextafter(0.0, 1.0), 0.0)[:, np.newaxis]
         return np.asarray(((rows >= least) & (rows < np.inf)).all(axis=0))
 
-    def are_held(self, lanes: Lanes, after: Array, state: Array) -> Mask:
-        """Where states are in the domain, and beyond no kink from where their step began."""
-        inside = self.are_inside(lanes, after, state)
+    def find_beyond(self, lanes: Lanes, after: Array, state: Array) -> Mask:
+        """Beyond which kinks states are from where their step began, ``(m, N)``."""
         if self.kinks is None:
-            return inside
-        sides = np.sign(self.kinks(lanes, after, state))
-        return np.asarray(inside & ((sides == lanes.sides) | (sides == 0.0)).all(axis=0))
+            return np.zeros((0, *after.shape), bool)
+        sides = self.choose_sides(lanes, after, state)
+        return np.asarray(~((sides == lanes.sides) | (sides == 0.0)))
 
     def project(self, lanes: Lanes, after: Array, state: Array) -> Array:
         """The nearest states on the constraints; where there is none, the state itself."""
@@ -94,16 +109,56 @@ class Step:
         attempt: Where it leads.
         limits: What bounds the motion.
         accepted: Whether its end is taken.
+        allowed: How much rates may differ on the two sides of a kink that does not end it,
+            ``(n, N)``.
     """
 
     lanes: Lanes
     attempt: Attempt
     limits: Limits
     accepted: Mask
+    allowed: Array
 
     def find_state(self, after: Array) -> Array:
         """The state after a part of the step, on the constraints."""
         return self.limits.project(self.lanes, after, self.attempt.path(after))
+
+    def are_held(self, after: Array, state: Array) -> Mask:
+        """Where it is in the domain after a part of the step, and beyond no kink that counts."""
+        inside = self.limits.are_inside(self.lanes, after, state)
+        beyond = self.limits.find_beyond(self.lanes, after, state)
+        held = ~beyond.any(axis=0)
+        if (self.accepted & inside & ~held).any():
+            held |= self.accepted & ~self._do_count(after, state, beyond)
+        return inside & held
+
+    def _do_count(self, after: Array, state: Array, beyond: Mask) -> Mask:
+        """Where a tolerance tells the rates of the step's sides from those beyond kinks.
+
+        Beads that only just touch push each other by next to nothing.
+        """
+        limits, lanes = self.limits, self.lanes
+        if limits.rates is None:
+            return np.asarray(beyond.any(axis=0))
+        assert lanes.sides is not None
+        sides = np.where(beyond, limits.choose_sides(lanes, after, state), lanes.sides)
+        there = limits.rates(replace(lanes, sides=sides), after, state)
+        gap = np.abs(limits.rates(lanes, after, state) - there)
+        return np.asarray(~(gap <= self.allowed).all(axis=0))
+
+    def _find_counting(self, after: Array) -> Mask:
+        """Which kinks count, of those beyond which the step is after a part of it, ``(m, N)``.
+
+        They do so by themselves, or all together.
+        """
+        state = self.find_state(after)
+        beyond = self.limits.find_beyond(self.lanes, after, state)
+        counts = np.zeros(beyond.shape, bool)
+        for row in np.flatnonzero(beyond.any(axis=1)).tolist():
+            alone = np.zeros(beyond.shape, bool)
+            alone[row] = beyond[row]
+            counts[row] = beyond[row] & self._do_count(after, state, alone)
+        return np.where(counts.any(axis=0), counts, beyond)
 
     def find_dips(self) -> Array:
         """When the step is found beyond a kink, or outside the domain, before its end.
@@ -140,7 +195,7 @@ class Step:
         assert self.limits.kinks is not None
         assert self.lanes.sides is not None
         gaps = self.limits.kinks(self.lanes, after, state) * self.lanes.sides
-        gone = open_ & ~self.limits.are_held(self.lanes, after, state) & (after < outside)
+        gone = open_ & ~self.are_held(after, state) & (after < outside)
         outside[gone] = after[gone]
         return np.asarray(gaps)
 
@@ -154,6 +209,26 @@ class Step:
             falls = self._look(middle + near, nowhere, outside)[row] < here
             one, other = np.where(falls, middle, one), np.where(falls, other, middle)
 
+    def find_retries(self, outside: Array) -> tuple[Mask, Array]:
+        """Which steps are to be tried again since they meet a kink early, and their new lengths.
+
+        The error that a method tells is that of the end of a step, on the sides of its start. Where
+        rates have roots, they are not smooth beyond a kink: then each step is to end close behind.
+
+        Args:
+            outside: When the step is found beyond a kink.
+        """
+        took = self.attempt.took
+        met = self.accepted & (outside < took)
+        if not self.limits.branches:
+            return met & (outside <= took * 0.5) & (outside > took * NEAR), took * 0.5
+        one, other = np.zeros(took.shape), outside
+        for _ in range(ROUGH_HALVINGS if met.any() else 0):
+            middle = (one + other) * 0.5
+            good = self.are_held(middle, self.find_state(middle))
+            one, other = np.where(good, middle, one), np.where(good, other, middle)
+        return met & (other <= took * CLOSE) & (other > took * NEAR), other * BEHIND
+
     def find_brief(self) -> Array:
         """The length within which a kink follows another one briefly, ``(N,)``."""
         took, time = self.attempt.took, np.abs(self.lanes.time)
@@ -161,9 +236,12 @@ class Step:
 
     def find_exit(self, inside: Array, outside: Array) -> tuple[Array, Array]:
         """How far the step is in the domain and on its sides, and when it is not."""
+        counts = self._find_counting(outside)
         for _ in range(HALVINGS if self.limits.kinks is None else KINK_HALVINGS):
             middle = (inside + outside) * 0.5
-            good = self.limits.are_held(self.lanes, middle, self.find_state(middle))
+            state = self.find_state(middle)
+            good = self.limits.are_inside(self.lanes, middle, state)
+            good &= ~(counts & self.limits.find_beyond(self.lanes, middle, state)).any(axis=0)
             inside = np.where(good, middle, inside)
             outside = np.where(good, outside, middle)
         return inside, outside
@@ -184,7 +262,7 @@ class Step:
         after = lanes.time + outside
         least = lanes.time + np.abs(lanes.time) * 2.0**-52
         after = np.where(after > lanes.time, after, least)
-        sides = np.sign(self.limits.kinks(lanes, outside, beyond))
+        sides = self.limits.choose_sides(lanes, outside, beyond)
         return Crossing(
             met=met,
             state=np.where(met, beyond, state),

@@ -14,6 +14,7 @@ import numpy as np
 
 from coadjoint.lower.tableau import END, EXTRA, FIFTH, PATH, STAGES, THIRD, dop853
 from coadjoint.solve.steps import (
+    ROUNDING,
     Attempt,
     Cubic,
     Lanes,
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
-
-#: The part of the largest component below which no error can be seen.
-ROUNDING = 2.0**-48
 
 
 def end_where_rates_end(

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Mask = NDArray[np.bool_]
 
+#: The part of the largest component below which no error can be seen.
+ROUNDING = 2.0**-48
 #: Rates at a state, some time after that of the lanes.
 Rates = Callable[["Array", "Array"], "Array"]
 
@@ -148,7 +150,7 @@ class Method(Protocol):
 
     Attributes:
         tries_again: Whether a step that is not finite is tried again, a tenth as long.
-        halves: Whether a step that meets a kink in its first half is tried again, half as long.
+        halves: Whether a step that meets a kink early is tried again, half as long or up to there.
     """
 
     tries_again: bool

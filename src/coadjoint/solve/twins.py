@@ -88,6 +88,8 @@ class NumpyStepper:
             strict=tuple(bound.strict for bound in system.DOMAIN),
             projection=self._project if "projection" in system.functions else None,
             kinks=kinks,
+            rates=self._rates if kinks is not None else None,
+            branches=self._branches,
         )
 
     @property
