@@ -112,7 +112,7 @@ def make_parts(name: str) -> Made:
 def find_equations(document: str) -> dict[str, str]:
     """What a document shows of the motion, by titles: HTML without empty lines, which end it."""
     found = re.findall(
-        r'<section class="(?:motion|members)">\n<h2>(.*?)</h2>\n(.*?)</section>',
+        r'<section class="(?:motion|members)[^"]*">\n<h2>(.*?)</h2>\n(.*?)</section>',
         document,
         re.DOTALL,
     )

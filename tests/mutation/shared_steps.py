@@ -39,7 +39,7 @@ SHARED = (
         "legendre",
         "legendre",
         (),
-        "known_side: flip slope",
+        "known_side: flip at_rest(setting, momenta[i])",
         tests=("tests/derive/test_routes.py",),
     ),
     *of(

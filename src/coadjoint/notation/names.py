@@ -341,7 +341,7 @@ def unit(text: str) -> Written:
     for label, exponent, sign in re.findall(
         r"([^\s/^]+)(?:\^(-?\d+(?:\u2044\d+)?))?([\s/]*)", spaced
     ):
-        shown = f'<mi mathvariant="normal">{label}</mi>'
+        shown = f'<mi mathvariant="normal">{escape(label)}</mi>'
         if exponent:
             minus = operator("−") if exponent.startswith("-") else ""
             size = exponent.removeprefix("-").replace("\u2044", "/")

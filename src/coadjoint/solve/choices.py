@@ -75,5 +75,13 @@ class Choice:
         """Whether its steps are those of a method that keeps structure."""
         return self.name in STRUCTURED and not self.is_noisy
 
+    @property
+    def sweeps_alike(self) -> bool:
+        """Whether NumPy and C make as many sweeps: single steps of C have as many as most take."""
+        if not self.is_structured or self.newton:
+            return True
+        method = STRUCTURED[self.name]
+        return method.file != "gauss" and method.stages > 1
+
     def __str__(self) -> str:
         return f"{self.name} with Newton's method" if self.newton else self.name

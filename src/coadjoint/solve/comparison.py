@@ -7,6 +7,7 @@ Read next: `coadjoint.solve.solvers`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -50,6 +51,7 @@ def compare_steps(
     exact = target == "c" and has_same_bits(system, choice.name)
     n = count_rows(system, choice)
     adaptive = exact and choice.name in ("taylor", "dop853")
+    kept = ("late", "memory", *["sweeps"] * choice.sweeps_alike)
     runs = [*([(0.0, MOST_STEPS, True)] if adaptive else []), (2.0**-7, MOST_STEPS, True)]
     for size, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
         found, expected = (_probe(system, choice, size, most) for _ in range(2))
@@ -58,7 +60,8 @@ def compare_steps(
         while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
             pass  # calls that break off now and then, so that this is compared as well
         twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
-        if not (_agree(found, expected, exact=exact) and _agree_steps(one, other, exact=exact)):
+        same = _agree(found, expected, kept, exact=exact)
+        if not (same and _agree_steps(one, other, exact=exact)):
             raise CrossCheckError(
                 f"a wrong solver was compiled: {choice} of {system.name}, {choice.source.stem}.c, "
                 f"for the target {target} differs from its NumPy twin. Set CC to another compiler, "
@@ -127,7 +130,7 @@ def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
     return run
 
 
-def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
+def _agree(found: Ensemble, expected: Ensemble, kept: Iterable[str], *, exact: bool) -> bool:
     """Whether two ensembles went the same way: to the bit, or but for roundings."""
     counts = ("status", "steps", "rejected", "next", "kinks", "brief")
     if not all(np.array_equal(getattr(found, n), getattr(expected, n)) for n in counts):
@@ -138,7 +141,7 @@ def _agree(found: Ensemble, expected: Ensemble, *, exact: bool) -> bool:
     pairs.append((found.out, expected.out))
     pairs += [(found.list_met(), expected.list_met())]
     if exact:
-        for name in ("late", "memory"):
+        for name in kept:
             if getattr(found, name) is not None:
                 pairs.append((getattr(found, name), getattr(expected, name)))
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)

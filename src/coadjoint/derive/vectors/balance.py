@@ -59,7 +59,7 @@ def balance_lines(equations: Equations) -> VectorForm | None:
     reactions = [each.reaction for each in spec.constraints if each.shape]
     taken = "lambda" in field.names or len(reactions) != 1
     written = {} if taken else {reactions[0]: name("lambda", bold=True)}
-    return VectorForm(tuple(lines), (), vocabulary.shapes, written)
+    return VectorForm(lines=tuple(lines), missing=(), shapes=vocabulary.shapes, written=written)
 
 
 def momentum_of(

@@ -52,7 +52,9 @@ def vector_form(equations: Equations) -> VectorForm:
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
     told = f"E_k is the basis of {equations.setting.algebra.name}" if _names_basis(lines) else ""
-    return VectorForm(tuple(lines), tuple(missing), shapes, written, told)
+    return VectorForm(
+        lines=tuple(lines), missing=tuple(missing), shapes=shapes, written=written, told=told
+    )
 
 
 def _names_basis(lines: Sequence[VectorLine]) -> bool:

@@ -43,7 +43,7 @@ def member_form(equations: Equations) -> VectorForm:
     shapes = dict(vocabulary.shapes)
     for label, own_shape in list(shapes.items()):
         shapes.setdefault(label.rpartition("_")[0], own_shape)
-    return VectorForm(tuple(lines), tuple(missing), shapes, {})
+    return VectorForm(lines=tuple(lines), missing=tuple(missing), shapes=shapes, written={})
 
 
 class _Rename:

@@ -179,10 +179,10 @@ class _Maker:
         declared += [each.left for each in spec.constraints]
         declared += [each.right for each in spec.constraints]
         declared += [force.formula for force in spec.newton if hasattr(force, "formula")]
-        short = spec.family is None  # else names as typed are those of any member
         for each in declared:
-            if each is not None:
-                yield from dict.fromkeys((each.typed, each.tree) if short else (each.tree,))
+            if each is not None:  # names of members as typed are those of any member
+                of_members = any(isinstance(n, tree.Member) for n in tree.walk(each.typed))
+                yield from dict.fromkeys((each.tree,) if of_members else (each.typed, each.tree))
 
     def _vectors_in(self, formula: tree.Node) -> Iterator[tree.Node]:
         """Vectors that a formula is made of: matrices times vectors, and other parts of it."""
