@@ -39,7 +39,7 @@ SHARED = (
         "legendre",
         "legendre",
         (),
-        "known_side: flip at_rest(setting, momenta[i])",
+        "known_side: rewrite _1 - at_rest(_2, _3) -> _1 + at_rest(_2, _3)",
         tests=("tests/derive/test_routes.py",),
     ),
     *of(
