@@ -100,14 +100,14 @@ def test_casimirs_of_an_algebra_without_spheres():
     drifts = {}
     with load_texts(rendered.texts) as motion:
         for method in ("coadjoint_mean", "midpoint"):
-            run = motion.simulate(start, (0, 4), method=method, step=1 / 64, seed=3, target="numpy")
+            run = motion.simulate(start, (0, 2), method=method, step=1 / 32, seed=3, target="numpy")
             assert (run.status == "OK").all()
             assert np.ptp(run.state[0, :, -1]) > 0.1
             drifts[method] = np.abs(list_casimirs(run.state[..., -1]) - list_casimirs(start)).max()
     assert drifts["coadjoint_mean"] < 1e-14
     assert drifts["midpoint"] > 1e-7
     with load_texts(rendered.texts) as motion:  # the default is what keeps the cubic one
-        run = motion.simulate(start, (0, 4), step=1 / 64, seed=3, target="numpy")
+        run = motion.simulate(start, (0, 2), step=1 / 32, seed=3, target="numpy")
     assert run.settings["method"] == "coadjoint_mean"
     assert "bracket is linear" in run.settings["chosen"]
     assert np.abs(list_casimirs(run.state[..., -1]) - list_casimirs(start)).max() < 1e-14

@@ -145,7 +145,7 @@ def test_steps_by_as_many_sweeps_as_most_have_the_same_bits(method):
     """
     start = TURNING[:, np.newaxis] * np.linspace(0.1, 1.4, 70)
     more = {}
-    for step, count in ((0.125, 700), (0.0078125, 1500)):
+    for step, count in ((0.125, 300), (0.0078125, 800)):
         options = {"method": method, "step": step, "samples": 7}
         one, other = (
             rigid_body.simulate(start, (0, step * count), FREE, target=t, **options)
