@@ -241,7 +241,7 @@ def _split_word(base: str) -> tuple[str, list[str]]:
 def _write_below(words: str) -> Written:
     """What a word below a letter is, which may be a velocity or momentum of an angle itself.
 
-    Letters alone, as of a second derivative by x, stand beside each other.
+    Letters alone, as of a second derivative by x, stand next to each other.
     """
     if re.fullmatch("[A-Za-z](_[A-Za-z])+", words):
         letters = words.split("_")
