@@ -123,6 +123,15 @@ def plain(text: str) -> str:
     )
 
 
+def make_printable(text: str) -> str:
+    r"""Text without control characters, which a terminal would obey.
+
+    >>> make_printable("a\x1b[2Jb\nc")
+    'a [2Jb c'
+    """
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
 def shorten(text: str) -> str:
     """A message of at most a screen; of a longer one, the middle is left out."""
     rows = [

@@ -409,7 +409,7 @@ def test_roots_of_squares_have_no_roundings_below_zero(tmp_path, monkeypatch):
     system = system_of_spec(tmp_path, text)
     for target in ("c", "numpy"):
         assert system.rhs([-0.1, 1.0], target=target)[1] == 0.0
-    monkeypatch.setattr(sums, "find_square_root", lambda number: None)
+    monkeypatch.setattr(sums, "rational_root", lambda number: None)
     other = tmp_path / "multiplied_out"
     other.mkdir()
     spoiled = system_of_spec(other, text)

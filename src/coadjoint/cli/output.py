@@ -21,7 +21,7 @@ from typing import Any
 
 import click
 
-from coadjoint.errors import OutputError, plain
+from coadjoint.errors import OutputError, make_printable, plain
 from coadjoint.files import write_whole
 
 #: Characters of a column that never wraps, and of one that does, at the least.
@@ -69,11 +69,6 @@ def explain_unwritten(error: OSError) -> OutputError:
     )
 
 
-def printable(text: str) -> str:
-    """Text without control characters, which a terminal would obey."""
-    return "".join(character if character.isprintable() else " " for character in text)
-
-
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> None:
     """A table on standard output; columns whose name begins with ``>`` are aligned to the right.
 
@@ -82,7 +77,7 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: st
     fit next to each other, each row is a block with a line for each column.
     """
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else 10_000
-    cells = [[printable(cell) for cell in row] for row in rows]
+    cells = [[make_printable(cell) for cell in row] for row in rows]
     heads = [column.removeprefix(">") for column in columns]
     natural = [max(map(len, column)) for column in zip(heads, *cells, strict=True)]
     rigid = [n == 0 or size <= RIGID for n, size in enumerate(natural)]
@@ -175,7 +170,7 @@ def progress_bars() -> Iterator[Progress]:
 
         def progress(system: str, stage: str, done: int, total: int) -> None:
             if system not in tasks:
-                tasks[system] = bars.add_task(stage, total=total, system=printable(system))
+                tasks[system] = bars.add_task(stage, total=total, system=make_printable(system))
             bars.update(tasks[system], description=stage, completed=done, total=total)
 
         yield progress

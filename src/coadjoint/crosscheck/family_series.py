@@ -31,7 +31,7 @@ from coadjoint.render.family_solvers import FamilySolverText, PartText
 from coadjoint.render.recurrences import Line
 from coadjoint.render.targets.body import failure
 from coadjoint.render.targets.c.solver_reader import NumberReader, VectorReader
-from coadjoint.render.targets.numpy.solver_reader import find_function
+from coadjoint.render.targets.numpy.reader import find_function
 from coadjoint.render.targets.python_text import Reader
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import FamilyTwin, load

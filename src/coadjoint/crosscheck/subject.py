@@ -34,7 +34,7 @@ from coadjoint.lower.program import (
     Program,
     Solution,
     Statement,
-    Symbol,
+    list_names,
     run,
     walk,
 )
@@ -97,7 +97,7 @@ def list_stopping(program: Program) -> tuple[list[Statement], list[Node]]:
         return any(isinstance(each, Divide | Call | Factors | Solution) for each in walk(node))
 
     def names(node: Node) -> set[str]:
-        return {each.name for each in walk(node) if isinstance(each, Symbol)}
+        return set(list_names(node))
 
     outputs = [each.value for each in program.outputs if stops(each.value)]
     read, kept = set[str]().union(*map(names, outputs)), list[Statement]()

@@ -321,6 +321,13 @@ def fault(
     )
 
 
+def lagrangian_fault(setting: Setting, message: str, found: str = "") -> DerivationError:
+    """An error that points at the Lagrangian; without ``found``, of all its text."""
+    formula = setting.spec.lagrangian
+    assert formula is not None, "the reader asks for a Lagrangian"
+    return fault(setting, formula, message, found or formula.text)
+
+
 def list_components(quantities: Iterable[Named]) -> tuple[str, ...]:
     """Names of the components of some quantities, in order."""
     return tuple(name for each in quantities for name in each.components)

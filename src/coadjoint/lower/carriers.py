@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from coadjoint.exact.residues import Residue, call_modulo, vanish
-from coadjoint.lower.program import Program, Symbol, run, walk
+from coadjoint.lower.program import Program, list_names, run
 from coadjoint.methods import Carrier, Sphere
 
 
@@ -66,7 +66,7 @@ def _list_groups(rates: Program, known: int) -> list[tuple[int, ...]]:
 
 def _list_reads(value: object, reads: Mapping[str, set[str]]) -> set[str]:
     """What of some names a value reads, by what statements before it read."""
-    names = (each.name for each in walk(value) if isinstance(each, Symbol))  # type: ignore[arg-type]
+    names = list_names(value)  # type: ignore[arg-type]
     return set[str]().union(*(reads.get(name, set()) for name in names))
 
 

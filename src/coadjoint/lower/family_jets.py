@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from coadjoint.lower.jets import Jets, make_jets
 from coadjoint.lower.loops import Loops, Part, Read
-from coadjoint.lower.program import Level, Node, Program, Statement, Symbol, walk
+from coadjoint.lower.program import Level, Program, Statement, list_names
 
 
 @dataclass(frozen=True)
@@ -56,19 +56,14 @@ def list_rate_parts(rates: Loops) -> Iterator[tuple[str, Part]]:
 def _take_first(part: Part, count: int) -> Part:
     """The terms of member i alone: each member goes through all its partners."""
     outputs = part.program.outputs[:count]
-    needed = {name for output in outputs for name in _list_names(output.value)}
+    needed = {name for output in outputs for name in list_names(output.value)}
     statements = list[Statement]()
     for statement in reversed(part.program.statements):
         if statement.name in needed:
             statements.append(statement)
-            needed |= set(_list_names(statement.value))
+            needed |= set(list_names(statement.value))
     program = replace(part.program, statements=tuple(statements[::-1]), outputs=outputs)
     return Part(program, part.reads)
-
-
-def _list_names(node: Node) -> Iterator[str]:
-    """The names that a node reads."""
-    return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
 def _make(name: str, part: Part, components: int) -> PartJets:
@@ -89,7 +84,7 @@ def _separate(part: Part, components: int) -> Program:
     constant = [read.name for read in part.reads if is_constant(read, components)]
     known, statements = set(constant), []
     for statement in program.statements:
-        read = set(_list_names(statement.value))
+        read = set(list_names(statement.value))
         if read <= known:
             known.add(statement.name)
         level: Level = "parameters" if read <= known else "member"

@@ -24,7 +24,6 @@ Read next: `coadjoint.render.solvers`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from coadjoint.elementary import ELEMENTARY
@@ -60,7 +59,7 @@ from coadjoint.lower.program import (
     Solution,
     Statement,
     Symbol,
-    walk,
+    list_names,
 )
 
 
@@ -156,22 +155,17 @@ def _reads_all_orders(cell: Cell) -> set[str]:
     """The names of which the recurrence of a cell reads coefficients of all orders."""
     match cell.value:
         case Factors():
-            return set(_names(cell.value))
+            return set(list_names(cell.value))
         case Solution():
             return set(cell.unknowns)
         case Multiply():
-            return set(_names(cell.value))
+            return set(list_names(cell.value))
         case Divide(right=right):
-            return {cell.name, *_names(right)}
+            return {cell.name, *list_names(right)}
         case Call(function="sqrt"):
             return {cell.name}
     others = {cell.divisor, *(name for name, _ in cell.factors)}
-    return {cell.name, *_names(cell.value), *others} - {""}
-
-
-def _names(node: Node) -> Iterator[str]:
-    """The names that a node reads, as they stand."""
-    return (each.name for each in walk(node) if isinstance(each, Symbol))
+    return {cell.name, *list_names(cell.value), *others} - {""}
 
 
 def make_jets(rhs: Program) -> Jets:
@@ -316,7 +310,7 @@ class _Making:
         return self._known.get(other) or self._recurrence(node)
 
     def _depth_of(self, node: Node) -> int:
-        return max((self._depth.get(name, 0) for name in _names(node)), default=0)
+        return max((self._depth.get(name, 0) for name in list_names(node)), default=0)
 
     # -- sums -------------------------------------------------------------------------------------
 

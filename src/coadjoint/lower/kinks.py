@@ -19,6 +19,7 @@ from coadjoint.lower.program import (
     Program,
     Symbol,
     children,
+    list_names,
     walk,
     with_children,
 )
@@ -65,7 +66,7 @@ def find_kinks(rates: Program) -> tuple[Node, ...]:
             if _count(argument, sizes) > MOST:
                 return ()
             whole = _expand(argument, known)
-            if moving.intersection(n.name for n in walk(whole) if isinstance(n, Symbol)):
+            if moving.intersection(list_names(whole)):
                 found.setdefault(whole)
     return tuple(found)
 

@@ -47,6 +47,7 @@ from coadjoint.lower.program import (
     Statement,
     Symbol,
     children,
+    list_names,
     walk,
     with_children,
 )
@@ -185,7 +186,7 @@ def _with_names(rhs: Program) -> Program:
         return found
 
     def name_sum(node: Node) -> Node:
-        read = {each.name for each in walk(node) if isinstance(each, Symbol)}
+        read = set(list_names(node))
         if not isinstance(node, Add) or read <= constants:
             return node
         if node not in known:

@@ -401,6 +401,11 @@ def walk(node: Node) -> Iterator[Node]:
         yield from walk(child)
 
 
+def list_names(node: Node) -> Iterator[str]:
+    """The names that a node reads, as they stand."""
+    return (each.name for each in walk(node) if isinstance(each, Symbol))
+
+
 #: What two operands make.
 _COMBINE: Final[dict[type, Callable[[Any, Any], Any]]] = {
     Add: operator.add,

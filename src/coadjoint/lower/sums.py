@@ -11,14 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isqrt
 from typing import Any, Final
 
 from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.exact import Element, Field
 from coadjoint.exact.factored import place_of
-from coadjoint.exact.factors import factors_of, to_fraction
+from coadjoint.exact.factors import factors_of, rational_root, to_fraction
 from coadjoint.exact.rationals import Written
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.nesting import COEFFICIENT, Nest, Sum, Term, list_products, nest
@@ -249,7 +248,7 @@ class Lowering:
         """An argument as the square that it is: multiplied out it has roundings below zero."""
         top, bottom = self.field.fraction(argument.combine())
         content, factors = factors_of(top)
-        number = find_square_root(to_fraction(content))
+        number = rational_root(to_fraction(content))
         if bottom or number is None or any(power % 2 for _, power in factors):
             return self._write_by_sides(argument)
         root = self.field.number(number)
@@ -459,18 +458,6 @@ def loops_under(equations: Equations, elements: Iterable[Element]) -> list[Solve
 def _keep(argument: Element) -> Element | Sided | Square:
     """An argument as it is."""
     return argument
-
-
-def find_square_root(number: Fraction) -> Fraction | None:
-    """The square root of a rational number; None where that is none.
-
-    >>> find_square_root(Fraction(4, 9))
-    Fraction(2, 3)
-    """
-    if number < 0:
-        return None
-    root = Fraction(isqrt(number.numerator), isqrt(number.denominator))
-    return root if root**2 == number else None
 
 
 def _mark(element: Element) -> Any:

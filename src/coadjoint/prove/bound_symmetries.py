@@ -23,7 +23,7 @@ Read next: `coadjoint.prove.momenta`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 from coadjoint.derive.mechanics.distribution import Row
@@ -38,6 +38,7 @@ from coadjoint.prove.energy import Balance
 from coadjoint.prove.findings import SHOWN, finding
 from coadjoint.prove.momenta import law_along
 from coadjoint.prove.motion import Motion
+from coadjoint.prove.symmetries import decide_on
 from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
 from coadjoint.spec.model import Symmetry
 
@@ -213,12 +214,7 @@ def _about_action(motion: Motion, action: Action) -> Iterator[Examined]:
     if not (action.sections or motion.kept):  # these hold for every state
         del claims[f"{moved} keeps the constraints"]
     for statement, defects in claims.items():
-        yield statement, "symmetry", partial(_decide, motion, defects)
-
-
-def _decide(motion: Motion, defects: Callable[[], Sequence[Element]]) -> Decision:
-    """Whether defects vanish where the constraints hold."""
-    return decide_zero(defects(), motion.field, motion.where)
+        yield statement, "symmetry", partial(decide_on, motion, defects)
 
 
 def _about_momenta(

@@ -218,7 +218,7 @@ def about_candidates(motion: Motion) -> Iterator[Examined]:
         yield text, "integrals", lambda: Discovery("no search")
         return
     known = known_integrals(motion)
-    search, where = CandidateSearch(motion, known), _almost_all(motion)
+    search, where = CandidateSearch(motion, known), motion.almost_always
     if search.samples.obstacle:
         yield _pass_over(search)
         return
@@ -253,11 +253,6 @@ def _count(search: CandidateSearch, degrees: Degrees, where: str) -> Examined:
     text = f"{size}{most}, {certain} of it {listed}; all are functions of {every}"
     discovery = Discovery(points, where.strip(", "), f"{sure}; for the rest {LUCK}")
     return f"{scope}: {text}", "integrals", lambda: discovery
-
-
-def _almost_all(motion: Motion) -> str:
-    almost = ", for almost all parameters" if motion.setting.parameters else ""
-    return almost + motion.at_all_times
 
 
 def _at_defaults(motion: Motion) -> str:

@@ -142,7 +142,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     density = f"a smooth positive density rho({', '.join(moved)})" if moved else "a constant rho"
     none = (
         f"no measure rho {_form(motion)} with {density} is invariant on any open set of states"
-        f"{_where(samples)}{_generic(motion)}"
+        f"{_where(samples)}{motion.almost_always}"
     )
     if not moved and (value := point.value(measure.divergence)):
         proof = Decision(
@@ -167,7 +167,7 @@ def _refusal(motion: Motion, measure: Measure, samples: Samples, point: Point) -
     if _is_certain(motion, measure, samples, conditions, rank):
         proof = Decision(verdict=Verdict.PROVED, method=method)
         return f"{none}: {text}", "measure", lambda: proof
-    guess = Discovery(method, _generic(motion).lstrip(", "), CHANCE)
+    guess = Discovery(method, motion.almost_always.lstrip(", "), CHANCE)
     return f"{none}: {text}", "measure", lambda: guess
 
 
@@ -221,7 +221,7 @@ def _of_positions(
         return statement, "measure", lambda: ended
     search = Discovery(
         f"ranks of brackets at a random point modulo {samples.prime}",
-        f"near almost every point{_generic(motion)}",
+        f"near almost every point{motion.almost_always}",
         CHANCE,
     )
     statement = (
@@ -248,7 +248,7 @@ def _of_velocities(motion: Motion, measure: Measure, samples: Samples) -> Examin
     names = ", ".join(describe(motion.field, factor) for factor in tried)
     word = motion.fibre_word
     text = f" that is a product of powers of {names}" if names else f" that depends on {word}"
-    ended = Discovery(SEARCHED.format(word), _generic(motion).lstrip(", "))
+    ended = Discovery(SEARCHED.format(word), motion.almost_always.lstrip(", "))
     return f"no invariant measure was found with a density{text}", "measure", lambda: ended
 
 
@@ -269,12 +269,6 @@ def _state(motion: Motion, powers: Powers) -> Examined | None:
         return statement, "measure", lambda: proof
     seen = Discovery(proof.method, error="numbers at some points, no proof")
     return statement, "measure", lambda: seen
-
-
-def _generic(motion: Motion) -> str:
-    """The scope of what was found at random parameters."""
-    almost = ", for almost all parameters" if motion.setting.parameters else ""
-    return almost + motion.at_all_times
 
 
 def _where(samples: Samples) -> str:

@@ -229,6 +229,12 @@ class Motion:
         parts += ["at all times"] * bool(self.setting.time)
         return ", " + " and ".join(parts) if parts else ""
 
+    @property
+    def almost_always(self) -> str:
+        """The scope of what was found at random parameters, as the end of a statement."""
+        almost = ", for almost all parameters" if self.setting.parameters else ""
+        return almost + self.at_all_times
+
 
 def _power(equations: Equations) -> Element:
     """What changes the energy, and by how much."""

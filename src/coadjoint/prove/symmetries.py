@@ -49,7 +49,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         text = f"{{{claim.left.in_one_line}, {claim.right.in_one_line}}}"
         statement = f"{text} = {claim.value.in_one_line}"
         defects = partial(_claimed_bracket, first, claim, known)
-        claimed = [(statement, "bracket", partial(_decide_on, motion, defects))]
+        claimed = [(statement, "bracket", partial(decide_on, motion, defects))]
         yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
 
 
@@ -225,16 +225,16 @@ def _about_transformation(motion: Motion, transformation: Transformation) -> Ite
     goal = "its reverse" if transformation.reverses_time else "itself"
     key, kind, field = ("transformations", name), "transformation", motion.field
     moved = partial(_motion_defects, motion, transformation)
-    examined = [(f"{name} takes the motion to {goal}", kind, partial(_decide_on, motion, moved))]
+    examined = [(f"{name} takes the motion to {goal}", kind, partial(decide_on, motion, moved))]
     yield from mark_accepted(spec, key, examined, field)
     for observable, formula in transformation.exchanges.items():
         exchanged = partial(_exchange_defects, motion, transformation, observable, formula)
         statement = f"{name} takes {observable} to {formula.in_one_line}"
-        examined = [(statement, kind, partial(_decide_on, motion, exchanged))]
+        examined = [(statement, kind, partial(decide_on, motion, exchanged))]
         yield from mark_accepted(spec, (*key, "exchanges", observable), examined, field)
 
 
-def _decide_on(motion: Motion, defects: Callable[[], list[Element]]) -> Decision:
+def decide_on(motion: Motion, defects: Callable[[], Sequence[Element]]) -> Decision:
     """Whether defects are zero where the motion is."""
     return decide_zero(defects(), motion.field, motion.where)
 

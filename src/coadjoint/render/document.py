@@ -22,6 +22,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from markupsafe import Markup
 from markupsafe import escape as escape_html
 
+from coadjoint.errors import make_printable
 from coadjoint.methods import MAPPED, NOISY, STRUCTURED
 from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
@@ -379,15 +380,6 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
 def _escape_unless_safe(escape: Callable[[str], str]) -> Callable[[Any], Any]:
     """``escape`` for every printed value that no template has marked as safe."""
     return lambda value: value if isinstance(value, Markup) else escape(str(value))
-
-
-def make_printable(text: str) -> str:
-    r"""Text without control characters, which a terminal would obey.
-
-    >>> make_printable("a\x1b[2Jb\nc")
-    'a [2Jb c'
-    """
-    return "".join(character if character.isprintable() else " " for character in text)
 
 
 def escape_latex(text: str) -> str:

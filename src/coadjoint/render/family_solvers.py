@@ -13,13 +13,12 @@ from dataclasses import dataclass, replace
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.family_jets import PartJets, is_constant, make_family_jets
 from coadjoint.lower.loops import SUM, Loops, Read
-from coadjoint.lower.program import Call, Symbol, walk
+from coadjoint.lower.program import Call, list_names, walk
 from coadjoint.render.recurrences import (
     Line,
     Stage,
     arrange_first,
     arrange_stages,
-    list_names,
     set_order,
 )
 
@@ -249,7 +248,7 @@ def _list_places(part: PartJets, counts: Counts, components: int) -> Iterator[Pl
     nodes = [each.value for each in jets.fixed]
     nodes += [node for cell in jets.cells for node in (cell.value, cell.tail) if node is not None]
     nodes += [node for rate in jets.rates for node in rate]
-    read = {each.name for node in nodes for each in walk(node) if isinstance(each, Symbol)}
+    read = {name for node in nodes for name in list_names(node)}
     for place in (_find_place(each, counts, components) for each in part.part.reads):
         if place.name in read:
             yield place

@@ -29,6 +29,7 @@ from coadjoint.lower.program import (
     Solution,
     Symbol,
     children,
+    list_names,
     walk,
     with_children,
 )
@@ -196,11 +197,6 @@ def _turned(term: Node) -> Iterator[Node]:
         case Multiply(left=Symbol(name=a), right=Symbol(name=b)):
             first, second = a.removesuffix("[_m]"), b.removesuffix("[_k - _m]")
             yield Multiply(Symbol(f"{second}[_m]"), Symbol(f"{first}[_k - _m]"))
-
-
-def list_names(node: Node) -> Iterator[str]:
-    """The names that a node reads, with their orders."""
-    return (each.name for each in walk(node) if isinstance(each, Symbol))
 
 
 def _recurrence(cell: Cell, total: Symbol, jets: Jets, arrays: frozenset[str]) -> tuple[Node, Node]:

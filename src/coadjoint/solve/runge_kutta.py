@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from coadjoint.solve.steps import (
     Attempt,
     Cubic,
     Lanes,
+    Left,
     find_fixed_step,
     find_step,
     larger,
@@ -39,6 +40,52 @@ def end_where_rates_end(
     """A state at which the rates are not finite is none: the motion ends before it."""
     finite = np.isfinite(rates(lanes, h, state)).all(axis=0)
     return np.where(finite, state, np.nan)
+
+
+class FixedStep(Protocol):
+    """A method with steps of one length, by rates that may have branch points."""
+
+    rates: Callable[[Lanes, Array, Array], Array]
+    branches: bool
+
+
+def follow_cubic(
+    method: FixedStep,
+    lanes: Lanes,
+    h: Array,
+    end: Array,
+    *,
+    first: Callable[[], Array] | None = None,
+    accepted: Mask | None = None,
+    left: Left | None = None,
+) -> Attempt:
+    """A step that was made; between its ends the path is the cubic with the states and rates.
+
+    Args:
+        method: What made it.
+        lanes: Where they are.
+        h: The length of the step.
+        end: Where it leads.
+        first: The rates at the start, where they are known.
+        accepted: Which lanes it takes on; None for all.
+        left: What it leaves besides its end.
+    """
+    rates, none = method.rates, np.zeros(h.shape)
+    path = Cubic(
+        h=h,
+        start=lanes.state,
+        end=end,
+        first=first or (lambda: rates(lanes, none, lanes.state)),
+        last=lambda: rates(lanes, h, end),
+    )
+    return Attempt(
+        took=h if accepted is None else np.where(accepted, h, 0.0),
+        state=end_where_rates_end(rates, lanes, h, end) if method.branches else end,
+        accepted=np.ones(h.shape, bool) if accepted is None else accepted,
+        path=path.follow,
+        coefficients=path.coefficients,
+        left=left,
+    )
 
 
 class RungeKutta4:
@@ -73,16 +120,7 @@ class RungeKutta4:
         total = total + 2.0 * k
         k = self.rates(lanes, h, x + h * k)
         end = x + h * 0.16666666666666666 * (total + k)
-        path = Cubic(
-            h=h, start=x, end=end, first=lambda: first, last=lambda: self.rates(lanes, h, end)
-        )
-        return Attempt(
-            took=h,
-            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
-            accepted=np.ones(h.shape, bool),
-            path=path.follow,
-            coefficients=path.coefficients,
-        )
+        return follow_cubic(self, lanes, h, end, first=lambda: first)
 
 
 class DormandPrince8:

@@ -27,7 +27,7 @@ from dataclasses import field as attribute
 
 from coadjoint.derive.mechanics.configuration import Matrix, coupled_blocks
 from coadjoint.derive.mechanics.driving import explicit_rate
-from coadjoint.derive.setting import Setting, fault
+from coadjoint.derive.setting import Setting, lagrangian_fault
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
 from coadjoint.exact.dense import apply, dot, inverse, pfaffian, transpose
@@ -85,7 +85,7 @@ def invert(setting: Setting, form: Form) -> Matrix:
                 f"omega couples {len(block)} components of the state; expected at most {LARGEST}, "
                 "whose inverse can be written out. Choose coordinates that decouple them."
             )
-            raise _fault(setting, message, names[block[0]])
+            raise lagrangian_fault(setting, message, names[block[0]])
         own = [[omega[i][j] for j in block] for i in block]
         root = field.zero + pfaffian(own)
         if not is_nonzero(field, root):
@@ -100,7 +100,7 @@ def invert(setting: Setting, form: Form) -> Matrix:
                     "that friction alone determines the motion; expected one that has a bracket "
                     "without friction. Add the kinetic energy of these velocities."
                 )
-            raise _fault(setting, message, names[block[0]])
+            raise lagrangian_fault(setting, message, names[block[0]])
         for a, i in enumerate(block):
             for b, j in enumerate(block[:a]):
                 rest = [k for k in range(len(block)) if k not in (a, b)]
@@ -368,7 +368,7 @@ def _refuse(
         f"the Lagrangian does not determine the rates of a state of {state}: {problem}. "
         f"Constraints in their order: {known.chain}. {hint}"
     )
-    return _fault(setting, message, state)
+    return lagrangian_fault(setting, message, state)
 
 
 def write_direction(field: Field, names: Sequence[str], vector: Row) -> str:
@@ -379,10 +379,3 @@ def write_direction(field: Field, names: Sequence[str], vector: Row) -> str:
         for name, x in parts
         if x
     )
-
-
-def _fault(setting: Setting, message: str, found: str) -> DerivationError:
-    """An error that points at the Lagrangian."""
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian"
-    return fault(setting, formula, message, found)

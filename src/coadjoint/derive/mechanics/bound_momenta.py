@@ -26,7 +26,7 @@ from coadjoint.derive.mechanics.bound import Constraints, check_bound
 from coadjoint.derive.mechanics.configuration import Matrix, inverse_in_blocks, mechanics
 from coadjoint.derive.mechanics.external import external_forces
 from coadjoint.derive.mechanics.singular import constraints_of, laws
-from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.setting import Setting, lagrangian_fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import add, apply, product, transpose
@@ -118,13 +118,11 @@ class BoundMomenta:
         )
 
     def _refuse(self, problem: str, _: object) -> DerivationError:
-        formula = self.setting.spec.lagrangian
-        assert formula is not None, "the reader asks for a Lagrangian"
         message = (
             f"the matrix of the brackets of its constraints {problem}, so that the motion has no "
             f"bracket. Constraints in their order: {self.known.chain}. Choose other coordinates."
         )
-        return fault(self.setting, formula, message, formula.text)
+        return lagrangian_fault(self.setting, message)
 
 
 @once
@@ -135,8 +133,6 @@ def bound_momenta(setting: Setting) -> BoundMomenta:
         DerivationError: It is not quadratic in the velocities, or does not determine the motion.
     """
     of, field = mechanics(setting), setting.field
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian"
     names = (*setting.momenta, *setting.advected_names)
     known = constraints_of(of, [name for name in names if name not in setting.state])
     if known is None:
@@ -146,7 +142,7 @@ def bound_momenta(setting: Setting) -> BoundMomenta:
             "are linear in them, on the route first-order. Give the energy of the velocities in "
             "simpler terms, or a [hamiltonian] and the route lie-poisson."
         )
-        raise fault(setting, formula, message, formula.text)
+        raise lagrangian_fault(setting, message)
     known.follow()
     check_bound(setting, names, setting.velocities, known)
     velocities = dict(zip(setting.velocities, known.solution, strict=True))

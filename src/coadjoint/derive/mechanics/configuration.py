@@ -19,7 +19,7 @@ from functools import cached_property, partial
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.mechanics.radial import radial_solution
-from coadjoint.derive.setting import Setting, fault, once, sampled_setting
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault, once, sampled_setting
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text
@@ -123,13 +123,7 @@ class Mechanics:
                     "expected one that is smooth in the velocities, so that momenta do not jump. "
                     "Write abs, sign, min and max of positions and parameters alone."
                 )
-                raise fault(self.setting, self._formula, message, turning[0])
-
-    @property
-    def _formula(self) -> Formula:
-        """What was declared, for messages."""
-        assert self.setting.spec.lagrangian is not None, "the reader asks for a Lagrangian"
-        return self.setting.spec.lagrangian
+                raise lagrangian_fault(self.setting, message, turning[0])
 
     def refusal(self, problem: str, places: Sequence[int]) -> DerivationError:
         """Why velocities cannot be solved for."""
@@ -142,7 +136,7 @@ class Mechanics:
         else:
             remedy = "Write the kinetic energy in simpler functions, or its domain in [domain]."
         message = f"the mass matrix d2l/d({', '.join(names)})2 {problem}. {remedy}"
-        return fault(self.setting, self._formula, message, names[0])
+        return lagrangian_fault(self.setting, message, names[0])
 
 
 SINGULAR = "has determinant 0"

@@ -37,7 +37,7 @@ from coadjoint.derive.mechanics.kinematics import (
 from coadjoint.derive.mechanics.relaxed import relaxed
 from coadjoint.derive.mechanics.solver import Definition, Solve, definitions_under, solve_in_kernel
 from coadjoint.derive.records import Exact, Step, write_entries, write_step
-from coadjoint.derive.setting import Setting, fault
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault
 from coadjoint.errors import DerivationError, LimitError
 from coadjoint.exact import Element
 from coadjoint.exact.ranks import certain_minors, generic_rank
@@ -349,12 +349,9 @@ def _singular(motion: ConstrainedMotion, solve: Solve, size: int) -> DerivationE
             f"{name} from the force, or let it act along the directions that the constraint "
             "leaves free, as friction does.",
         )
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian"
     text = ", ".join(name for name in names if not name.startswith("_"))
-    return fault(
+    return lagrangian_fault(
         setting,
-        formula,
         f"the reduced mass matrix is singular: nothing gives {text}; expected a kinetic energy "
         "that is positive for every velocity that the constraints allow. Add the missing kinetic "
         "term, or constrain the velocity.",

@@ -34,8 +34,7 @@ from coadjoint.derive.mechanics.bound import Form, bind, invert
 from coadjoint.derive.mechanics.configuration import Matrix, inverse_in_blocks, mechanics
 from coadjoint.derive.mechanics.driving import explicit
 from coadjoint.derive.mechanics.external import external_forces
-from coadjoint.derive.setting import Setting, fault, list_components, once
-from coadjoint.errors import DerivationError
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault, list_components, once
 from coadjoint.exact import Element
 from coadjoint.exact.dense import apply
 
@@ -146,7 +145,7 @@ def _whole_form(setting: Setting) -> tuple[dict[str, Element], Form]:
             f"the Lagrangian is not quadratic in {name}; expected one that is at most quadratic in "
             "the velocities on the route first-order. Take euler-lagrange if it is regular."
         )
-        raise _fault(setting, message, name)
+        raise lagrangian_fault(setting, message, name)
     places, free = _places(setting)
     names = [setting.velocities[i] for i in places]
     rest = dict.fromkeys(names, field.zero)
@@ -180,7 +179,7 @@ def _check_still(setting: Setting, form: Mapping[str, Element]) -> None:
                 "move by themselves on the route first-order. Let time and inputs act in the "
                 "potential."
             )
-            raise _fault(setting, message, name)
+            raise lagrangian_fault(setting, message, name)
 
 
 def _places(setting: Setting) -> tuple[list[int], list[int]]:
@@ -203,11 +202,4 @@ def _check_singular(setting: Setting, place: int, momentum: Element) -> None:
             "all coordinates in whose velocities the Lagrangian is regular. Declare the momentum "
             f"of {position}."
         )
-        raise _fault(setting, message, name)
-
-
-def _fault(setting: Setting, message: str, found: str) -> DerivationError:
-    """An error that points at the Lagrangian."""
-    formula = setting.spec.lagrangian
-    assert formula is not None, "the reader asks for a Lagrangian"
-    return fault(setting, formula, message, found)
+        raise lagrangian_fault(setting, message, name)

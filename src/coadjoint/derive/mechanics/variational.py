@@ -30,7 +30,7 @@ from coadjoint.derive.mechanics.distribution import (
 )
 from coadjoint.derive.mechanics.solver import Definition
 from coadjoint.derive.records import Step, write_step
-from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.exact.dense import dot
@@ -81,9 +81,7 @@ def normal_extremals(setting: Setting) -> NormalExtremals:
             f"within the constraints, the second derivative of the Lagrangian by ({named}) "
             f"{problem}. Add the kinetic energy of every velocity that the constraints allow."
         )
-        formula = setting.spec.lagrangian
-        assert formula is not None, "the reader asks for a Lagrangian"
-        return fault(setting, formula, message, named)
+        return lagrangian_fault(setting, message, named)
 
     eta = zip(free, conjugates(field, reduced, free, along, refuse), strict=True)
     return NormalExtremals(

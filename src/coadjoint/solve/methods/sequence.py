@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coadjoint.solve.runge_kutta import end_where_rates_end
-from coadjoint.solve.steps import Attempt, Cubic, Lanes, Left, add_low, find_fixed_step
+from coadjoint.solve.runge_kutta import follow_cubic
+from coadjoint.solve.steps import Attempt, Lanes, Left, add_low, find_fixed_step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,22 +70,10 @@ class Maps:
                     end[row] = end[row] + rises[row]
                 else:
                     end[row], memory[row] = add_low(end[row], memory[row], rises[row])
-        start, none, all_ = lanes.state, np.zeros(h.shape), np.ones(h.shape, bool)
-        path = Cubic(
-            h=h,
-            start=start,
-            end=end,
-            first=lambda: self.rates(lanes, none, start),
-            last=lambda: self.rates(lanes, h, end),
-        )
-        return Attempt(
-            took=h,
-            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
-            accepted=all_,
-            path=path.follow,
-            coefficients=path.coefficients,
-            left=None if memory is None else Left(memory, np.zeros(h.shape, np.uint64), all_),
-        )
+        left = None
+        if memory is not None:
+            left = Left(memory, np.zeros(h.shape, np.uint64), np.ones(h.shape, bool))
+        return follow_cubic(self, lanes, h, end, left=left)
 
 
 def make_maps(module: KernelModule, method: str) -> list[Part]:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coadjoint.methods import STRUCTURED
-from coadjoint.solve.runge_kutta import end_where_rates_end
-from coadjoint.solve.steps import Attempt, Cubic, Lanes, Left, find_fixed_step
+from coadjoint.solve.runge_kutta import follow_cubic
+from coadjoint.solve.steps import Attempt, Lanes, Left, find_fixed_step
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -64,19 +64,5 @@ class Structured:
         assert lanes.memory is not None
         found, memory, solved, sweeps = self.method.advance(lanes, h, start, lanes.memory)
         end = np.where(solved, found, start)
-        none = np.zeros(h.shape)
-        path = Cubic(
-            h=h,
-            start=start,
-            end=end,
-            first=lambda: self.rates(lanes, none, start),
-            last=lambda: self.rates(lanes, h, end),
-        )
-        return Attempt(
-            took=np.where(solved, h, 0.0),
-            state=end_where_rates_end(self.rates, lanes, h, end) if self.branches else end,
-            accepted=solved,
-            path=path.follow,
-            coefficients=path.coefficients,
-            left=Left(memory, sweeps, solved),
-        )
+        left = Left(memory, sweeps, solved)
+        return follow_cubic(self, lanes, h, end, accepted=solved, left=left)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from coadjoint import limits
-from coadjoint.errors import CoadjointError, LimitError, SpecError
+from coadjoint.errors import CoadjointError, LimitError, SpecError, make_printable
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, list_names
 from coadjoint.spec.core.members import Members
 from coadjoint.spec.core.positions import KeyPath, Positions, Span
@@ -198,7 +198,7 @@ class Source:
         line = self.text[first:] if last < 0 else self.text[first:last]
         column = span[0] - first
         cut = max(0, column - _SHOWN // 2) if len(line) > _SHOWN else 0
-        window = "".join(c if c.isprintable() else " " for c in line[cut : cut + _SHOWN])
+        window = make_printable(line[cut : cut + _SHOWN])
         carets = max(1, min(span[1] - span[0], len(window) - (column - cut)))
         indent = len(window) - len(window.lstrip())  # the line is shown without its indentation
         return f"    {window.strip()}\n    {' ' * (column - cut - indent)}{'^' * carets}"

@@ -104,10 +104,10 @@ def read_expression(text: str, name: str) -> Node:
 
 
 def _reader(name: str) -> Reader:
-    return Reader("kernel.py", name, _called_name)
+    return Reader("kernel.py", name, find_function)
 
 
-def _called_name(function: ast.expr) -> str | None:
+def find_function(function: ast.expr) -> str | None:
     """``sqrt`` of ``np.sqrt``."""
     match function:
         case ast.Attribute(ast.Name("np"), called):

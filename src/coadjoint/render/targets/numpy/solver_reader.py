@@ -13,7 +13,8 @@ from collections.abc import Iterator
 
 from coadjoint.lower.program import Node, Symbol
 from coadjoint.render.targets.body import Line, Loop, SolverBody, failure
-from coadjoint.render.targets.python_text import NUMPY_FUNCTIONS, Reader
+from coadjoint.render.targets.numpy.reader import find_function
+from coadjoint.render.targets.python_text import Reader
 
 _ARGUMENTS = ["state", "parameters", "driving", "slopes", "order"]
 _BODY = re.compile(r"^    _parts = .*?^    return path$", re.DOTALL | re.MULTILINE)
@@ -172,14 +173,6 @@ def _is_allowed(item: ast.stmt) -> bool:
                 "BANDS",
             ) or name.startswith(("TABLE_", "STAR_"))
     return False
-
-
-def find_function(function: ast.expr) -> str | None:
-    """``sqrt`` of ``np.sqrt``."""
-    match function:
-        case ast.Attribute(ast.Name("np"), called):
-            return NUMPY_FUNCTIONS.get(called)
-    return None
 
 
 class _Reading(Reader):
