@@ -93,7 +93,7 @@ def test_one_step_methods_go_on_from_the_projected_state():
     for method in ("scipy:DOP853", "scipy:Radau", "scipy:BDF"):
         seen.clear()
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("coadjoint.solve.simulate.Constraints", Watched)
+            patch.setattr("coadjoint.solve.scipy_steps.Constraints", Watched)
             run("veselova", method, rtol=1e-5)
         states = np.array([state for state, _ in seen[method.removeprefix("scipy:")]]).T
         residual = np.abs(system.constraint_residual(np.ascontiguousarray(states))).max()

@@ -7,7 +7,7 @@ import pytest
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import STRUCTURED
-from coadjoint.solve import generated
+from coadjoint.solve import obstacles
 from coadjoint.solve.methods import krylov, newton
 from coadjoint.solve.methods.lie_poisson import LiePoisson
 from coadjoint.systems import (
@@ -298,4 +298,4 @@ def test_a_system_without_a_jacobian_says_so():
     """Rates that loop over a table of coefficients have none that is written out."""
     table = SimpleNamespace(name="so9_body", functions=("rhs",), NOISE=())
     with pytest.raises(KernelArgumentError, match="so9_body has no Jacobian in closed form; expec"):
-        generated.check_newton_applies(table, False)
+        obstacles.check_newton_applies(table, False)

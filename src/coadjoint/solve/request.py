@@ -1,7 +1,7 @@
 """The request: what `System.simulate` was asked for, checked, and the method that will do it.
 
 Comes in: arguments of a person. Goes out: a `Request`, or an error before any work starts. Read
-next: `coadjoint.solve.generated`, and `coadjoint.solve.simulate` for the methods of SciPy.
+next: `coadjoint.solve.generated`, and `coadjoint.solve.scipy_steps` for the methods of SciPy.
 """
 
 from __future__ import annotations

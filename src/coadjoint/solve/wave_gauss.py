@@ -12,7 +12,7 @@ them decides how many there are, never what is found: stages are taken only wher
 itself holds to rounding. What rounding leaves out of a step is added to the next one (Kahan), and
 between two steps the path is a cubic.
 Comes in: rates in Python. Goes out: an `OdeSolver` of SciPy with steps of one length.
-Read next: `coadjoint.solve.simulate`.
+Read next: `coadjoint.solve.scipy_steps`.
 
 Source:
     Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, theorem IV.2.1, and sections
@@ -28,7 +28,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from coadjoint.solve.methods.gauss import TABLEAUS
-from coadjoint.solve.simulate import NOT_SOLVED
+from coadjoint.solve.scipy_steps import NOT_SOLVED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
