@@ -120,7 +120,7 @@ def test_no_sum_reads_a_name_that_is_not_made():
     for rhs in (KIRCHHOFF, PAIR, CANCELLING, SOLVED, SINES):
         jets = make_jets(rhs)
         fixed = {statement.name for statement in jets.fixed}
-        known = {*jets.state, *jets.driving, *jets.parameters, *fixed}
+        known = {*jets.state, *jets.driving, *rhs.parameters, *fixed}
         for cell in jets.cells:
             read = {node.name for node in walk(cell.value) if isinstance(node, Symbol)}
             assert read <= known

@@ -16,7 +16,6 @@ from coadjoint.render.environment import (
     names_read,
     refuse_unsafe,
     render_templates,
-    template_source,
 )
 from coadjoint.render.families import FAMILY_FILES
 from coadjoint.render.header import PLAIN
@@ -85,6 +84,11 @@ def test_text_that_could_leave_its_comment_is_refused(text):
         refuse_unsafe([Quantity("m", (), text, ("m",))])
     assert repr(text) in str(caught.value)
     assert caught.value.found == text
+
+
+def template_source(template):
+    """The text of a template as it stands in its file."""
+    return environment().loader.get_source(environment(), template)[0]
 
 
 def test_templates_name_no_system():

@@ -15,7 +15,7 @@ from coadjoint.errors import SpecError
 from coadjoint.spec import read_spec_text
 from coadjoint.spec.core.parts import Part, TextPart
 from coadjoint.spec.core.shapes import FUNCTIONS
-from coadjoint.spec.page import find_part, find_parts, list_keys, list_marked, write_page
+from coadjoint.spec.page import find_part, find_parts, list_keys, write_page
 from coadjoint.spec.schema import SpecFile
 from coadjoint.spec.tables import TABLES
 
@@ -69,6 +69,11 @@ def list_used(part, data):
                 for table in tables:
                     if isinstance(table, dict) or issubclass(inner, TextPart):
                         yield from list_used(inner, table)
+
+
+def list_marked(prose):
+    """The tables whose keys a prose shows, in order; "" for the head."""
+    return re.findall(r"^\{\{ keys ?([\w.]*) \}\}$", prose, re.MULTILINE)
 
 
 def find_unshown(shown):

@@ -20,8 +20,6 @@ from coadjoint.exact.linear import Span, primes, quotient, rank_modulo
 #: Points at which a rank is taken.
 POINTS = 2
 
-Vector = Sequence[Any]
-
 
 class Invariants:
     """Methods that read `name`, `basis` and `constants` and nothing else."""

@@ -40,7 +40,6 @@ from coadjoint.lower.program import (
 )
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
-from coadjoint.solver_kinds import SOLVER, SolverKind
 
 #: Largest k of + - * / sqrt, and of kernels that call other functions (measured: 2.8 and 7.1).
 K_ARITHMETIC: Final = 4.0
@@ -125,11 +124,6 @@ class Subject:
     system: Any
     targets: tuple[str, ...]
     maps: tuple[Program, ...] = field(default=(), kw_only=True)
-
-    def names_of(self, kind: SolverKind) -> list[str]:
-        """The names of all that solvers of a kind have: functions, and maps of the state alone."""
-        maps = [each.name for each in self.maps] if kind == SOLVER else []
-        return [*self.programs, *maps]
 
     @cached_property
     def work(self) -> dict[str, int]:

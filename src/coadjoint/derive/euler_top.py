@@ -103,12 +103,3 @@ def check_flow(flow: Three, functions: tuple[str, str, str], field: Field, a: Th
                 "fault of coadjoint, please report it.",
                 found=name,
             )
-
-
-def prove_flow() -> None:
-    """Prove the formulas for any coefficients and any state."""
-    field = Field(["x1", "x2", "x3", "a1", "a2", "a3", *FUNCTIONS])
-    a: Three = (field["a1"], field["a2"], field["a3"])
-    x: Three = (field["x1"], field["x2"], field["x3"])
-    functions: Three = (field["_n"], field["_c"], field["_d"])
-    check_flow(add_time(a, x, functions), FUNCTIONS, field, a)

@@ -34,13 +34,11 @@ class Coefficient:
     Attributes:
         trace: The power k of L.
         power: The power of the spectral parameter.
-        scale: What the coefficient of the trace is multiplied by.
-        value: The scaled coefficient without addends of parameters alone.
+        value: The coefficient of the trace without addends of parameters alone, times a number.
     """
 
     trace: int
     power: int
-    scale: Fraction
     value: Element
 
 
@@ -90,8 +88,7 @@ def expanded_traces(setting: Setting, pair: LaxPair) -> Iterator[Coefficient]:
         for power, whole in field.coefficients(trace, pair.spectral).items():
             moving = field.sum(_pick_moving(setting, whole))
             if moving:
-                scale = _scale(field, moving)
-                yield Coefficient(k, power, scale, moving * scale)
+                yield Coefficient(k, power, moving * _scale(field, moving))
 
 
 def traces(field: Field, L: Matrix) -> Iterator[Element]:

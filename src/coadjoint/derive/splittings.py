@@ -38,7 +38,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.flows import Flow, Flows, NoFlowError, list_symbols
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Element, element_text
+from coadjoint.exact import Element
 from coadjoint.exact.denominators import BudgetSpent
 from coadjoint.exact.text import brief_text
 from coadjoint.poisson.structure import PoissonStructure
@@ -84,11 +84,6 @@ class Splitting:
     equations: Equations
     parts: tuple[Part, ...]
     errors: Mapping[tuple[int, ...], float]
-
-    def tell(self) -> tuple[str, ...]:
-        """Each part as text."""
-        field = self.equations.setting.field
-        return tuple(element_text(field, part.energy) for part in self.parts)
 
 
 @dataclass(frozen=True)

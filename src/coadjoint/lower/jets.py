@@ -116,7 +116,6 @@ class Jets:
     Attributes:
         state: Component names, whose coefficients the rates give.
         driving: Names of inputs and time, whose coefficients are given.
-        parameters: Names of the parameters.
         fixed: Statements that depend on parameters alone.
         cells: What is computed at each order, by depth.
         rates: The rate of each component of the state at order 0, and at orders k > 0.
@@ -124,7 +123,6 @@ class Jets:
 
     state: tuple[str, ...]
     driving: tuple[str, ...]
-    parameters: tuple[str, ...]
     fixed: tuple[Statement, ...]
     cells: tuple[Cell, ...]
     rates: tuple[tuple[Node, Node], ...]
@@ -196,7 +194,6 @@ class _Making:
         return Jets(
             state=self.rhs.state,
             driving=(*self.rhs.inputs, *self.rhs.time),
-            parameters=self.rhs.parameters,
             fixed=tuple(self._fixed),
             cells=tuple(sorted(self._cells, key=lambda cell: cell.depth)),
             rates=tuple(rates),

@@ -121,7 +121,6 @@ def make_looped_jets(
     jets = Jets(
         state=rhs.state,
         driving=(*rhs.inputs, *rhs.time),
-        parameters=rhs.parameters,
         fixed=(*rhs.statements_at("parameters"), *scales),
         cells=(),
         rates=(),

@@ -32,10 +32,8 @@ from coadjoint.notation.written import (
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 
-#: Functions that only printed lines have: the rate of a name, a derivative along space, and of
-#: noise the differential of a name, a rate times dt, and a vector times the increment of a process.
-RATE: Final = "rate_of"
-ALONG: Final = "along_space"
+#: Functions that only printed lines of noise have: the differential of a name, a rate times dt, and
+#: a vector times the increment of a process.
 DIFFERENTIAL: Final = "differential_of"
 IN_TIME: Final = "in_time"
 BY_PROCESS: Final = "by_process"

@@ -99,10 +99,3 @@ def compile_templates() -> None:
     for name in environment().list_templates(extensions=["j2"]):
         if not name.startswith(PAGES):
             environment().get_template(name)
-
-
-def template_source(template: str) -> str:
-    """The text of a template as it stands in its file."""
-    loader = environment().loader
-    assert loader, "the environment has one"
-    return loader.get_source(environment(), template)[0]

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 #: The part of the largest component below which no error can be seen.
 ROUNDING = 2.0**-48
-#: Rates at a state, some time after that of the lanes.
-Rates = Callable[["Array", "Array"], "Array"]
 
 
 @dataclass

@@ -40,11 +40,6 @@ def write_page(prose: str) -> str:
     return NOTICE + _NAMED.sub("```toml", _MARK.sub(expand, prose))
 
 
-def list_marked(prose: str) -> list[str]:
-    """The tables whose keys a prose shows, in order; "" for the head."""
-    return [mark[2] or "" for mark in _MARK.finditer(prose) if mark[1] == "keys"]
-
-
 def list_keys(table: str) -> Mapping[str, FieldInfo]:
     """The keys of a table, as ``algebra.extension``; of the head those above all tables."""
     fields = find_part(table).model_fields

@@ -32,7 +32,6 @@ class Generated(Protocol):
     folder: Path
     id: str
     functions: Mapping[str, tuple[int, ...]]
-    elementary: tuple[str, ...]
     levels: Mapping[tuple[str, str], int]
 
     @property
