@@ -11,14 +11,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from coadjoint import pipeline
 from coadjoint.derive import Equations, Setting, derive, make_setting
+from coadjoint.errors import CoadjointError, SpecError
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Program
-from coadjoint.prove import Certificate, claims, prove
+from coadjoint.prove import Certificate, Verdict, claims, prove
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import Spec, read_spec, read_spec_text
 
@@ -97,6 +99,21 @@ def prove_claims(declared: Spec, routes: Sequence[Equations] = ()) -> Certificat
     """The certificate of a spec, for tests that ask neither for integrals nor for measures."""
     with without_searches():
         return prove(declared, routes)
+
+
+def verdicts_of(declared: Spec | str, *changes: tuple[str, str]) -> dict[str, Verdict]:
+    """Verdicts of the certificate of a spec, or of a text with changes, by their statements."""
+    own = declared if isinstance(declared, Spec) else spec(declared, *changes)
+    return {claim.statement: claim.verdict for claim in prove_claims(own).claims}
+
+
+def refused(
+    *changes: tuple[str, str], text: str = RIGID_BODY, kind: type[CoadjointError] = SpecError
+) -> Any:
+    """The error that a changed spec gives when it is read."""
+    with pytest.raises(kind) as caught:
+        spec(text, *changes)
+    return caught.value
 
 
 def render_claims(declared: Spec) -> pipeline.Rendered:

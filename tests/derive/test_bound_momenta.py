@@ -10,7 +10,7 @@ from coadjoint.derive.mechanics import bound_momenta, first_order
 from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
 from tests.derive.test_first_order import FOLLOWS, PINNED, THREE, VORTICES, rates, refuse
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 #: A top of which the axis alone has a moment of inertia; its closed form is below.
 TOP = """
@@ -59,11 +59,6 @@ DRAG = (
 )
 
 
-def verdicts(text, *changes):
-    """The verdicts of a certificate by their statements."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 def test_a_fast_top_precesses_as_in_the_limit_of_no_transverse_inertia():
     """Gamma turns about the axis of the body by Pi3/I - w Gamma3/Pi3: in space that is w/Pi3."""
     turned = POINT["Pi3"] / POINT["I"] - POINT["w"] * POINT["Gamma3"] / POINT["Pi3"]
@@ -84,7 +79,7 @@ def test_what_follows_is_emitted_and_shown():
 @pytest.mark.parametrize("changes", [(), FORCED, ROD])
 def test_everything_about_bound_momenta_is_proved(changes):
     """The law of Euler and Poincare, Dirac's bracket, its Casimirs and the energy."""
-    found = verdicts(TOP, *changes)
+    found = verdicts_of(TOP, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     assert any(each.startswith(STATIONARY) for each in found)
     assert "the Poisson bracket satisfies the Jacobi identity" in found
@@ -153,18 +148,18 @@ def test_a_wrong_law_or_bracket_is_refuted(monkeypatch):
     monkeypatch.setattr(
         bound_momenta, "laws", lambda of: {x: -rate for x, rate in right(of).items()}
     )
-    found = verdicts(TOP)
+    found = verdicts_of(TOP)
     assert Verdict.REFUTED in {v for text, v in found.items() if text.startswith(STATIONARY)}
     monkeypatch.undo()
     monkeypatch.setattr(bound_momenta, "add", lambda tensor, lost: tensor)
-    assert verdicts(TOP)["the motion by first-order is {x, h}"] is Verdict.REFUTED
+    assert verdicts_of(TOP)["the motion by first-order is {x, h}"] is Verdict.REFUTED
 
 
 def test_forces_that_are_pushed_wrongly_are_refuted(monkeypatch):
     """What constraints take up of the forces belongs to the motion."""
     monkeypatch.setattr(bound_momenta, "apply", lambda matrix, a: (0 * matrix[0][0],) * len(matrix))
     statement = "the motion by first-order is {x, h} and the forces"
-    assert verdicts(TOP, *FORCED)[statement] is Verdict.REFUTED
+    assert verdicts_of(TOP, *FORCED)[statement] is Verdict.REFUTED
 
 
 # -- a bracket of the spec, and one of the form ---------------------------------------------------
@@ -191,7 +186,7 @@ EQUAL = "poisson and first-order give the same motion"
 
 def test_a_declared_bracket_and_that_of_the_form_have_to_agree():
     """Both give the same motion; velocities are emitted by either."""
-    found = verdicts(OSCILLATOR)
+    found = verdicts_of(OSCILLATOR)
     assert set(found.values()) == {Verdict.PROVED}
     assert {SAME, LAW, EQUAL} <= found.keys()
     equations = derive(spec(OSCILLATOR))
@@ -210,7 +205,7 @@ def test_a_declared_bracket_and_that_of_the_form_have_to_agree():
 def test_a_form_of_another_bracket_or_energy_is_refuted(change, refuted):
     """With one route alone the bracket is compared all the same."""
     changes = [change, ("[hamiltonian]\nh = ", "#")] if not refuted else [change]
-    found = verdicts(OSCILLATOR, *changes)
+    found = verdicts_of(OSCILLATOR, *changes)
     assert {text for text, verdict in found.items() if verdict is Verdict.REFUTED} == refuted
     assert SAME in found
 
@@ -227,7 +222,7 @@ def test_a_declared_bracket_leaves_nothing_to_follow_and_no_forces():
         spec(OSCILLATOR, forced)
     alone = ('"poisson", "first-order"', '"first-order"')
     damped = ("[hamiltonian]", '[forces]\nv = "-v"\n#')
-    assert verdicts(OSCILLATOR, alone, damped, ('h = "p^2', '# "p^2'))[SAME] is Verdict.PROVED
+    assert verdicts_of(OSCILLATOR, alone, damped, ('h = "p^2', '# "p^2'))[SAME] is Verdict.PROVED
 
 
 # -- forces over coordinates ----------------------------------------------------------------------
@@ -242,7 +237,7 @@ def test_charges_in_a_strong_field_with_drag_spiral_inwards():
     claims = VORTICES[VORTICES.index("[claims]") :]
     changes = (DRAG, (claims, ""))
     np.testing.assert_allclose(rates(derive(spec(VORTICES, *changes)), **point), expected)
-    found = verdicts(VORTICES, *changes)
+    found = verdicts_of(VORTICES, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     assert "d/dt dl/dv = dl/dq - dR/dv along the motion" in found
     assert "the energy changes by -2 R" in found
@@ -258,7 +253,7 @@ def test_friction_enters_the_constraints_of_constraints():
     assert (equations.velocities["z"] - 3 * (1 + s) / 2).expand() == 0
     assert (equations.rates[1] + 3 * (1 + s) / 2).expand() == 0
     assert equations.rates[0] == -s
-    found = verdicts(PINNED, HELD)
+    found = verdicts_of(PINNED, HELD)
     assert set(found.values()) == {Verdict.PROVED}
     assert "the motion by first-order is {x, h} and the forces" in found
 
@@ -267,7 +262,7 @@ def test_a_force_with_the_wrong_sign_is_refuted(monkeypatch):
     """By Lagrange's equations, and by the balance of energy."""
     right = first_order._forces
     monkeypatch.setattr(first_order, "_forces", lambda *given: tuple(-f for f in right(*given)))
-    found = verdicts(PINNED, HELD)
+    found = verdicts_of(PINNED, HELD)
     law = "d/dt dl/dv = dl/dq + f along the motion, with p = dl/dv of the declared momenta"
     assert found[law] is Verdict.REFUTED
     assert found["the energy changes by the power of the forces"] is Verdict.REFUTED

@@ -13,7 +13,7 @@ from coadjoint.derive.reference import Reference
 from coadjoint.derive.routes import euler_lagrange
 from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, verdicts_of
 
 FREE = """
 title = "Free points"
@@ -164,11 +164,11 @@ def test_two_routes_that_solve_in_the_kernel_give_the_same_motion(monkeypatch):
     routes = ('"euler-lagrange"', '"nonholonomic", "euler-lagrange"')
     sample = spec(FREE, COUPLED, *ALONE, routes)
     statement = "nonholonomic and euler-lagrange give the same motion"
-    verdicts = {c.statement: c.verdict for c in prove_claims(sample).claims}
+    verdicts = verdicts_of(sample)
     assert verdicts[statement] is Verdict.PROVED
     right = euler_lagrange.explicit_rate
     monkeypatch.setattr(euler_lagrange, "explicit_rate", lambda *given: right(*given) + 1)
-    verdicts = {c.statement: c.verdict for c in prove_claims(sample).claims}
+    verdicts = verdicts_of(sample)
     assert verdicts[statement] is Verdict.REFUTED
 
 

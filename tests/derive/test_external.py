@@ -13,7 +13,7 @@ from coadjoint.errors import DerivationError, SpecError
 from coadjoint.prove import Verdict
 from coadjoint.prove.energy import Balance
 from tests.sources.test_multipliers import written_out
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec, verdicts_of
 
 OSCILLATORS = """
 title = "Two coupled masses"
@@ -65,11 +65,6 @@ generators = { q = "a*vector(-q2, q1)", p = "a*vector(-p2, p1)" }
 """
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 def same(found, expected):
     """Whether expressions agree as rational functions."""
     return all(sympy.simplify(a - b) == 0 for a, b in zip(found, expected, strict=True))
@@ -85,7 +80,7 @@ def test_a_mass_matrix_turns_forces_into_accelerations():
 
 def test_two_routes_meet_with_forces():
     """Euler-Lagrange in velocities, and Hamilton's equations in momenta of their own."""
-    found = verdicts(OSCILLATORS)
+    found = verdicts_of(OSCILLATORS)
     assert set(found.values()) == {Verdict.PROVED}
     assert any("euler-lagrange and canonical give the same motion" in each for each in found)
     assert "the energy changes by the power of the forces and -2 R" in found
@@ -102,7 +97,7 @@ def test_a_force_on_a_symmetric_matrix_pulls_both_entries_beside_the_diagonal():
         by_name = dict(zip(found.variables, found.rates, strict=True))
         names = ("S11", "S12", "S22", "P11", "P12", "P22")
         assert same([by_name[n] for n in names], [p1, p2, p3, f1, f2 / 2, f3])
-    assert verdicts(MATRIX)["the energy changes by the power of the forces"] is Verdict.PROVED
+    assert verdicts_of(MATRIX)["the energy changes by the power of the forces"] is Verdict.PROVED
 
 
 @pytest.mark.parametrize(
@@ -111,7 +106,7 @@ def test_a_force_on_a_symmetric_matrix_pulls_both_entries_beside_the_diagonal():
 )
 def test_noether_needs_forces_without_moment(force, kept):
     """A central force keeps angular momentum whatever its power; drag does not."""
-    found = verdicts(PLANAR.replace("FORCE", force))
+    found = verdicts_of(PLANAR.replace("FORCE", force))
     law = "J is conserved by Noether's theorem, since its flow keeps h and forces"
     assert any(law in each for each in found) == kept
     assert set(found.values()) == {Verdict.PROVED}
@@ -123,7 +118,7 @@ def test_noether_needs_forces_without_moment(force, kept):
 )
 def test_a_casimir_survives_what_is_tangent_to_its_levels(torque, kept):
     """``d Pi^2/dt = 2 Pi . f``: double brackets keep it, friction does not."""
-    found = verdicts(RIGID_BODY, ("[claims]", f'[forces]\nOmega = "{torque}"\n[claims]'))
+    found = verdicts_of(RIGID_BODY, ("[claims]", f'[forces]\nOmega = "{torque}"\n[claims]'))
     law = "dot(Pi, Pi) is conserved: forces and dissipation do not change it"
     assert (law in found) == kept
     assert found["dot(Pi, Pi) is a Casimir"] is Verdict.PROVED
@@ -133,8 +128,8 @@ def test_a_damped_motion_does_not_keep_its_energy():
     """The claim is refuted, with a point; without the friction it is proved."""
     claimed = ("[claims]", '[claims]\nconserved = ["energy"]')
     damped = ("[claims]", '[dissipation]\nR = "dot(Omega, Omega)"\n[claims]')
-    assert verdicts(RIGID_BODY, claimed)["the energy is conserved"] is Verdict.PROVED
-    assert verdicts(RIGID_BODY, claimed, damped)["energy is conserved"] is Verdict.REFUTED
+    assert verdicts_of(RIGID_BODY, claimed)["the energy is conserved"] is Verdict.PROVED
+    assert verdicts_of(RIGID_BODY, claimed, damped)["energy is conserved"] is Verdict.REFUTED
 
 
 def test_only_what_is_kept_is_shown_as_kept():
@@ -163,7 +158,7 @@ def test_spoiled_forces_break_the_balance_of_energy(spoil, monkeypatch):
     added = external.added_rates
     monkeypatch.setattr(external, "added_rates", lambda setting: spoil(added(setting)))
     declared = shipped("heavy_top_damped")
-    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert found["the energy changes by the power of the forces and -2 R"] is Verdict.REFUTED
 
 

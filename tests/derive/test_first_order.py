@@ -13,7 +13,7 @@ from coadjoint.derive.mechanics.bound import Form, invert
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import DerivationError, SpecError
 from coadjoint.prove import Verdict
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, verdicts_of
 
 VORTICES = """
 title = "Two point vortices"
@@ -131,7 +131,7 @@ def test_a_wrong_sign_of_the_bracket_refutes_lagranges_equations(monkeypatch):
     right = first_order.invert
     wrong = lambda *given: tuple(tuple(-x for x in row) for row in right(*given))  # noqa: E731
     monkeypatch.setattr(first_order, "invert", wrong)
-    verdicts = {c.statement: c.verdict for c in prove_claims(spec(VORTICES)).claims}
+    verdicts = verdicts_of(VORTICES)
     assert verdicts["d/dt dl/dv = dl/dq along the motion"] is Verdict.REFUTED
     assert verdicts["the energy is conserved"] is Verdict.PROVED
 
@@ -139,7 +139,7 @@ def test_a_wrong_sign_of_the_bracket_refutes_lagranges_equations(monkeypatch):
 def test_a_momentum_that_is_no_derivative_refutes_lagranges_equations(monkeypatch):
     """So is ``p = dl/dv`` of the momenta that are declared."""
     statement = "d/dt dl/dv = dl/dq along the motion, with p = dl/dv of the declared momenta"
-    verdicts = {c.statement: c.verdict for c in prove_claims(spec(MIXED)).claims}
+    verdicts = verdicts_of(MIXED)
     assert verdicts[statement] is Verdict.PROVED
     right = first_order._whole_form
 
@@ -148,7 +148,7 @@ def test_a_momentum_that_is_no_derivative_refutes_lagranges_equations(monkeypatc
         return solved, Form(form.names, form.theta, form.energy + setting.field["p"])
 
     monkeypatch.setattr(first_order, "_whole_form", wrong)
-    verdicts = {c.statement: c.verdict for c in prove_claims(spec(MIXED)).claims}
+    verdicts = verdicts_of(MIXED)
     assert verdicts[statement] is Verdict.REFUTED
 
 

@@ -7,7 +7,7 @@ from coadjoint.derive import derive, structure
 from coadjoint.derive.routes import euler_poincare
 from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 #: A body with a mass on a spring that slides along its first axis.
 BODY = """
@@ -54,11 +54,6 @@ Pi, Omega = (sympy.Matrix(sympy.symbols(f"{name}1:4")) for name in ("Pi", "Omega
 INERTIA = sympy.diag(I1, I2 + m * q**2, I3 + m * q**2)
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {each.statement: each.verdict for each in prove_claims(spec(text, *changes)).claims}
-
-
 def test_the_rates_and_the_bracket_are_typed_by_hand():
     """``dPi/dt = Pi x Omega``, ``dq/dt = p/m``, and the centrifugal force on the mass."""
     found = derive(spec(BODY))
@@ -88,7 +83,7 @@ def test_it_is_the_motion_of_the_lagrangian():
 
 def test_the_bracket_of_the_product_is_proved():
     """Jacobi's identity, the motion, the Casimir and claimed brackets."""
-    found = verdicts(BODY)
+    found = verdicts_of(BODY)
     assert set(found.values()) == {Verdict.PROVED}
     jacobi = "the Poisson bracket satisfies the Jacobi identity"
     assert {jacobi, "the motion by lie-poisson is {x, h}", "{q, p} = 1"} <= found.keys()
@@ -104,7 +99,7 @@ def test_the_bracket_of_the_product_is_proved():
 )
 def test_wrong_claims_are_refuted(change, statement):
     """With a point."""
-    assert verdicts(BODY, change)[statement] is Verdict.REFUTED
+    assert verdicts_of(BODY, change)[statement] is Verdict.REFUTED
 
 
 @pytest.mark.parametrize("factor", [0, 2])
@@ -116,7 +111,7 @@ def test_a_spoiled_pair_is_caught(factor, monkeypatch):
         return tuple((x, y, factor * weight) for x, y, weight in true(setting))
 
     monkeypatch.setattr(structure, "canonical_pairs", spoil)
-    assert verdicts(BODY)["{q, p} = 1"] is Verdict.REFUTED
+    assert verdicts_of(BODY)["{q, p} = 1"] is Verdict.REFUTED
 
 
 #: What makes a symmetric matrix of the coordinate; its velocity may be named.
@@ -200,12 +195,12 @@ def test_a_lagrangian_of_both_gives_the_same_rates():
         found = derive(spec(BOTH), route)
         assert tuple(map(str, found.state)) == ("Pi1", "Pi2", "Pi3", "q", "p")
         assert all(sympy.simplify(a - b) == 0 for a, b in zip(found.rates, expected, strict=True))
-    assert set(verdicts(BOTH).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(BOTH).values()) == {Verdict.PROVED}
 
 
 def test_velocities_of_both_may_need_an_iteration():
     """Coupled, with forces, friction, an input and an advected vector; every claim is proved."""
-    found = verdicts(CURVED)
+    found = verdicts_of(CURVED)
     assert set(found.values()) == {Verdict.PROVED}
     same = "euler-poincare and lie-poisson give the same motion, through the Legendre transform"
     assert same in found
@@ -221,7 +216,7 @@ def test_another_force_of_coordinates_is_refuted(monkeypatch):
 
     monkeypatch.setattr(euler_poincare, "_rates_of_coordinates", spoil)
     same = "euler-poincare and lie-poisson give the same motion, through the Legendre transform"
-    assert verdicts(BOTH)[same] is Verdict.REFUTED
+    assert verdicts_of(BOTH)[same] is Verdict.REFUTED
 
 
 def test_a_force_along_a_velocity_of_a_coordinate_acts():
@@ -231,7 +226,7 @@ def test_a_force_along_a_velocity_of_a_coordinate_acts():
         free, found = derive(spec(text)), derive(spec(forced))
         added = [a - b for a, b in zip(found.rates, free.rates, strict=True)]
         assert [sympy.simplify(each) for each in added] == [0, 0, 0, 0, -k * p / m]
-        assert set(verdicts(forced).values()) == {Verdict.PROVED}
+        assert set(verdicts_of(forced).values()) == {Verdict.PROVED}
 
 
 def test_a_coordinate_of_a_lagrangian_needs_its_velocity():
@@ -250,7 +245,7 @@ def test_an_attitude_may_stand_in_the_state_too(role):
     text = BOTH.replace("[variables]", f'[variables]\nR = {{ role = "{role}" }}')
     up = "R[3, 3]" if role == "attitude" else "rotate(R, vector(0, 0, 1))[3]"
     text = text.replace('- k*q^2/2"', f'- k*q^2/2 - {up}*q"').split("[claims]")[0]
-    assert set(verdicts(text).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(text).values()) == {Verdict.PROVED}
     names = derive(spec(text)).observables
     assert {"Pi_spatial1", "Pi_spatial2", "Pi_spatial3"} <= set(names)
     assert not any(name.startswith("p_spatial") for name in names)

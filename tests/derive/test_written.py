@@ -9,8 +9,8 @@ from coadjoint.prove import Verdict, prove
 from coadjoint.prove.almost_poisson import about_reduced_jacobi
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.zero import Discovery
-from coadjoint.spec.reader import read_spec, read_spec_text
-from tests.families import are_equal
+from coadjoint.spec.reader import read_spec
+from tests.families import are_equal, read
 from tests.specs import shipped
 
 CHAIN = """
@@ -69,14 +69,6 @@ k = {}
 h = "sum(i, p[i]^2)/2 + V"
 """
 PLAIN = "k*(q_0^2 + (q_1 - q_0)^2 + (q_2 - q_1)^2 + q_2^2)/2"
-
-
-def read(text, *changes, sizes=None):
-    """The spec of a text with changes."""
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new)
-    return read_spec_text(text, "sample.toml", sizes or {})
 
 
 def by_hand(expression):

@@ -7,7 +7,7 @@ from coadjoint.prove import Verdict
 from coadjoint.prove.almost_poisson import ReducedBracket
 from coadjoint.prove.integrals import is_conserved
 from tests.constrained import PARTICLE
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 #: Lagrange's top in velocities; its brackets are those of Pi = I Omega, divided by I.
 TOP = """
@@ -45,14 +45,9 @@ exchanges = { spin = "-spin" }
 DRAG = ("[claims]", '[forces]\nOmega = "vector(-Omega1, -Omega2, 0)"\n[claims]')
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 def test_a_top_in_velocities_has_what_it_has_in_momenta():
     """{Pi_i, Gamma_j} = -eps_ijk Gamma_k and {Pi_i, Pi_j} = -eps_ijk Pi_k, with Pi = I Omega."""
-    found = verdicts(TOP)
+    found = verdicts_of(TOP)
     assert set(found.values()) == {Verdict.PROVED}
     assert "{Omega, Gamma3} = vector(Gamma2/A, -Gamma1/A, 0)" in found
     assert "spin is their momentum map: {x, spin} = dx/ds" in found
@@ -73,7 +68,7 @@ WRONG = [
 @pytest.mark.parametrize(("old", "new", "statement"), WRONG)
 def test_wrong_claims_about_a_top_in_velocities_are_refuted(old, new, statement):
     """Each of them by itself, with a point."""
-    found = verdicts(TOP, (old, new))
+    found = verdicts_of(TOP, (old, new))
     assert (
         {text for text, verdict in found.items() if verdict is Verdict.REFUTED}
         == {text for text in found if statement in text and found[text] is Verdict.REFUTED}
@@ -91,12 +86,14 @@ def test_a_spoiled_bracket_in_velocities_is_caught(monkeypatch):
         return tuple(map(tuple, tensor))
 
     monkeypatch.setattr(ReducedBracket, "tensor", property(wrong))
-    assert Verdict.REFUTED in verdicts(TOP).values()
+    assert Verdict.REFUTED in verdicts_of(TOP).values()
 
 
 def test_drag_leaves_one_casimir_and_the_spin():
     """Gamma is only turned; Pi . Gamma loses, and the torque has no part along the third axis."""
-    found = verdicts(TOP, DRAG, ('"energy", "Omega3"', '"Omega3"'), ("reverses_time = true\n", ""))
+    found = verdicts_of(
+        TOP, DRAG, ('"energy", "Omega3"', '"Omega3"'), ("reverses_time = true\n", "")
+    )
     assert found["dot(Gamma, Gamma) is conserved: forces and dissipation do not change it"]
     mixed = "A*Omega1*Gamma1 + A*Omega2*Gamma2 + C*Omega3*Gamma3"
     assert found[f"{mixed} changes only by forces and dissipation"] is Verdict.PROVED
@@ -123,24 +120,24 @@ def test_casimirs_of_an_almost_poisson_bracket():
     and not with x.
     """
     claimed = ('conserved = ["energy"]', 'conserved = ["u*sqrt(1 + y^2)"]')
-    assert verdicts(PARTICLE, claimed)["u*sqrt(1 + y^2) is conserved"] is Verdict.PROVED
+    assert verdicts_of(PARTICLE, claimed)["u*sqrt(1 + y^2) is conserved"] is Verdict.PROVED
     no_casimir = ('conserved = ["energy"]', 'casimirs = ["u*sqrt(1 + y^2)"]')
-    assert Verdict.REFUTED in verdicts(PARTICLE, no_casimir).values()
+    assert Verdict.REFUTED in verdicts_of(PARTICLE, no_casimir).values()
     bracket = ('conserved = ["energy"]', 'brackets = { "{x, u*(1 + y^2)}" = "1/m" }')
-    assert verdicts(PARTICLE, bracket)["{x, u*(1 + y^2)} = 1/m"] is Verdict.PROVED
+    assert verdicts_of(PARTICLE, bracket)["{x, u*(1 + y^2)} = 1/m"] is Verdict.PROVED
     other = ('conserved = ["energy"]', 'brackets = { "{z, u*(1 + y^2)}" = "y/m" }')
-    assert verdicts(PARTICLE, other)["{z, u*(1 + y^2)} = y/m"] is Verdict.PROVED
+    assert verdicts_of(PARTICLE, other)["{z, u*(1 + y^2)} = y/m"] is Verdict.PROVED
     turned = ('conserved = ["energy"]', 'brackets = { "{z, u*(1 + y^2)}" = "-y/m" }')
-    assert verdicts(PARTICLE, turned)["{z, u*(1 + y^2)} = -y/m"] is Verdict.REFUTED
+    assert verdicts_of(PARTICLE, turned)["{z, u*(1 + y^2)} = -y/m"] is Verdict.REFUTED
 
 
 def test_a_transformation_of_a_sleigh_keeps_its_constraint():
     """The map x -> -x, z -> -z turns dz = y dx into itself; x -> -x alone does not."""
     both = '[transformations.flip]\nmap = { x = "-x", u = "-u", z = "-z" }\n'
     kept = ('"w == y*u"', '"2*w == 2*y*u"')
-    assert verdicts(PARTICLE + both)["flip takes the motion to itself"] is Verdict.PROVED
+    assert verdicts_of(PARTICLE + both)["flip takes the motion to itself"] is Verdict.PROVED
     whole = both.replace('z = "-z"', 'z = "-z", w = "-w"')
-    assert verdicts(PARTICLE + whole, kept)["flip takes the motion to itself"] is Verdict.PROVED
+    assert verdicts_of(PARTICLE + whole, kept)["flip takes the motion to itself"] is Verdict.PROVED
     for text, changes in ((both.replace(', z = "-z"', ""), ()), (both, (kept,))):
-        found = verdicts(PARTICLE + text, *changes)
+        found = verdicts_of(PARTICLE + text, *changes)
         assert found["flip takes the motion to itself"] is Verdict.REFUTED

@@ -27,7 +27,7 @@ from tests.constrained import (
     derived,
     motion,
 )
-from tests.specs import prove_claims, shipped, spec
+from tests.specs import prove_claims, shipped, spec, verdicts_of
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
@@ -180,9 +180,9 @@ def test_a_reaction_is_an_integral_only_where_it_is_constant():
         '[observables]\npush = "blade_reaction"\n[claims]\nconserved = ["push", ',
     )
     flat = ("w == y*u", "w == k*u")
-    verdict = {c.statement: c.verdict for c in prove_claims(spec(PARTICLE, claimed)).claims}
+    verdict = verdicts_of(PARTICLE, claimed)
     assert verdict["push is conserved"] is Verdict.REFUTED
-    verdict = {c.statement: c.verdict for c in prove_claims(spec(PARTICLE, claimed, flat)).claims}
+    verdict = verdicts_of(PARTICLE, claimed, flat)
     assert verdict["push is conserved"] is Verdict.PROVED
 
 

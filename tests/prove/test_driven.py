@@ -5,17 +5,12 @@ import pytest
 from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.prove import Verdict
 from tests.driven_specs import BELT, BOOST, PENDULUM, ROD, SUSLOV, TOP, VELOCITIES
-from tests.specs import prove_claims, spec
-
-
-def claims(text, *changes):
-    """Verdicts by statement."""
-    return {c.statement: c.verdict for c in prove_claims(spec(text, *changes)).claims}
+from tests.specs import prove_claims, spec, verdicts_of
 
 
 def conserved(text, *changes):
     """The statements on integrals and the energy, all of them proved."""
-    found = claims(text, *changes)
+    found = verdicts_of(text, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     words = ("is conserved", "energy changes")
     return {statement for statement in found if any(each in statement for each in words)}
@@ -23,7 +18,7 @@ def conserved(text, *changes):
 
 def test_the_boost_of_a_free_particle():
     """K = t P - m r depends on time and is conserved; its flow takes motions to motions."""
-    found = claims(BOOST)
+    found = verdicts_of(BOOST)
     assert found["K is conserved"] is Verdict.PROVED
     assert found["the flow of K takes motions to motions, a transformation of positions"]
     assert set(found.values()) == {Verdict.PROVED}
@@ -55,7 +50,7 @@ exchanges = { K = "K" }
 def test_galilean_boosts():
     """A symmetry and a transformation that name time; K keeps its value under both maps."""
     boosted = BOOST.replace("m = {", "c = { shape = [3] }\nm = {") + BOOSTS
-    found = claims(boosted)
+    found = verdicts_of(boosted)
     assert set(found.values()) == {Verdict.PROVED}
     assert "B is their momentum map: {x, B} = dx/ds" in found
     assert not any("Noether" in statement for statement in found)
@@ -85,7 +80,7 @@ reverses_time = true
 
 def test_motions_run_backwards_with_their_time():
     """cos(t) is even, sin(t) is not."""
-    assert set(claims(REVERSED).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(REVERSED).values()) == {Verdict.PROVED}
     with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
         prove_claims(spec(REVERSED, ("cos(t)", "sin(t)"))).require()
 
@@ -101,7 +96,7 @@ def test_where_inputs_have_to_be_constant():
 def test_charts_that_keep_an_input():
     """On the route kaluza-klein the charges p = -u are kept while u is; with time it is refused."""
     further = ('"newton-euler"]', '"newton-euler", "kaluza-klein", "clebsch"]')
-    found = {s for s, v in claims(TOP, further).items() if v is Verdict.PROVED}
+    found = {s for s, v in verdicts_of(TOP, further).items() if v is Verdict.PROVED}
     kept = "the route kaluza-klein keeps p1 = -u1, p2 = -u2, p3 = -u3"
     assert f"{kept} while the inputs are constant" in found
     same = "euler-poincare and clebsch give the same motion, through Pi = p_Gamma x Gamma"
@@ -141,12 +136,12 @@ def test_claimed_energy_of_a_driven_motion_is_refuted():
 def test_forces_need_no_constant_inputs():
     """Their power is what it is at each moment."""
     assert conserved(SUSLOV) == {"the energy changes by the power of the forces"}
-    assert any("not integrable" in statement for statement in claims(SUSLOV))
+    assert any("not integrable" in statement for statement in verdicts_of(SUSLOV))
 
 
 def test_constraints_that_move_with_time():
     """They work; both routes agree."""
-    found = claims(ROD)
+    found = verdicts_of(ROD)
     assert set(found.values()) == {Verdict.PROVED}
     assert (
         "the energy changes by the power of the forces and the work of the moving constraints"
@@ -157,7 +152,7 @@ def test_constraints_that_move_with_time():
 
 def test_a_constraint_that_an_input_moves():
     """With the rate of the input as another one, the same is proved, and needs no condition."""
-    found = claims(BELT)
+    found = verdicts_of(BELT)
     assert set(found.values()) == {Verdict.PROVED}
     assert (
         "the energy changes by the power of the forces and the work of the moving constraints"
@@ -171,7 +166,7 @@ def test_reversed_rates():
         "q*cos(t)", "q*cos(t)*(%s)"
     )
     inputs = 'c = { rate = "b" }\nb = { }\na = { rate = "c" }'  # a -> c -> b
-    assert set(claims(text % (inputs, "a + b + c^2 + t*c")).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(text % (inputs, "a + b + c^2 + t*c")).values()) == {Verdict.PROVED}
     with pytest.raises(ClaimError, match="back takes the motion to its reverse"):
         prove_claims(spec(text % (inputs, "a + b + c"))).require()
 
@@ -179,7 +174,7 @@ def test_reversed_rates():
 @pytest.mark.parametrize("belt", ["vy == t^2*vx", "vy == (t + x)*vx"])
 def test_linear_constraints_that_move_do_no_work(belt):
     """Energy is gained by the force alone; the momentum along the moving field gains <p, dD/dt>."""
-    found = claims(ROD, ("vy == t^2*vx + sin(t)", belt))
+    found = verdicts_of(ROD, ("vy == t^2*vx + sin(t)", belt))
     assert set(found.values()) == {Verdict.PROVED}
     assert "the energy changes by the power of the forces" in found
     assert "the motion of (x, y, M_vx) is the bracket with H and the forces" in found
@@ -215,7 +210,7 @@ M = { section = { vx = "x", vy = "1" } }
 
 def test_a_kept_constraint_that_moves():
     """Its residual keeps its value along the motion, and the momentum equation holds."""
-    found = claims(FLOATING)
+    found = verdicts_of(FLOATING)
     assert set(found.values()) == {Verdict.PROVED}
     assert "the motion keeps belt" in found
 
@@ -246,7 +241,7 @@ pull = "k*dot(x, y)"
 @pytest.mark.parametrize("factor", ["(1 + t)", "k"])
 def test_laws_that_change_are_not_galilean(factor):
     """Time shifts take a law that depends on time, or on an input, to another one."""
-    assert set(claims(PARTICLES, ("FACTOR", "2")).values()) == {Verdict.PROVED}
-    found = claims(PARTICLES, ("FACTOR", factor))
+    assert set(verdicts_of(PARTICLES, ("FACTOR", "2")).values()) == {Verdict.PROVED}
+    found = verdicts_of(PARTICLES, ("FACTOR", factor))
     refuted = {statement for statement, verdict in found.items() if verdict is not Verdict.PROVED}
     assert refuted == {"Newton's law is the same after a time shift of space and time"}

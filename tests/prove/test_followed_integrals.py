@@ -8,7 +8,7 @@ from coadjoint.pipeline import render
 from coadjoint.prove import Verdict
 from coadjoint.solve.folders import load_texts
 from tests.kernels import COMPILER
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 BODY = """
 title = "A body seen from space"
@@ -56,14 +56,9 @@ conserved = ["R*transpose(R)"]
 """
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {each.statement: each.verdict for each in prove_claims(spec(text, *changes)).claims}
-
-
 def test_the_momentum_seen_from_space_is_proved_to_be_conserved():
     """By the quaternion, which may have any length, and by the matrix."""
-    found = verdicts(BODY)
+    found = verdicts_of(BODY)
     assert set(found.values()) == {Verdict.PROVED}
     assert sum(f"{claim} is conserved" in found for claim in CLAIMS) == 4
 
@@ -79,7 +74,7 @@ def test_the_momentum_seen_from_space_is_proved_to_be_conserved():
 )
 def test_wrong_laws_are_refuted(change, refuted):
     """A torque, a matrix that turns from the other side, what moves: each with a point."""
-    found = verdicts(BODY, change)
+    found = verdicts_of(BODY, change)
     assert {s.removesuffix(" is conserved") for s, v in found.items() if v is Verdict.REFUTED} == (
         refuted
     )
@@ -87,8 +82,8 @@ def test_wrong_laws_are_refuted(change, refuted):
 
 def test_it_is_proved_of_constrained_motions():
     """Of velocities as the state; from the other side of space it fails."""
-    assert verdicts(EDGE)["R*transpose(R) is conserved"] is Verdict.PROVED
-    spoiled = verdicts(EDGE, ('rate = "R*hat(Omega)"', 'rate = "2*R*hat(Omega) + R"'))
+    assert verdicts_of(EDGE)["R*transpose(R) is conserved"] is Verdict.PROVED
+    spoiled = verdicts_of(EDGE, ('rate = "R*hat(Omega)"', 'rate = "2*R*hat(Omega) + R"'))
     assert spoiled["R*transpose(R) is conserved"] is Verdict.REFUTED
 
 

@@ -18,7 +18,7 @@ from coadjoint.prove.carried import carry_over
 from coadjoint.prove.integrals import is_conserved
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, motion
 from tests.prove.test_carried import TOP
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, verdicts_of
 
 #: The same constraint as one that gives a velocity, and as one that does not, with two poles.
 ROADS = {
@@ -37,7 +37,7 @@ def entries(*claims):
     text, claimed, *changes = claims
     assert CLAIMS in text
     changed = (CLAIMS, claimed), *changes
-    return {each.statement: each.verdict for each in prove_claims(spec(text, *changed)).claims}
+    return verdicts_of(text, *changed)
 
 
 def projected(form, position, momenta, mass, slope):

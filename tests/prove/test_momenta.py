@@ -8,7 +8,7 @@ from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict, momenta
 from coadjoint.prove.momenta import _changes, about_momenta, momentum_law
 from tests.constrained import BALL, PARTICLE, SLEIGH, motion
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 JELLETT = '[momenta]\njellett = { section = { Omega = "s" } }\n'
 #: The ball with an axis of symmetry through its centre of mass: Routh's sphere.
@@ -108,14 +108,9 @@ turning = { section = { v = "vector(-q2, q1)" } }
 """
 
 
-def statements(text, *changes):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 def test_momenta_of_free_motions():
     """<Pi, Gamma> and Pi3 of a symmetric top; m (q1 v2 - q2 v1) under a central force."""
-    found = statements(FREE_TOP)
+    found = verdicts_of(FREE_TOP)
     assert set(found.values()) == {Verdict.PROVED}
     assert "vertical is conserved, by its momentum equation" in found
     assert "spin is conserved" in found
@@ -128,17 +123,17 @@ def test_momenta_of_free_motions():
     q1, q2, v1, v2, m = sympy.symbols("q1 q2 v1 v2 m")
     turning = derive(spec(CENTRAL)).observables["turning"]
     assert sympy.expand(turning - m * (q1 * v2 - q2 * v1)) == 0
-    assert statements(CENTRAL)["turning is conserved, by its momentum equation"]
+    assert verdicts_of(CENTRAL)["turning is conserved, by its momentum equation"]
 
 
 def test_momentum_equations_with_forces():
     """A torque -d Omega loses d Gamma . Omega; gravity beside the centre moves q x p."""
     torque = ("[momenta]", '[forces]\nOmega = "-2*Omega"\n[momenta]')
-    found = statements(FREE_TOP, torque, ('"spin"', ""))
+    found = verdicts_of(FREE_TOP, torque, ('"spin"', ""))
     assert set(found.values()) == {Verdict.PROVED}
     assert "dspin/dt = -2*Pi3/C" in found
     pulled = ("- dot(q, q)^2", "- dot(q, q)^2 - m*q2")
-    found = statements(CENTRAL, pulled)
+    found = verdicts_of(CENTRAL, pulled)
     assert found["dturning/dt = -q1*m"] is Verdict.PROVED
 
 
@@ -152,7 +147,7 @@ def test_spoiled_momentum_equations_of_free_motions_are_refuted(text, factor, mo
     name = "Omega" if "Omega" in text else "v"
     size = 'vector(1, 2, 3)"' if name == "Omega" else 'vector(1, 2)"'
     pushed = ("[momenta]", f'[forces]\n{name} = "{size}\n[momenta]')
-    found = statements(text, pushed, *([('"spin"', "")] if name == "Omega" else []))
+    found = verdicts_of(text, pushed, *([('"spin"', "")] if name == "Omega" else []))
     names = ("dvertical", "dturning", "vertical is", "turning is")
     laws = [verdict for statement, verdict in found.items() if statement.startswith(names)]
     assert laws == [Verdict.REFUTED]

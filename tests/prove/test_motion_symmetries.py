@@ -5,7 +5,7 @@ import pytest
 from coadjoint.errors import CoadjointError, SpecError
 from coadjoint.prove import Verdict
 from tests.prove.test_reductions import IN_STEP, UNFORCED
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 NEWTON = """
 title = "A particle about a centre"
@@ -62,18 +62,13 @@ generators = { q1 = "s*p2", p1 = "-s*q1" }
 MOVES = "the flow of J takes motions to motions"
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {each.statement: each.verdict for each in prove_claims(spec(text, *changes)).claims}
-
-
 @pytest.mark.parametrize(
     ("text", "kept"),
     [(NEWTON, "J1 is conserved"), (LAX, "J is conserved"), (SECTION, "J is conserved")],
 )
 def test_a_symmetry_of_the_motion_is_proved(text, kept):
     """That it is an action, that it moves motions to motions, and that its function is kept."""
-    found = verdicts(text)
+    found = verdicts_of(text)
     assert set(found.values()) == {Verdict.PROVED}
     assert MOVES in found
     assert kept in found
@@ -92,12 +87,12 @@ WRONG = [
 @pytest.mark.parametrize(("text", "change", "statement"), WRONG)
 def test_wrong_symmetries_of_a_motion_are_refuted(text, change, statement):
     """With a point."""
-    assert verdicts(text, change)[statement] is Verdict.REFUTED
+    assert verdicts_of(text, change)[statement] is Verdict.REFUTED
 
 
 def test_a_function_that_no_symmetry_keeps_is_said_not_to_be_kept():
     """X . u in place of the angular momentum; the flow is what it was."""
-    found = verdicts(NEWTON, ("m*dot(s, cross(x, u))", "m*s[1]*dot(x, u)"))
+    found = verdicts_of(NEWTON, ("m*dot(s, cross(x, u))", "m*s[1]*dot(x, u)"))
     assert found["J1 is not conserved"] is Verdict.PROVED
     assert found[MOVES] is Verdict.PROVED
 
@@ -108,10 +103,10 @@ def test_a_symmetry_may_move_time():
         ('map = "s*(q1^2 + p2^2)/2"', 'map = "0*s"\ntime = "s"'),
         ('q1 = "s*p2", p1 = "-s*q1"', 'q1 = "0*s"'),
     ]
-    found = verdicts(SECTION, *shift)
+    found = verdicts_of(SECTION, *shift)
     assert set(found.values()) == {Verdict.PROVED}
     assert "J is conserved" in found
-    found = verdicts(SECTION, *shift, ('time = "s"', 'time = "s*q1"'))
+    found = verdicts_of(SECTION, *shift, ('time = "s"', 'time = "s*q1"'))
     assert found[MOVES] is Verdict.REFUTED
     free = [
         ("(q1^2 + q2^2)/2 + ", ""),
@@ -119,12 +114,12 @@ def test_a_symmetry_may_move_time():
         ('map = "s*(q1^2 + p2^2)/2"', 'map = "0*s"\ntime = "s*t"'),
         ('q1 = "s*p2", p1 = "-s*q1"', 'q1 = "s*q1"'),
     ]
-    found = verdicts(SECTION, *free)  # q/t is p, which keeps its value
+    found = verdicts_of(SECTION, *free)  # q/t is p, which keeps its value
     assert found[f"{MOVES}, at all times"] is Verdict.PROVED
-    found = verdicts(SECTION, *free, ('time = "s*t"', 'time = "-s*t"'))
+    found = verdicts_of(SECTION, *free, ('time = "s*t"', 'time = "-s*t"'))
     assert found[f"{MOVES}, at all times"] is Verdict.REFUTED
     with pytest.raises(CoadjointError, match="Leave time out"):
-        verdicts(NEWTON, ('"cross(s, x)" }', '"cross(s, x)" }\ntime = "s[1]"'))
+        verdicts_of(NEWTON, ('"cross(s, x)" }', '"cross(s, x)" }\ntime = "s[1]"'))
 
 
 def test_what_follows_on_a_section_is_not_moved():
@@ -135,7 +130,7 @@ def test_what_follows_on_a_section_is_not_moved():
     with pytest.raises(SpecError, match="'q2' is not a variable of the state"):
         spec(SECTION, linear)
     with pytest.raises(CoadjointError, match="Declare the momentum map as map"):
-        verdicts(SECTION, ('map = "s*(q1^2 + p2^2)/2"\n', ""))
+        verdicts_of(SECTION, ('map = "s*(q1^2 + p2^2)/2"\n', ""))
 
 
 FORCED = """
@@ -161,7 +156,7 @@ time = "s"
 
 def test_a_shift_of_time_is_generated_by_the_energy_also_where_forces_act():
     """X = -{x, h}: forces are no part of what the bracket makes of the energy."""
-    found = verdicts(FORCED)
+    found = verdicts_of(FORCED)
     assert set(found.values()) == {Verdict.PROVED}
     assert found["E is their momentum map: {x, E} = dx/ds"] is Verdict.PROVED
     assert "dE/dt = u^2*k, since its flow keeps h" in found

@@ -12,7 +12,7 @@ from coadjoint.errors import SpecError
 from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
 from tests.prove.test_reductions import IN_STEP
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, shipped, spec, verdicts_of
 
 PARAMETER = ("[parameters]", "[parameters]\ns = { shape = [3], default = [1, 2, 3] }")
 TABLE = '[noise]\ndW1 = "s1*Pi1"\ndW2 = "dot(s, Pi)"\n'
@@ -61,11 +61,6 @@ def noisy(table=TABLE, *changes):
     return spec(RIGID_BODY, ("[claims]", f"{table}[claims]"), PARAMETER, *changes)
 
 
-def verdicts(declared):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
-
-
 def fields_of(declared):
     """The fields of the noise, and what Ito's drift has in addition, as SymPy has them."""
     setting = derive(declared).setting
@@ -94,7 +89,7 @@ def test_noise_on_a_canonical_pair_kicks_the_momentum():
 
 def test_a_body_with_noise_keeps_its_momentum_and_not_its_energy():
     """Each law is proved; processes along two axes do not commute, which a point shows."""
-    found = verdicts(noisy())
+    found = verdicts_of(noisy())
     assert set(found.values()) == {Verdict.PROVED}
     assert "the noise keeps dot(Pi, Pi) on each path: {C, h_k} = 0" in found
     assert "the energy changes by the noise, {h, h_k} o dW_k" in found
@@ -105,7 +100,7 @@ def test_a_body_with_noise_keeps_its_momentum_and_not_its_energy():
 
 def test_a_heavy_top_with_noise_keeps_both_casimirs():
     """Noise of a momentum and of a component of the vertical."""
-    found = verdicts(spec(TOP))
+    found = verdicts_of(spec(TOP))
     assert set(found.values()) == {Verdict.PROVED}
     assert "the noise keeps dot(Pi, Gamma) on each path: {C, h_k} = 0" in found
 
@@ -113,14 +108,14 @@ def test_a_heavy_top_with_noise_keeps_both_casimirs():
 @pytest.mark.parametrize("second", ["s2*Pi1^2", "s2*dot(Pi, Pi)", "s1*Pi1"])
 def test_processes_that_commute_are_told(second):
     """Functions of one momentum, and a Casimir."""
-    found = verdicts(noisy(f'[noise]\ndW1 = "s1*Pi1"\ndW2 = "{second}"\n'))
+    found = verdicts_of(noisy(f'[noise]\ndW1 = "s1*Pi1"\ndW2 = "{second}"\n'))
     assert found["dW1 and dW2 commute: [g_k, g_l] = 0"] is Verdict.PROVED
 
 
 def test_noise_by_the_energy_keeps_it():
     """A random clock: the Hamiltonian of the noise is the energy."""
     table = '[noise]\ndW1 = "s1*dot(Pi, inverse(diag(I))*Pi)/2"\n'
-    found = verdicts(noisy(table, ("[claims]", '[claims]\nconserved = ["energy"]')))
+    found = verdicts_of(noisy(table, ("[claims]", '[claims]\nconserved = ["energy"]')))
     assert found["the energy is conserved"] is Verdict.PROVED
 
 
@@ -129,14 +124,14 @@ def test_what_the_noise_changes_is_not_conserved(claim):
     """The energy, and a momentum that the motion of a symmetric body would keep."""
     changes = [("[claims]", f'[claims]\nconserved = ["{claim}"]')]
     changes += [("diag(I)*Omega", "I1*Omega")] * (claim != "energy")
-    assert Verdict.REFUTED in verdicts(noisy('[noise]\ndW2 = "Pi2*Pi3"\n', *changes)).values()
+    assert Verdict.REFUTED in verdicts_of(noisy('[noise]\ndW2 = "Pi2*Pi3"\n', *changes)).values()
     without = spec(RIGID_BODY, *changes)
-    assert set(verdicts(without).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(without).values()) == {Verdict.PROVED}
 
 
 def test_a_double_bracket_with_noise_does_not_only_fall():
     """Casimirs are kept, and no sentence says that the energy never grows."""
-    found = verdicts(noisy(f'[double_bracket]\nG = "s1^2"\n{TABLE}'))
+    found = verdicts_of(noisy(f'[double_bracket]\nG = "s1^2"\n{TABLE}'))
     assert set(found.values()) == {Verdict.PROVED}
     law = "the energy changes by -<P dh, G P dh> and the noise, {h, h_k} o dW_k"
     assert law in found
@@ -161,7 +156,7 @@ def test_spoiled_noise_is_caught(spoil, caught, monkeypatch):
 
     for module in ("derive.mechanics.noise", "prove.noise", "prove.identities"):
         monkeypatch.setattr(f"coadjoint.{module}.noise_fields", wrong)
-    found = verdicts(noisy('[noise]\ndW1 = "dot(s, Pi)"\n'))
+    found = verdicts_of(noisy('[noise]\ndW1 = "dot(s, Pi)"\n'))
     assert any(caught in text for text, said in found.items() if said is Verdict.REFUTED)
 
 
@@ -170,7 +165,7 @@ def test_a_spoiled_drift_of_ito_is_caught(monkeypatch):
     right = noise.ito_drift
     wrong = lambda setting: tuple(2 * each for each in right(setting))  # noqa: E731
     monkeypatch.setattr("coadjoint.prove.noise.ito_drift", wrong)
-    found = verdicts(noisy())
+    found = verdicts_of(noisy())
     said = found["in the sense of Ito the drift has 1/2 sum_k {{x, h_k}, h_k} in addition"]
     assert said is Verdict.REFUTED
 
@@ -242,7 +237,7 @@ def test_inputs_drive_a_motion_with_noise():
     assert fields == {"dW1": [0, a * s * p3, -a * s * p2]}
     assert added == [0, -(a**2) * s**2 * p2 / 2, -(a**2) * s**2 * p3 / 2]
     assert list(derive(declared).rates) == [0, p3 * u, -p2 * u]
-    found = verdicts(declared)
+    found = verdicts_of(declared)
     assert set(found.values()) == {Verdict.PROVED}
     assert KEPT in found
     assert "the energy changes by its explicit dependence on time" not in found
@@ -250,7 +245,7 @@ def test_inputs_drive_a_motion_with_noise():
 
 def test_a_torque_changes_the_casimir_and_the_noise_does_not():
     """The drive does not allow it; with the claim the certificate is refuted."""
-    found = verdicts(spec(DRIVEN, TORQUE))
+    found = verdicts_of(spec(DRIVEN, TORQUE))
     assert found.pop("dot(Pi, Pi) is conserved") is Verdict.REFUTED
     assert set(found.values()) == {Verdict.PROVED}
     assert "dot(Pi, Pi) changes only by forces and dissipation" in found

@@ -8,7 +8,7 @@ from coadjoint.derive.mechanics import external
 from coadjoint.derive.times_vector import find_product
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.prove import Verdict
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, verdicts_of
 
 #: Two oscillators with a spring of any kind between them, driven alike, which move as one.
 IN_STEP = """
@@ -63,15 +63,10 @@ UNFORCED = ('[forces]\np1 = "-c*p1 + u*sin(t)"\np2 = "-c*p2 + u*sin(t)"', "")
 LAW = "the energy changes by the power of the forces"
 
 
-def verdicts(text, *changes):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 @pytest.mark.parametrize("text", [IN_STEP, ABOUT_AN_AXIS])
 def test_a_section_that_forces_keep_is_proved(text):
     """For all inputs and at all times; the energy is that on the section, and so is its balance."""
-    found = verdicts(text)
+    found = verdicts_of(text)
     assert set(found.values()) == {Verdict.PROVED}
     assert sum(each.startswith(("the motion keeps", "the whole motion")) for each in found) == 2
     assert LAW in found
@@ -106,7 +101,7 @@ def test_spoiled_forces_break_the_balance_on_the_section(factor, monkeypatch):
     added = external.added_rates
     spoiled = lambda setting: [factor * force for force in added(setting)]  # noqa: E731
     monkeypatch.setattr(external, "added_rates", spoiled)
-    found = verdicts(IN_STEP)
+    found = verdicts_of(IN_STEP)
     assert found[LAW] is Verdict.REFUTED
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.PROVED
 
@@ -115,12 +110,12 @@ def test_a_double_bracket_acts_on_the_whole():
     """Its conditions are claims about the whole system; one that pulls a single body leaves."""
     change = (UNFORCED, ('["canonical", "poisson"]', '["poisson"]'), ('[time]\nname = "t"\n', ""))
     along = '[double_bracket]\nG = "c*u^2"\n[reduction]'
-    found = verdicts(IN_STEP, *change, ("[reduction]", along))
+    found = verdicts_of(IN_STEP, *change, ("[reduction]", along))
     assert set(found.values()) == {Verdict.PROVED}
     assert "G is positive semidefinite (of the whole system)" in found
     assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
     single = '[double_bracket]\nG = "u^2*diag(vector(c, c, 0, 0))"\n[reduction]'
-    found = verdicts(IN_STEP, *change, ("[reduction]", single))
+    found = verdicts_of(IN_STEP, *change, ("[reduction]", single))
     assert found["the motion keeps q2 = q1, p2 = p1"] is Verdict.REFUTED
 
 
@@ -166,7 +161,7 @@ LOST = f"{LAW} and -2 R"
 def test_rayleighs_function_acts_on_the_whole(more, law, friction):
     """By velocities that momenta give: ``q' = v, p' = -q - dR/dv + u sin t``, with v = p/m."""
     declared = spec(IN_STEP, *RAYLEIGH, *more)
-    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert set(found.values()) == {Verdict.PROVED}
     assert law in found
     q, p, m, u, t = sympy.symbols("q1 p1 m u t")
@@ -183,7 +178,7 @@ def test_a_body_about_an_axis_with_friction_in_its_bearing():
     velocities += 'turn = { role = "velocity", block = ["J1", "J2"] }\n'
     bearing = ('[forces]\nalong = "-c*along"', '[dissipation]\nR = "c*w^2/2 + c*dot(turn, turn)"')
     declared = spec(ABOUT_AN_AXIS, ("[parameters]", f"{velocities}[parameters]"), bearing)
-    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert set(found.values()) == {Verdict.PROVED}
     assert "the energy changes by -2 R" in found
     along, c, inertia = sympy.symbols("along c I3")
@@ -203,7 +198,7 @@ def test_spoiled_friction_breaks_the_balance_on_the_section(factor, monkeypatch)
     added = external.added_rates
     spoiled = lambda setting: [factor * force for force in added(setting)]  # noqa: E731
     monkeypatch.setattr(external, "added_rates", spoiled)
-    assert verdicts(IN_STEP, *RAYLEIGH)[LOST] is Verdict.REFUTED
+    assert verdicts_of(IN_STEP, *RAYLEIGH)[LOST] is Verdict.REFUTED
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from coadjoint.errors import ClaimError, SpecError
 from coadjoint.exact import Condition, Field, Region
 from coadjoint.prove import Verdict
 from coadjoint.prove.semidefinite import decide_semidefinite
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, prove_claims, shipped, spec, verdicts_of
 
 PARAMETER = ("[parameters]", "[parameters]\na = { positive = true, default = 1 }")
 #: Keeps the energy (Morrison 1986): G dh = G Omega = 0.
@@ -33,9 +33,7 @@ def metriplectic(G, S="dot(Pi, Pi)/2"):
 
 def verdicts(*changes):
     """Verdict by statement."""
-    return {
-        claim.statement: claim.verdict for claim in prove_claims(spec(RIGID_BODY, *changes)).claims
-    }
+    return verdicts_of(RIGID_BODY, *changes)
 
 
 def test_a_double_bracket_keeps_casimirs_and_loses_energy():
@@ -349,11 +347,6 @@ def rates(text, *changes):
     return found
 
 
-def statements(text, *changes):
-    """Verdict by statement."""
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
-
-
 @pytest.mark.parametrize(
     ("change", "descends"),
     [((), 1), ((ON_POSITIONS,), 0)],
@@ -367,7 +360,7 @@ def test_a_double_bracket_on_a_canonical_phase_space(change, descends):
     across = [-f - a * p / m for p, f in zip((p1, p2), down, strict=True)]
     for found, expected in zip(rates(PARTICLE, *change), (*along, *across), strict=True):
         assert sympy.simplify(found - expected) == 0
-    found = statements(PARTICLE, *change)
+    found = verdicts_of(PARTICLE, *change)
     assert set(found.values()) == {Verdict.PROVED}
     law = "dh/dt = -<P dh, G P dh>: the energy never grows"
     same = "canonical and euler-lagrange give the same motion, through the Legendre transform"
@@ -391,7 +384,7 @@ def test_friction_heats_a_bath(bracket):
     expected = p / m, -k * q - c * p / m, c * (p / m) ** 2 / T
     for found, typed in zip(rates(HEATING, *changes), expected, strict=True):
         assert sympy.simplify(found - typed) == 0
-    found = statements(HEATING, *changes)
+    found = verdicts_of(HEATING, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     assert {"the energy is conserved", "dS/dt = <dS, G dS>: the entropy never falls"} <= set(found)
 
@@ -408,7 +401,7 @@ def test_friction_heats_a_bath(bracket):
 )
 def test_wrong_baths_are_refuted(change, statement):
     """Each condition can fail."""
-    assert statements(HEATING, change)[statement] is Verdict.REFUTED
+    assert verdicts_of(HEATING, change)[statement] is Verdict.REFUTED
 
 
 @pytest.mark.parametrize("spoil", [-1, 2, 0])
@@ -429,14 +422,14 @@ def test_spoiled_brackets_on_phase_spaces_are_caught(text, laws, spoil, monkeypa
     """On every route, since they share what is added; the claims take it from the spec."""
     relaxed = external.relaxed_rates
     monkeypatch.setattr(external, "relaxed_rates", lambda free: [spoil * x for x in relaxed(free)])
-    found = statements(text)
+    found = verdicts_of(text)
     assert all(found[law] is Verdict.REFUTED for law in laws)
 
 
 def test_velocities_in_place_of_momenta_have_a_double_bracket_of_their_own():
     """G has a row for each component of the state, so that with v = p/m it is another metric."""
     momenta = 'p = { role = "momentum", of = "q" }\n'
-    found = statements(
+    found = verdicts_of(
         PARTICLE.replace(momenta, "").replace('"canonical", "euler-lagrange"', '"euler-lagrange"')
     )
     assert found["the rates are {x, h} + P G P dh"] is Verdict.PROVED

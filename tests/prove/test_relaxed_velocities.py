@@ -10,7 +10,7 @@ from coadjoint.derive.mechanics.relaxed import Relaxed
 from coadjoint.errors import CoadjointError
 from coadjoint.prove import Verdict
 from coadjoint.prove.constrained import motion_of
-from tests.specs import prove_claims, spec
+from tests.specs import spec, verdicts_of
 
 #: With Pi = I Omega, a metric G of Pi is I G I of Omega.
 BODY = """
@@ -65,11 +65,6 @@ LAGRANGE = (
 )
 
 
-def verdicts(*changes):
-    """Verdict by statement of a text and its changes."""
-    return {each.statement: each.verdict for each in prove_claims(spec(*changes)).claims}
-
-
 def rates(text, *changes, at):
     """The rates of the state at a point, in floats."""
     motion = motion_of(derive(spec(text, *changes)))
@@ -103,13 +98,13 @@ def test_a_body_in_velocities_has_the_metriplectic_bracket_of_its_momenta():
 
 def test_what_is_claimed_in_momenta_is_proved_in_velocities():
     """The laws of the energy, of the entropy and of the Casimir."""
-    found = verdicts(BODY)
+    found = verdicts_of(BODY)
     assert set(found.values()) == {Verdict.PROVED}
     assert "dh/dt = -<P dh, G P dh>: the energy never grows" in found
     assert "the rates are {x, h} + P G P dh" in found
     square = "dot(diag(I)*Omega, diag(I)*Omega)"
     assert f"{square} is conserved: forces and dissipation do not change it" in found
-    found = verdicts(BODY, ENTROPY)
+    found = verdicts_of(BODY, ENTROPY)
     assert set(found.values()) == {Verdict.PROVED}
     assert "the energy is conserved" in found
     assert "dS/dt = <dS, G dS>: the entropy never falls" in found
@@ -126,13 +121,13 @@ WRONG = [
 @pytest.mark.parametrize(("changes", "statement"), WRONG)
 def test_wrong_conditions_are_refuted_in_velocities(changes, statement):
     """Each with a point."""
-    assert verdicts(BODY, *changes)[statement] is Verdict.REFUTED
+    assert verdicts_of(BODY, *changes)[statement] is Verdict.REFUTED
 
 
 @pytest.mark.parametrize("changes", [(), (TIMED,), (FORCED,), (LAGRANGE,), (LAGRANGE, TIMED)])
 def test_routes_agree_on_a_double_bracket_of_velocities(changes):
     """Along the frame by T and J, in (q, v) by the bracket there, in (q, p) by the chain rule."""
-    found = verdicts(POLAR, *changes)
+    found = verdicts_of(POLAR, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     agree = sum("give the same motion" in text for text in found)
     assert agree == (1 if LAGRANGE in changes else 3)
@@ -148,7 +143,7 @@ def test_a_spoiled_double_bracket_is_caught(part, monkeypatch):
         return tuple(tuple(-x for x in row) for row in right(self))
 
     monkeypatch.setattr(Relaxed, part, property(wrong))
-    found = verdicts(POLAR)
+    found = verdicts_of(POLAR)
     assert found["nonholonomic and euler-lagrange give the same motion"] is Verdict.REFUTED
     assert found["the rates are {x, h} + P G P dh"] is Verdict.REFUTED
 
@@ -156,7 +151,7 @@ def test_a_spoiled_double_bracket_is_caught(part, monkeypatch):
 def test_a_momentum_along_a_section_gains_what_the_bracket_adds():
     """J = w Omega.(I Omega) is no symmetry: its law has the double bracket in it."""
     along = ("[claims]", '[momenta.J]\nsection = { Omega = "vector(1, 2, 3)" }\n[claims]')
-    found = verdicts(BODY, along)
+    found = verdicts_of(BODY, along)
     assert set(found.values()) == {Verdict.PROVED}
     (law,) = (text for text in found if text.startswith("dJ/dt"))
     assert law == "dJ/dt = Sigma l + <dl/dxi, [xi, Sigma]>"

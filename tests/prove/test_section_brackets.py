@@ -9,8 +9,8 @@ from coadjoint.derive import derive, reductions
 from coadjoint.errors import DerivationError
 from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
-from tests.prove.test_reductions import IN_STEP, UNFORCED, verdicts
-from tests.specs import prove_claims, spec
+from tests.prove.test_reductions import IN_STEP, UNFORCED
+from tests.specs import prove_claims, spec, verdicts_of
 
 #: Two equal bodies that turn alike: the brackets of what vanishes there have rank 2 of 3.
 BODIES = """
@@ -109,7 +109,7 @@ def test_the_bracket_of_a_section_is_typed_by_hand(text, tensor, word):
     found = derive(declared)
     assert sympy.Matrix(found.poisson_tensor) == tensor
     assert any(step.title.endswith(word) for step in found.steps)
-    told = verdicts(text)
+    told = verdicts_of(text)
     assert set(told.values()) == {Verdict.PROVED}
     assert sum(each.startswith(INDUCED) for each in told) == 1
     assert "the Poisson bracket satisfies the Jacobi identity" in told
@@ -117,12 +117,12 @@ def test_the_bracket_of_a_section_is_typed_by_hand(text, tensor, word):
 
 def test_casimirs_of_the_whole_are_integrals_on_the_section():
     """They are Casimirs of the whole, and of the bracket on the section where it has one."""
-    found = verdicts(BODIES)
+    found = verdicts_of(BODIES)
     for name in ("dot(A, A)", "dot(B, B)"):
         assert found[f"{name} is a Casimir of the whole system"] is Verdict.PROVED
         assert found[f"{name} is a Casimir"] is Verdict.PROVED
     bare = HYPERSURFACE + '[claims]\nconserved = ["q2"]\n'
-    assert set(verdicts(bare).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(bare).values()) == {Verdict.PROVED}
 
 
 PT = (derivations_folder() / "pt_rigid_body.toml").read_text()
@@ -134,7 +134,7 @@ COMPLEX = (
 
 def test_casimirs_on_a_section_without_a_bracket():
     """Those of the complex rigid body are integrals; its section is a level set of an energy."""
-    found = verdicts(PT, COMPLEX)
+    found = verdicts_of(PT, COMPLEX)
     assert set(found.values()) == {Verdict.PROVED}
     kept = "dot(x, x) - dot(y, y), restricted to the section, is conserved"
     assert {kept, "dot(x, y) is a Casimir of the whole system"} <= found.keys()
@@ -157,7 +157,7 @@ def test_casimirs_on_a_section_without_a_bracket():
 )
 def test_wrong_claims_are_refuted(text, change, statement):
     """With a point."""
-    assert verdicts(text, change)[statement] is Verdict.REFUTED
+    assert verdicts_of(text, change)[statement] is Verdict.REFUTED
 
 
 @pytest.mark.parametrize("factor", [0, 2, -1])
@@ -171,7 +171,7 @@ def test_a_spoiled_bracket_is_refuted(text, factor, monkeypatch):
         return replace(found, tensor=tuple(tuple(factor * x for x in r) for r in found.tensor))
 
     monkeypatch.setattr(reductions, "induced_bracket", spoil)
-    found = verdicts(text)
+    found = verdicts_of(text)
     (induced,) = (verdict for each, verdict in found.items() if each.startswith(INDUCED))
     assert induced is Verdict.REFUTED
     (motion,) = (verdict for each, verdict in found.items() if " is {x, h}" in each)
@@ -185,7 +185,7 @@ def test_forces_are_projected_along_the_section():
         ('p2 = "-c*p2 + u*sin(t)"', 'q2 = "0*q1"\np2 = "-c*p1"'),
         ('[inputs]\nu = { default = 0 }\n[time]\nname = "t"\n', ""),
     )
-    assert set(verdicts(IN_STEP, *uneven).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(IN_STEP, *uneven).values()) == {Verdict.PROVED}
     found = derive(spec(IN_STEP, *uneven))
     p, c = sympy.symbols("p1 c")
     force = [found.setting.field.normal(x) for x in found.exact.forces]
@@ -195,14 +195,14 @@ def test_forces_are_projected_along_the_section():
 def test_a_hypersurface_has_no_bracket():
     """Its motion is proved without; a claimed bracket is refused, and integrals are the advice."""
     assert derive(spec(HYPERSURFACE)).poisson_tensor is None
-    assert set(verdicts(HYPERSURFACE).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(HYPERSURFACE).values()) == {Verdict.PROVED}
     claim = HYPERSURFACE + '[claims]\nbrackets = { "{q1, p1}" = "1" }\n'
     with pytest.raises(
         DerivationError, match=r"no bracket of its own.*Claim the bracket in a spec"
     ):
         derive(spec(claim))
     whole = claim.replace('[reduction]\nwhere = ["p2"]\nsection = { p2 = "0*p1" }\n', "")
-    assert set(verdicts(whole).values()) == {Verdict.PROVED}
+    assert set(verdicts_of(whole).values()) == {Verdict.PROVED}
 
 
 @pytest.mark.parametrize(("scale", "said"), [("", "generates"), ("/2", "does not generate")])
@@ -213,7 +213,7 @@ def test_what_a_symmetry_generates_on_the_section(scale, said):
         f'[symmetries.J]\nalgebra = "so(2)"\nvector = "s"\nmap = "s*(q1^2 + p2^2){scale}"\n'
         'generators = { q1 = "s*p2", p1 = "-s*q1" }\n[reduction]',
     )
-    found = verdicts(IN_STEP, *WITH_PAIR[:3], turn)
+    found = verdicts_of(IN_STEP, *WITH_PAIR[:3], turn)
     assert set(found.values()) == {Verdict.PROVED}
     (told,) = (each for each in found if "its flow by the bracket" in each)
     assert said in told
@@ -228,7 +228,9 @@ def test_a_lax_pair_is_proved_on_the_section():
     assert pair.endswith("on the route canonical")
     third = (PAIR, PAIR.replace("/2", "/3"))
     (wrong,) = (
-        v for s, v in verdicts(IN_STEP, *WITH_PAIR, third).items() if s == pair.replace("/2", "/3")
+        v
+        for s, v in verdicts_of(IN_STEP, *WITH_PAIR, third).items()
+        if s == pair.replace("/2", "/3")
     )
     assert wrong is Verdict.REFUTED
 
@@ -240,7 +242,7 @@ def test_the_lax_route_of_the_whole_is_restricted():
     spring = (("k = { positive = true, default = 1 }\n", ""), (" + k*(q1 - q2)^4", ""))
     none = ("[parameters]\n", "")
     changes = (*WITH_PAIR, whole, routes, *spring, none)
-    found = verdicts(IN_STEP, *changes)
+    found = verdicts_of(IN_STEP, *changes)
     assert set(found.values()) == {Verdict.PROVED}
     assert "canonical and lax give the same motion" in found
     assert any(s.startswith("dL/dt = [L, M]") and s.endswith("the route lax") for s in found)

@@ -23,6 +23,7 @@ from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests.families import family_of, read
 from tests.kernels import COMPILER
+from tests.solve.test_kinks import arc
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 HEAD = """
@@ -104,17 +105,6 @@ def test_trajectories_of_a_batch_meet_kinks_of_their_own(free):
         one = system.simulate(state[:, n].copy(), (0, 9), samples=4, method="dop853")
         assert np.array_equal(one.state, both.state[:, n])
         assert one.kinks.counts == both.kinks.counts[n]
-
-
-def arc(t):
-    """The motion of ``x'' = -x - sign(x)`` from 1 at rest: arcs about -1 and 1."""
-    quarter = math.acos(0.5)
-    speed, phase = math.sin(quarter) * 2.0, t % (4 * quarter)
-    if phase < quarter:
-        return 2 * math.cos(phase) - 1
-    if phase < 3 * quarter:
-        return 1 - math.cos(phase - quarter) - speed * math.sin(phase - quarter)
-    return math.cos(phase - 3 * quarter) + speed * math.sin(phase - 3 * quarter) - 1
 
 
 @pytest.mark.parametrize("held", [True, False], ids=["held", "control"])

@@ -11,7 +11,7 @@ from coadjoint.derive import derive
 from coadjoint.errors import KernelArgumentError
 from coadjoint.prove import Verdict
 from tests.sources.test_multipliers import closed, written_out
-from tests.specs import prove_claims, spec
+from tests.specs import prove_claims, spec, verdicts_of
 
 #: tanh and 1/cosh of ``q t``, and cosine and sine of ``q t``.
 T, S, C, D, q = sympy.symbols("T S C D q")
@@ -363,7 +363,7 @@ def test_a_dragged_sleigh_goes_the_same_way_more_slowly(table, wrong):
 def test_drag_takes_its_power_from_the_energy(table):
     """The certificate proves the balance; by hand, ``E' = -2 k E``; that E stays is refuted."""
     text = spec(DRAGGED, (FORCES, table + '\n[claims]\nconserved = ["energy"]\n'))
-    verdicts = {claim.statement: claim.verdict for claim in prove_claims(text).claims}
+    verdicts = verdicts_of(text)
     gain = "the power of the forces" if table == FORCES else "-2 R"
     assert verdicts[f"the energy changes by {gain}"] is Verdict.PROVED
     assert verdicts["energy is conserved"] is Verdict.REFUTED
@@ -425,7 +425,7 @@ def test_a_ball_on_a_turntable_goes_round_a_circle(share, expected):
 
 def test_a_turntable_does_work():
     """The energy changes by what the moving constraints do; at rest they do none."""
-    statements = {claim.statement: claim.verdict for claim in prove_claims(spec(TURNTABLE)).claims}
+    statements = verdicts_of(TURNTABLE)
     assert statements["the energy changes by the work of the moving constraints"] is Verdict.PROVED
     still = spec(TURNTABLE, (" - w*y", ""), ("w*x - ", "-"))
     assert "the energy is conserved" in {claim.statement for claim in prove_claims(still).claims}

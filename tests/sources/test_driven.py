@@ -23,7 +23,7 @@ from tests.sources.driven import (
     wheels_rates,
 )
 from tests.sources.textbook import GIVEN, STATES
-from tests.specs import prove_claims, spec, unitless
+from tests.specs import spec, unitless, verdicts_of
 
 
 def system(name):
@@ -173,7 +173,7 @@ def test_what_acts_inside_keeps_the_momentum_in_space(acting, kept):
     text = unitless((derivations_folder() / "spacecraft_wheels.toml").read_text(encoding="utf-8"))
     claimed = 'conserved = ["dot(q, q)", "dot(Pi, Pi)"]'
     declared = spec(text, ('[forces]\nw = "u"', acting), (claimed, 'conserved = ["dot(q, q)"]'))
-    found = {claim.statement: claim.verdict for claim in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert ("Pi_spatial is conserved" in found) == kept
     assert set(found.values()) == {Verdict.PROVED}
 

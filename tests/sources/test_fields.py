@@ -9,7 +9,7 @@ from coadjoint.derive.reference import Reference
 from coadjoint.errors import AlgebraError
 from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
-from tests.specs import derived, prove_claims, spec
+from tests.specs import derived, prove_claims, spec, verdicts_of
 
 
 def system(name):
@@ -20,7 +20,7 @@ def system(name):
 def verdicts(name, *changes):
     """The verdicts of a shipped spec with some changes, by statement."""
     text = (derivations_folder() / f"{name}.toml").read_text(encoding="utf-8")
-    return {claim.statement: claim.verdict for claim in prove_claims(spec(text, *changes)).claims}
+    return verdicts_of(text, *changes)
 
 
 # -- three waves ----

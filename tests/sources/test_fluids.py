@@ -23,7 +23,7 @@ from tests.sources.fluids import (
     vorticity,
 )
 from tests.sources.test_fields import system
-from tests.specs import emitted, prove_claims, shipped, spec
+from tests.specs import emitted, prove_claims, shipped, spec, verdicts_of
 
 PAIRS = [name for name in HARMONICS if name[0] == "S"]
 
@@ -60,7 +60,7 @@ def test_waves_of_rossby_and_haurwitz_turn_about_the_axis(name):
 
 def test_all_three_casimirs_are_found_and_no_more():
     """N - 1 of them; the last one, of degree 4, is found by the engine."""
-    claims = {each.statement: each.verdict for each in prove_claims(shipped("zeitlin_su_4")).claims}
+    claims = verdicts_of(shipped("zeitlin_su_4"))
     proved = [s for s in claims if s.endswith("is a Casimir")]
     assert len(proved) == 3
     assert "every Casimir is a function of the 3 known, near almost every point" in claims

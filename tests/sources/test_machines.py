@@ -10,7 +10,7 @@ from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
 from tests.constrained import derived as constrained
 from tests.sources.test_equations import solved, values
-from tests.specs import derived, prove_claims, shipped, spec
+from tests.specs import derived, prove_claims, shipped, spec, verdicts_of
 
 
 def system(name):
@@ -120,7 +120,7 @@ def test_the_energy_on_a_turntable_is_not_conserved():
     """The wrong twin."""
     text = (derivations_folder() / "ball_on_turntable.toml").read_text(encoding="utf-8")
     declared = spec(text, ('conserved = ["moving"', 'conserved = ["energy", "moving"'))
-    found = {each.statement: each.verdict for each in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert found["energy is conserved"] is Verdict.REFUTED
     assert found["moving is conserved"] is Verdict.PROVED
 

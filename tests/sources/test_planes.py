@@ -9,7 +9,7 @@ from coadjoint.lower.program import run
 from coadjoint.prove import Verdict
 from tests.sources import classical, planes
 from tests.sources.components import cross, product, turned
-from tests.specs import lowered, prove_claims, shipped, spec
+from tests.specs import lowered, shipped, spec, verdicts_of
 
 U = (Fraction(1), Fraction(-2), Fraction(3, 2))
 MOMENTS = tuple(map(Fraction, (3, 4, 5, 7, 6, 2)))
@@ -93,6 +93,6 @@ def test_planes_with_an_axis_of_the_body_are_suslovs_problem():
     """The wrong twin: the energy stays, and the momentum of space does not."""
     text = shipped("veselova_so4").path.read_text(encoding="utf-8")
     declared = spec(text, ("-rotate(Gamma, U)/dot(Gamma, Gamma)", "-U"))
-    found = {each.statement: each.verdict for each in prove_claims(declared).claims}
+    found = verdicts_of(declared)
     assert found["the energy is conserved"] is Verdict.PROVED
     assert found["m is conserved"] is Verdict.REFUTED

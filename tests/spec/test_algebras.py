@@ -7,7 +7,7 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name, same_constants
 from coadjoint.errors import AlgebraError, LimitError, SpecError
-from tests.spec.texts import BY_BRACKETS, BY_MATRICES, refused
+from tests.spec.texts import BY_BRACKETS, BY_MATRICES, check_shown, refused
 from tests.specs import RIGID_BODY, spec
 
 # -- by brackets and by matrices ------------------------------------------------------------------
@@ -54,9 +54,7 @@ def test_declared_matrices_give_the_algebra_of_the_catalogue():
 def test_misfit_is_refused_at_its_place(change, key, found, said):
     """Unknown names, wrong sizes and keys out of place are shown with what would fit."""
     error = refused(change)
-    assert (error.key, error.found) == (key, found)
-    assert said in str(error)
-    assert str(error).endswith("^")
+    check_shown(error, key, found, said)
 
 
 @pytest.mark.parametrize(

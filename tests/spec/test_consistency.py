@@ -2,8 +2,8 @@
 
 import pytest
 
-from coadjoint.errors import LimitError, SpecError
-from tests.specs import RIGID_BODY, spec
+from coadjoint.errors import LimitError
+from tests.specs import RIGID_BODY, refused, spec
 
 KIRCHHOFF = """
 title = "x"
@@ -28,13 +28,6 @@ Pi = { role = "momentum" }
 [hamiltonian]
 h = "dot(Pi, Pi)/2"
 """
-
-
-def refused(*changes, text=RIGID_BODY, kind=SpecError):
-    """The error that a changed spec gives."""
-    with pytest.raises(kind) as caught:
-        spec(text, *changes)
-    return caught.value
 
 
 def test_momenta_alone_serve_the_lie_poisson_route():

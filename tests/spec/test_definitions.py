@@ -1,14 +1,17 @@
 """Definitions: short names that mean what they stand for, put in as trees, never as text."""
 
+from functools import partial
+
 import pytest
 
 from coadjoint import limits
 from coadjoint.derive import derive
-from coadjoint.errors import LimitError, SpecError
+from coadjoint.errors import LimitError
 from coadjoint.spec.core.definitions import expand
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import walk
 from coadjoint.spec.sections.definitions import signature
+from tests import specs
 from tests.specs import RIGID_BODY, spec
 
 TOP = RIGID_BODY.replace(
@@ -33,11 +36,8 @@ work = "W(2*Gamma)" """,
 )
 
 
-def refused(*changes, kind=SpecError):
-    """The error that a changed spec gives."""
-    with pytest.raises(kind) as caught:
-        spec(TOP, *changes)
-    return caught.value
+#: The error that a changed spec gives.
+refused = partial(specs.refused, text=TOP)
 
 
 def guilty(error):

@@ -1,9 +1,12 @@
 """Formulas: each kind sees the names that its theorem allows, and must be a scalar."""
 
+from functools import partial
+
 import pytest
 
-from coadjoint.errors import LimitError, SpecError
+from coadjoint.errors import LimitError
 from coadjoint.spec.core.tree import Name
+from tests import specs
 from tests.specs import RIGID_BODY, spec
 
 TOP = RIGID_BODY.replace(
@@ -23,11 +26,8 @@ conserved = ["energy", "spin + tilt"]""",
 )
 
 
-def refused(*changes, kind=SpecError):
-    """The error that a changed spec gives."""
-    with pytest.raises(kind) as caught:
-        spec(TOP, *changes)
-    return caught.value
+#: The error that a changed spec gives.
+refused = partial(specs.refused, text=TOP)
 
 
 def test_formulas_carry_text_key_and_line():

@@ -4,7 +4,7 @@ import pytest
 
 from coadjoint.algebra import algebra_by_name
 from coadjoint.errors import AlgebraError
-from tests.spec.texts import BY_BRACKETS, refused
+from tests.spec.texts import BY_BRACKETS, check_shown, refused
 from tests.specs import RIGID_BODY, spec
 
 
@@ -48,9 +48,7 @@ def test_entries_may_be_polynomials_of_parameters():
 def test_misfit_is_refused_at_its_place(change, key, found, said):
     """Unknown names, wrong sizes and keys out of place are shown with what would fit."""
     error = refused(change)
-    assert (error.key, error.found) == (key, found)
-    assert said in str(error)
-    assert str(error).endswith("^")
+    check_shown(error, key, found, said)
 
 
 @pytest.mark.parametrize(

@@ -2,17 +2,9 @@
 
 import pytest
 
-from coadjoint.errors import LimitError, SpecError
+from coadjoint.errors import LimitError
 from coadjoint.limits import MESSAGE_ROWS, SPEC_NESTING
-from tests.specs import RIGID_BODY, spec
-
-
-def refused(*changes, text=RIGID_BODY):
-    """The error that a changed spec gives."""
-    with pytest.raises(SpecError) as caught:
-        spec(text, *changes)
-    return caught.value
-
+from tests.specs import RIGID_BODY, refused, spec
 
 CHANGES = [
     # unknown keys

@@ -1,9 +1,8 @@
 """Small specs that declare their own algebra, and the error that a changed one gives."""
 
-import pytest
+from functools import partial
 
-from coadjoint.errors import SpecError
-from tests.specs import spec
+from tests import specs
 
 BY_BRACKETS = """
 title = "Heisenberg"
@@ -36,8 +35,12 @@ h = "dot(Pi, Pi)/2 + Gamma1"
 """
 
 
-def refused(*changes, text=BY_BRACKETS, kind=SpecError):
-    """The error that a changed spec gives."""
-    with pytest.raises(kind) as caught:
-        spec(text, *changes)
-    return caught.value
+#: The error that a changed spec gives.
+refused = partial(specs.refused, text=BY_BRACKETS)
+
+
+def check_shown(error, key, found, said):
+    """A misfit is named with its key, what was found and what would fit, and has a caret."""
+    assert (error.key, error.found) == (key, found)
+    assert said in str(error)
+    assert str(error).endswith("^")
