@@ -1,34 +1,25 @@
 """Lowering, families checked: what was lowered is what was derived.
 
 Comes in: a Family and its `Loops`. Goes out: nothing, or a `CrossCheckError`. Every part is turned
-into a tree again and compared with the family's, or with SymPy's derivative of it: as polynomials
-and quotients where it calls no function, else at points to 60 digits.
-Read next: `coadjoint.lower.families`.
+into a tree again and compared with the family's, or with SymPy's derivative of it.
+Read next: `coadjoint.lower.equal_trees`.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any
 
 import sympy
-from sympy.polys import lex
-from sympy.polys.rings import PolyRing
 
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Action, Family, MatrixMotion, Rises, Symbol, Tree
+from coadjoint.lower.equal_trees import are_equal, find_polynomials
 from coadjoint.lower.loops import GIVEN, PRODUCTS, SUM, Loops, Part, Read
 from coadjoint.lower.program import run
 from coadjoint.methods import ACTION
-
-#: Digits of the comparison where functions are called, and how much of them has to agree.
-_DIGITS: Final = 60
-_CLOSE: Final = sympy.Float(10) ** -45
-#: Points of it, and how many are tried: some have no value.
-_POINTS, _TRIES = 5, 40
 
 
 def check_loops(family: Family, functions: Mapping[str, Loops]) -> None:
@@ -164,7 +155,7 @@ class _Symbols:
         SymPy differentiates `sign` of real symbols alone, and gives it a derivative where it jumps.
         """
         moving = self.vector | dict(sums)
-        polynomials = _find_polynomials([tree], moving.values())
+        polynomials = find_polynomials([tree], moving.values())
         if polynomials and not {*moving} & polynomials.divisors:
             (whole,), ring = polynomials.values, polynomials.ring
             named = [(s, h) for s, h in moving.items() if s in ring.symbols]
@@ -394,7 +385,7 @@ def _check_part(
     if len(computed) != len(trees):
         raise _fail(name, f"{len(computed)} results in the place of {len(trees)}")
     for found, wanted in zip(computed, trees, strict=True):
-        if not _are_equal(sympy.sympify(found), wanted):
+        if not are_equal(sympy.sympify(found), wanted):
             raise _fail(name, f"{found} in the place of {wanted}")
 
 
@@ -405,122 +396,6 @@ def _number(value: Fraction) -> Any:
 def _call(function: str, *arguments: Any) -> Any:
     own = {"abs": sympy.Abs}.get(function) or getattr(sympy, function)
     return own(*arguments)
-
-
-@dataclass(frozen=True)
-class _Polynomials:
-    """Trees as polynomials with rational coefficients.
-
-    They take a tenth of the time of trees that SymPy expands or differentiates.
-
-    Attributes:
-        values: The polynomials.
-        ring: Theirs.
-        relations: What stands for a divisor or a root, which is a symbol there: the power that it
-            is known by, -1 or 2, and what this power is. Later ones may name earlier symbols.
-    """
-
-    values: list[Any]
-    ring: PolyRing
-    relations: Mapping[Symbol, tuple[int, Tree]]
-
-    @property
-    def inverses(self) -> dict[Symbol, Tree]:
-        """The inverses of divisors, by their symbols."""
-        return {own: 1 / base for own, (power, base) in self.relations.items() if power < 0}
-
-    @property
-    def divisors(self) -> set[Symbol]:
-        """Symbols in divisors."""
-        return {s for inverse in self.inverses.values() for s in inverse.free_symbols}
-
-    def is_same(self) -> bool:
-        """Whether two have one value: divisors and roots are taken out of their difference.
-
-        False also where it is not known, since these call functions.
-        """
-        one, other = self.values
-        difference = one - other
-        for own, (power, base) in reversed([*self.relations.items()]):
-            if not difference:
-                return True
-            try:
-                symbol, known = self.ring(own), self.ring.from_expr(base)
-            except ValueError:
-                return False
-            place = self.ring.index(symbol)
-            most, left = difference.degree(symbol), self.ring.zero
-            for exponents, coefficient in difference.terms():
-                k = exponents[place]
-                times, rest = (most - k, 0) if power < 0 else divmod(k, power)
-                exponents = (*exponents[:place], rest, *exponents[place + 1 :])
-                left += self.ring.term_new(exponents, coefficient) * known**times
-            difference = left
-        return not difference
-
-
-def _find_polynomials(
-    trees: Sequence[Tree], others: Iterable[Symbol] = (), *, roots: bool = False
-) -> _Polynomials | None:
-    """Trees as polynomials in all their symbols, in inverses and, if so, in square roots.
-
-    None where they call functions, or have roots that are not wanted.
-    """
-    relations, known = dict[Symbol, tuple[int, Tree]](), dict[tuple[int, Tree], Symbol]()
-
-    def relate(power: int, base: Tree) -> Symbol:
-        symbol = known.setdefault((power, base), sympy.Dummy())
-        relations.setdefault(symbol, (power, base))
-        return symbol
-
-    def stand_in(tree: Tree) -> Tree:
-        base, power = tree.base.expand(), tree.exp
-        if power.q == 2:
-            base, power = relate(2, base), 2 * power
-        return base**power if power > 0 else relate(-1, base) ** -power
-
-    def is_replaced(tree: Tree) -> bool:
-        if not (tree.is_Pow and tree.exp.is_Rational):
-            return False
-        return bool(tree.exp < 0) if tree.exp.is_Integer else roots and tree.exp.q == 2
-
-    plain = [tree.replace(is_replaced, stand_in) for tree in trees]
-    bases = [base for _, base in relations.values()]
-    symbols = {*others}.union(*(tree.free_symbols for tree in (*plain, *bases)))
-    if not symbols:
-        return None
-    ring = PolyRing(sorted(symbols, key=str), sympy.QQ, lex)
-    try:
-        values = [ring.from_expr(tree) for tree in plain]
-    except ValueError:
-        return None
-    return _Polynomials(values, ring, relations)
-
-
-def _are_equal(found: Tree, wanted: Tree) -> bool:
-    """Whether two trees have one value."""
-    if found == wanted:
-        return True
-    polynomials = _find_polynomials([found, wanted], roots=True)
-    if polynomials and polynomials.is_same():
-        return True
-    difference = found - wanted
-    if not difference.has(sympy.Function) and not difference.atoms(sympy.NumberSymbol):
-        return difference.expand() == 0 or bool(sympy.cancel(sympy.together(difference)) == 0)
-    names = sorted(found.free_symbols | wanted.free_symbols, key=str)
-    source, compared = random.Random(1), 0  # noqa: S311
-    for _ in range(_TRIES):
-        # in no order, so that what is larger on one side of a kink is smaller on the other
-        at = {s: sympy.Rational(source.randrange(1, 64), source.randrange(8, 32)) for s in names}
-        one, other = (each.xreplace(at).evalf(_DIGITS) for each in (found, wanted))
-        if not other.is_finite:  # as a slope of sqrt(max(x, 0)) below 0
-            continue
-        if not (one.is_finite and abs(one - other) <= _CLOSE * (1 + abs(other))):
-            return False
-        compared += 1
-        if compared == _POINTS:
-            return True
-    return False
 
 
 def _fail(name: str, problem: str) -> CrossCheckError:

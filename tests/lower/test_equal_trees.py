@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy
 
-from coadjoint.lower.family_check import _are_equal, _find_polynomials
+from coadjoint.lower.equal_trees import are_equal, find_polynomials
 
 x, y, z = sympy.symbols("x y z")
 R = sympy.sqrt(x**2 + y**2)
@@ -26,11 +26,11 @@ PAIRS = {
 def test_equal_trees_are_told_without_expanding(name: str) -> None:
     """Polynomials alone tell that they are equal, and of spoiled ones that they are not."""
     one, other = PAIRS[name]
-    polynomials = _find_polynomials([one, other], roots=True)
+    polynomials = find_polynomials([one, other], roots=True)
     assert polynomials is not None
     assert polynomials.is_same() == (name != "root of a quotient")  # roots of two forms
     for wrong in (1, x, R):
-        spoiled = _find_polynomials([one, other + wrong / 1000], roots=True)
+        spoiled = find_polynomials([one, other + wrong / 1000], roots=True)
         assert spoiled is not None
         assert not spoiled.is_same()
 
@@ -46,9 +46,9 @@ def test_an_independent_evaluation_agrees(name: str) -> None:
 def test_functions_in_divisors_are_compared_where_they_stand() -> None:
     """A divisor that calls a function is no polynomial, and stays what it is."""
     one = 1 / (1 + sympy.sin(x))
-    assert _are_equal(one + y, y + one)
-    assert _are_equal((x + y) ** 2 * one, (x**2 + 2 * x * y + y**2) * one)
-    assert not _are_equal(one + y, y + 2 * one)
+    assert are_equal(one + y, y + one)
+    assert are_equal((x + y) ** 2 * one, (x**2 + 2 * x * y + y**2) * one)
+    assert not are_equal(one + y, y + 2 * one)
 
 
 def test_trees_without_a_value_on_one_side_of_a_kink_are_compared_on_the_other() -> None:
@@ -56,18 +56,18 @@ def test_trees_without_a_value_on_one_side_of_a_kink_are_compared_on_the_other()
     gap = x - y
     largest = gap * (1 + sympy.sign(gap)) / 2
     slope = sympy.sin(z) / sympy.sqrt(largest)
-    assert _are_equal(slope, sympy.sin(z) * sympy.sqrt(largest) / gap * 2 / (1 + sympy.sign(gap)))
+    assert are_equal(slope, sympy.sin(z) * sympy.sqrt(largest) / gap * 2 / (1 + sympy.sign(gap)))
     for wrong in (1 + largest, 1 + largest.xreplace({x: y, y: x})):
-        assert not _are_equal(sympy.sin(z) * (1 + wrong), sympy.sin(z) * 2)
-    assert not _are_equal(slope, slope * 2)
-    assert not _are_equal(slope * sympy.nan, slope)
+        assert not are_equal(sympy.sin(z) * (1 + wrong), sympy.sin(z) * 2)
+    assert not are_equal(slope, slope * 2)
+    assert not are_equal(slope * sympy.nan, slope)
     nowhere = sympy.sin(z) / (sympy.sign(x) - 1)  # all points are positive
-    assert not _are_equal(nowhere, nowhere * (1 + x))
+    assert not are_equal(nowhere, nowhere * (1 + x))
 
 
 def test_slopes_see_what_roots_depend_on() -> None:
     """Where a tree is differentiated, nothing is hidden in a root, and divisors are told."""
-    assert _find_polynomials([R]) is None
-    divided = _find_polynomials([1 / x])
+    assert find_polynomials([R]) is None
+    divided = find_polynomials([1 / x])
     assert divided is not None
     assert divided.divisors == {x}
