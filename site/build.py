@@ -25,7 +25,7 @@ import click
 import coadjoint
 from coadjoint.cli.arguments import shipped_names, spec_path
 from coadjoint.fingerprint import digest, engine_fingerprint
-from coadjoint.render.document import set_text
+from coadjoint.render.prose import set_text
 from coadjoint.resources import templates_folder
 from coadjoint.spec import read_spec
 

@@ -70,7 +70,8 @@ def show_certificate(certificate: Certificate) -> str:
     """Claims with their verdicts in sentences, why some fail, and a table of all of them."""
     from coadjoint.derive.document import symbol_rows
     from coadjoint.prove.certificate import failure_text
-    from coadjoint.render.document import list_names, render_fragment
+    from coadjoint.render.document import render_fragment
+    from coadjoint.render.prose import list_names
 
     state = "holds" if certificate.holds else "does not hold"
     failures = [("", failure_text(each)) for each in certificate.failures]

@@ -11,7 +11,8 @@ from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.tex import to_mathml
 from coadjoint.notation.written import literal
-from coadjoint.render.document import render_document, set_prose, set_text
+from coadjoint.render.document import render_document
+from coadjoint.render.prose import set_prose, set_text
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec
 

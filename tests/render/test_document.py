@@ -24,13 +24,11 @@ from coadjoint.render.document import (
     INDENT,
     WIDTH,
     align,
-    escape_latex,
-    escape_typst,
     leave_out_repeated,
     render_document,
-    set_prose,
     split_sides,
 )
+from coadjoint.render.prose import escape_latex, escape_typst, set_prose
 from coadjoint.resources import systems_folder
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES

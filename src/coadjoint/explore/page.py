@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from coadjoint.explore.scene import describe_scene
 from coadjoint.pipeline import Rendered
-from coadjoint.render.document import set_text
+from coadjoint.render.prose import set_text
 from coadjoint.render.scripts import render_family_script, render_script
 from coadjoint.render.strict import make_environment
 from coadjoint.resources import templates_folder
