@@ -7,7 +7,8 @@ from functools import cache
 
 from coadjoint.derive import Equations, derive, make_setting
 from coadjoint.prove.agreement import about_equality
-from coadjoint.prove.constrained import ConstrainedRates, about_constraints, about_kept
+from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.constraints import about_constraints, about_kept
 from coadjoint.prove.integrals import about_energy
 from coadjoint.prove.zero import Examined
 from tests.specs import spec

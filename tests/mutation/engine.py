@@ -39,7 +39,7 @@ CHECKS = (
         tests=("tests/prove/test_equivalence.py -k velocities",),
     ),
     *of(
-        "prove/constrained",
+        "prove/constraints",
         "same_solves: skip rate_name",
         tests=("tests/prove/test_equivalence.py -k solves",),
     ),

@@ -11,7 +11,8 @@ from coadjoint.derive import derive
 from coadjoint.derive.mechanics.solution_defects import solution_defects
 from coadjoint.derive.mechanics.solver import Solve, solver_names
 from coadjoint.prove import Verdict
-from coadjoint.prove.constrained import ConstrainedRates, about_constraints
+from coadjoint.prove.constrained import ConstrainedRates
+from coadjoint.prove.constraints import about_constraints
 from coadjoint.prove.zero import decide_zero
 from coadjoint.resources import derivations_folder
 from tests.constrained import (

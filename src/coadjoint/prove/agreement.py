@@ -17,7 +17,7 @@ from coadjoint.derive.mechanics.iteration import STEPS
 from coadjoint.exact import Element
 from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.charts import ChartMap, reach
-from coadjoint.prove.constrained import same_accelerations, same_solves
+from coadjoint.prove.constraints import same_accelerations, same_solves
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.duality import about_duality
 from coadjoint.prove.equivalence import LegendreMap

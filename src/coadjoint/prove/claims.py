@@ -32,7 +32,8 @@ from coadjoint.prove.brackets import (
 from coadjoint.prove.candidates import about_candidates
 from coadjoint.prove.carried import carry_over
 from coadjoint.prove.certificate import Certificate, Claim, Finding
-from coadjoint.prove.constrained import about_constraints, about_kept, motion_of
+from coadjoint.prove.constrained import motion_of
+from coadjoint.prove.constraints import about_constraints, about_kept
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.fields import about_fields
 from coadjoint.prove.first_order import about_form, about_stationarity
