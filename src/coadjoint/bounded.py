@@ -23,6 +23,7 @@ from coadjoint.sandbox import run_bounded
 from coadjoint.sandbox_child import prepared_by, report_progress
 
 if TYPE_CHECKING:
+    from coadjoint.pipeline import Rendered
     from coadjoint.spec import Spec
 
 
@@ -289,15 +290,21 @@ def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-@prepared_by("coadjoint.pipeline:prepare")
-def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
-    """Methods of integration, judged, as plain JSON values; runs in a bounded child."""
+def _render(argument: Mapping[str, Any]) -> tuple[Spec, Rendered]:
+    """A spec and its files, the stages told."""
     from coadjoint.pipeline import render
     from coadjoint.spec import read_spec
 
     spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
     stages = ("derive", "lower", "prove", "render")
     rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    return spec, rendered
+
+
+@prepared_by("coadjoint.pipeline:prepare")
+def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
+    """Methods of integration, judged, as plain JSON values; runs in a bounded child."""
+    spec, rendered = _render(argument)
     record = json.loads(rendered.texts["certificate.json"])
     judged = {key: record.get(key, empty) for key, empty in (("structure", {}), ("methods", []))}
     return {"system": spec.name, **judged}
@@ -307,12 +314,8 @@ def methods_record(argument: Mapping[str, Any]) -> dict[str, Any]:
 def header_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """A method as a header, as plain JSON values; runs in a bounded child."""
     from coadjoint.export import export_header
-    from coadjoint.pipeline import render
-    from coadjoint.spec import read_spec
 
-    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
-    stages = ("derive", "lower", "prove", "render")
-    rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    _, rendered = _render(argument)
     return {"text": export_header(rendered, argument["method"])}
 
 
@@ -320,12 +323,8 @@ def header_record(argument: Mapping[str, Any]) -> dict[str, Any]:
 def page_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """A page that simulates a system, as plain JSON values; runs in a bounded child."""
     from coadjoint.explore.page import render_page
-    from coadjoint.pipeline import render
-    from coadjoint.spec import read_spec
 
-    spec = read_spec(Path(argument["path"]), argument.get("sizes", {}))
-    stages = ("derive", "lower", "prove", "render")
-    rendered = render(spec, lambda stage: report_progress(stage, stages.index(stage), len(stages)))
+    spec, rendered = _render(argument)
     return {"text": render_page(spec, rendered)}
 
 

@@ -129,7 +129,7 @@ class Occurrences:
         for kind, (quantities, values) in tables.items():
             if kind == "reconstructed" and len(self.state) == n:
                 continue
-            if name in quantities or name in quantities.components:
+            if quantities.has(name):
                 rows: Array = values()[quantities.rows(name)]
                 return rows
             names += quantities.components

@@ -81,6 +81,10 @@ class Quantities(Mapping[str, Quantity]):
             f"{name!r} is not one of {', '.join(self)}.{hint}", found=name, expected=list(self)
         )
 
+    def has(self, name: str) -> bool:
+        """Whether a name is that of a quantity or of a component."""
+        return name in self._rows
+
     def of_component(self, name: str) -> Quantity:
         """The quantity that a name belongs to, whole or component."""
         if name in self._by_name:

@@ -198,7 +198,7 @@ class Solution:
             return self.time
         # A name of the state first: observables may repeat it, never contradict it.
         for quantities, values in self._tables:
-            if name in quantities or name in quantities.components:
+            if quantities.has(name):
                 rows: Array = values[quantities.rows(name)]
                 whole = quantities[name].shape if name in quantities else ()
                 return rows.reshape(*whole, *rows.shape[1:]) if len(whole) > 1 else rows
@@ -220,10 +220,7 @@ class Solution:
         """Whether ``solution[name]`` is there."""
         return (
             name in ("t", "time")
-            or any(
-                name in quantities or name in quantities.components
-                for quantities, _ in self._tables
-            )
+            or any(quantities.has(name) for quantities, _ in self._tables)
             or name in self.system.find_coordinates(self.parameters)
         )
 
@@ -239,7 +236,7 @@ class Solution:
         return next(
             str(quantities.of_component(name).unit_of(name))
             for quantities, _ in self._tables
-            if name in quantities or name in quantities.components
+            if quantities.has(name)
         )
 
     @property
