@@ -19,6 +19,15 @@ from tests.rolling import FOLLOWED_SLEIGH, built
 SOURCE = np.random.default_rng(7)
 
 
+def find_states(record, steps, after):
+    """States within recorded steps, ``(n, M)``, some times after these began, by Horner."""
+    path = record.path[steps]
+    total = path[:, :, record.degree].T
+    for k in range(record.degree - 1, -1, -1):
+        total = total * after + path[:, :, k].T
+    return total
+
+
 def check_same(found, solution):
     """Two solutions are equal to the last bit, with all that is known about them."""
     for name in ("time", "state", "parameters", "reconstructed", "inputs"):

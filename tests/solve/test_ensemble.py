@@ -12,6 +12,7 @@ from coadjoint.solve.solvers import load
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER
+from tests.solve.runs import find_states
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
 CHOICES = [
@@ -71,13 +72,13 @@ def check_paths(run, record):
         assert record.rows[steps, 1].tolist() == list(range(1, len(steps) + 1))
         assert len(steps) == run.steps[member] > 2
         assert (begun[1:] == (begun + length)[:-1]).all()
-        ends = record.evaluate(steps, length)
+        ends = find_states(record, steps, length)
         joined = np.column_stack([path[1:, :, 0].T, run.state[:, member]])
         assert np.abs(ends - joined).max() < 1e-14
         rates = rigid_body.rhs(np.ascontiguousarray(path[:, :, 0].T), run.parameters)
         assert np.abs(rates - path[:, :, 1].T).max() < 1e-13
         where = np.searchsorted(begun, run.samples, side="right") - 1
-        found = record.evaluate(steps[where], run.samples - begun[where])
+        found = find_states(record, steps[where], run.samples - begun[where])
         assert np.abs(found - run.out[:, member]).max() < 1e-14
 
 
@@ -123,7 +124,7 @@ def test_a_member_stops_within_a_step(target):
         for step in np.flatnonzero(chosen):
             after = when - record.begun[step]
             run.stop(
-                record, step, after, record.evaluate(np.array([step]), np.array([after]))[:, 0]
+                record, step, after, find_states(record, np.array([step]), np.array([after]))[:, 0]
             )
 
     march(stepper(choice, target), run, 0.0, 2, watch=SimpleNamespace(look=watch, terms=None))

@@ -14,6 +14,7 @@ from coadjoint.solve.solvers import load
 from coadjoint.solve.surroundings import Points, Surroundings
 from coadjoint.solve.terms import SOUGHT_MOST, TERMS_MOST, Kind, write_terms
 from tests.kernels import COMPILER
+from tests.solve.runs import find_states
 from tests.solve.systems import OSCILLATOR, build
 
 #: Formulas of an oscillator x = sin(w t)/w with w^2 = g, whose observables are v^2/2 and x^2.
@@ -126,7 +127,7 @@ def count_lost(whole, few, formula):
     parts = np.linspace(0, 1, 33)
     steps = np.arange(whole.count)
     after = whole.length[:, np.newaxis] * parts
-    x, v = whole.evaluate(np.repeat(steps, 33), after.ravel()).reshape(2, -1, 33)
+    x, v = find_states(whole, np.repeat(steps, 33), after.ravel()).reshape(2, -1, 33)
     g, t = G[whole.member][:, np.newaxis], whole.begun[:, np.newaxis] + after
     sign = np.sign(FORMULAS[formula](x, v, g, t))
     kept = {(m, b) for m, b in few.rows[: few.count, [0, 3]].tolist()}

@@ -131,22 +131,6 @@ class Record:
         n = (self.rows.shape[1] - HEAD) // (self.degree + 1)
         return self.rows[: self.count, HEAD:].reshape(self.count, n, self.degree + 1)
 
-    def evaluate(self, steps: NDArray[np.intp], after: Array) -> Array:
-        """States within some steps.
-
-        Args:
-            steps: Which, ``(M,)``.
-            after: Times since these began, ``(M,)``.
-
-        Returns:
-            ``(n, M)``, by Horner, as samples of the Taylor method are.
-        """
-        path = self.path[steps]
-        total = path[:, :, self.degree].T
-        for k in range(self.degree - 1, -1, -1):
-            total = total * after + path[:, :, k].T
-        return np.ascontiguousarray(total)
-
     def append(self, head: Array, path: Array) -> None:
         """Add steps: the numbers of each before its polynomials, ``(HEAD, M)``, and these."""
         rows = self.rows[self.count : self.count + head.shape[1]]
