@@ -77,6 +77,16 @@ class CrossCheckError(CoadjointError):
 
     exit_status = 1
 
+    @classmethod
+    def on(cls, rung: int, system: str, message: str, **parts: Any) -> CrossCheckError:
+        """The failure of a rung, on which nothing that a person writes may fail."""
+        return cls(
+            f"rung {rung}: {system}: {message}. This is a fault of coadjoint, please report it.",
+            rung=rung,
+            system=system,
+            **parts,
+        )
+
 
 class DriftError(CoadjointError):
     """The checked-in generated tree differs from a fresh one."""

@@ -73,6 +73,11 @@ def take_image(record: Image, **parts: Any) -> Image:
     return result
 
 
+def pair(a: SparseMatrix, b: SparseMatrix) -> Any:
+    """``tr(a^T b)``."""
+    return sum(value * b[place] for place, value in a.items() if place in b)
+
+
 def transpose(a: SparseMatrix) -> Matrix:
     """Rows and columns exchanged."""
     return {(c, r): value for (r, c), value in a.items()}

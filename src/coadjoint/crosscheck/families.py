@@ -107,7 +107,9 @@ def crosscheck_family(
     lines = check_family_text(context, texts, printed)
     for target, source in system.load_kernels(chosen).items():
         if source != hashlib.sha256(texts[BUILDS[target].kernel].encode()).hexdigest():
-            raise _fail(system.name, f"the target {target} was not loaded from this text", 3)
+            raise CrossCheckError.on(
+                3, system.name, f"the target {target} was not loaded from this text"
+            )
     figures: dict[str, dict[str, Figures]] = {name: {} for name in loops}
     for equations, splitting in zip_longest(windows, splittings):
         window = Window.of(equations, declared, family, splitting)
@@ -213,7 +215,7 @@ def _check_window(
     points = [Point(*each) for each in zip(states, parameters, inputs, times, strict=True)]
     known = _evaluate(window, loops, points)
     if not known:
-        raise _fail(system.name, f"no point of {name} has a value", 4)
+        raise CrossCheckError.on(4, system.name, f"no point of {name} has a value")
     for target in targets:
         k = ulp = 0.0
         for n, expected in known.items():
@@ -224,12 +226,12 @@ def _check_window(
                 error, last = errors(float(value), bounded)
                 k, ulp = max(k, error), max(ulp, last)
                 if error > largest:
-                    raise _fail(
+                    raise CrossCheckError.on(
+                        4,
                         system.name,
                         f"{name} of {target} for {window.size} members is {float(value)!r} in row "
                         f"{row}, and {bounded.value:.17g} to 50 digits: k = {error:.3g}, at most "
                         f"{largest:g} is allowed",
-                        4,
                     )
         old = figures.get(target, Figures(0.0, 0.0, 0))
         figures[target] = Figures(max(k, old.k), max(ulp, old.ulp), old.points + len(known))
@@ -288,15 +290,17 @@ def _compare_targets(
                     )
                     if different.any():
                         row = np.argwhere(different)[0].tolist()
-                        raise _fail(
+                        raise CrossCheckError.on(
+                            5,
                             system.name,
                             f"{name} of {target} for {size} members differs from NumPy in {row}",
-                            5,
                         )
                     equal[target] += int(_has_values(one).sum())
     nothing = [target for target, count in equal.items() if not count]
     if nothing:
-        raise _fail(system.name, f"nothing of {name} was compared with {nothing[0]}", 5)
+        raise CrossCheckError.on(
+            5, system.name, f"nothing of {name} was compared with {nothing[0]}"
+        )
     return equal
 
 
@@ -327,12 +331,3 @@ def find_differences(
 def _has_values(result: Array) -> NDArray[np.bool_]:
     """Of each member of a batch, whether all rows have a value."""
     return np.asarray(np.isfinite(result).all(axis=0))
-
-
-def _fail(system: str, message: str, rung: int) -> CrossCheckError:
-    """The failure of a rung."""
-    return CrossCheckError(
-        f"rung {rung}: {system}: {message}. This is a fault of coadjoint, please report it.",
-        rung=rung,
-        system=system,
-    )

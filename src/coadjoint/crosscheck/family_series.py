@@ -274,13 +274,12 @@ def check_series(
             near = np.abs(found - exact) <= NEAR * np.abs(exact).max(axis=0, initial=1.0)
             if not near.all():
                 row, order = np.argwhere(~near)[0].tolist()
-                raise CrossCheckError(
-                    f"rung 4: {system.name}: order {order} of {state[row]} is "
-                    f"{float(found[row, order])!r} by the recurrences of {target}, "
-                    f"{float(exact[row, order])!r} by the power series of the equations. This is a "
-                    "fault of coadjoint, please report it.",
-                    rung=4,
-                    system=system.name,
+                raise CrossCheckError.on(
+                    4,
+                    system.name,
+                    f"order {order} of {state[row]} is {float(found[row, order])!r} by the "
+                    f"recurrences of {target}, {float(exact[row, order])!r} by the power series of "
+                    "the equations",
                     target=target,
                 )
             compared += found.size

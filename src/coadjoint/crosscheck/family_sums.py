@@ -53,12 +53,12 @@ def check_blocks(system: Any, loops: Loops) -> float:
     expected = np.stack([_find_rates(loops, arrays, i) for i in range(MEMBERS)], axis=1)
     has_values = np.isfinite(expected).all(axis=0)
     if not has_values.any():
-        raise _fail(system.name, f"{loops.name}: no member has rates")
+        raise CrossCheckError.on(4, system.name, f"{loops.name}: no member has rates")
     difference = np.abs(found - expected)[:, has_values].max()
     difference /= np.abs(expected[:, has_values]).max(initial=1.0)
     if not difference <= _CLOSE:
         problem = f"of {MEMBERS} members differs from a loop over all pairs by {difference:.3g}"
-        raise _fail(system.name, f"{loops.name} {problem} of the largest value")
+        raise CrossCheckError.on(4, system.name, f"{loops.name} {problem} of the largest value")
     return float(difference)
 
 
@@ -95,12 +95,3 @@ def _number(value: Fraction) -> Any:
 
 def _call(function: str, *arguments: Any) -> Any:
     return getattr(np, ELEMENTARY[function].numpy_name)(*arguments)
-
-
-def _fail(system: str, message: str) -> CrossCheckError:
-    """The failure of rung 4."""
-    return CrossCheckError(
-        f"rung 4: {system}: {message}. This is a fault of coadjoint, please report it.",
-        rung=4,
-        system=system,
-    )

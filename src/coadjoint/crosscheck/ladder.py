@@ -231,11 +231,7 @@ def _check_counts(report: Report, function: str, subject: Subject) -> None:
 def _require(held: object, system: str, message: str, rung: int) -> None:
     """A rung that rests on nothing fails."""
     if not held:
-        raise CrossCheckError(
-            f"rung {rung}: {system}: {message}. This is a fault of coadjoint, please report it.",
-            rung=rung,
-            system=system,
-        )
+        raise CrossCheckError.on(rung, system, message)
 
 
 def _share(share: int, program: Program) -> int:

@@ -23,6 +23,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.polyerrors import CoercionFailed, NotAlgebraic
 
 from coadjoint.elementary import ELEMENTARY, Arithmetic
+from coadjoint.exact.factors import to_fraction
 from coadjoint.exact.linear import Span
 from coadjoint.limits import ALGEBRAIC_DEGREE
 
@@ -142,14 +143,14 @@ class Numbers:
     def powers(self, number: Any) -> Mapping[int, Fraction]:
         """Coordinates of a number along the powers of the field's generator."""
         digits = [number] if self.domain.is_QQ else reversed(number.to_list())
-        return {n: _fraction(c) for n, c in enumerate(digits) if c}
+        return {n: to_fraction(c) for n, c in enumerate(digits) if c}
 
     @property
     def minimal(self) -> list[Fraction]:
         """The minimal polynomial of the field's generator, monic, the highest power first."""
         if self.domain.is_QQ:
             return [Fraction(1), Fraction(0)]
-        highest, *rest = map(_fraction, self.domain.mod.to_list())
+        highest, *rest = map(to_fraction, self.domain.mod.to_list())
         return [Fraction(1), *(c / highest for c in rest)]
 
     def coordinates(self, number: Any) -> dict[int, Fraction]:
@@ -339,7 +340,3 @@ def _degree(written: Written, expression: Any) -> int:
     except (NotAlgebraic, NotImplementedError):
         raise NumberError(written.text, "is not known to be an algebraic number") from None
     return int(polynomial.degree())
-
-
-def _fraction(c: Any) -> Fraction:
-    return Fraction(int(c.numerator), int(c.denominator))

@@ -80,7 +80,7 @@ def trace_pairing(algebra: LieAlgebra, form: str, space: str = "algebra") -> Tra
     covectors = [sparse.transpose(m) if space == "transposed" else m for m in algebra.matrices]
     gram = [
         {
-            i: factor * _dot(d if transposed else sparse.transpose(d), e)
+            i: factor * sparse.pair(d if transposed else sparse.transpose(d), e)
             for i, e in enumerate(algebra.matrices)
         }
         for d in covectors
@@ -103,11 +103,6 @@ def _check_known(word: str, known: Sequence[str]) -> None:
         + (f" Did you mean {near[0]!r}?" if near else ""),
         found=word,
     )
-
-
-def _dot(a: sparse.SparseMatrix, b: sparse.SparseMatrix) -> Any:
-    """``tr(a^T b)``."""
-    return sum(value * b[place] for place, value in a.items() if place in b)
 
 
 def _refuse(algebra: LieAlgebra, form: str, space: str, gram: Sequence[dict[int, Any]]) -> None:

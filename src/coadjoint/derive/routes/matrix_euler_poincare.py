@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from coadjoint.algebra.matrices import SparseMatrix
+from coadjoint.algebra.matrices import SparseMatrix, pair
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.emission import emit_in_momenta, show_velocities
 from coadjoint.derive.mechanics.legendre import legendre
@@ -84,9 +84,7 @@ def _rates(setting: Setting) -> tuple[Element, ...]:
 def _momentum(setting: Setting) -> Matrix:
     """M in the span of the e_i with ``tr(M^T e_i) = mu_i``, by the Gram matrix of the basis."""
     basis = setting.algebra.matrices
-    gram = [
-        {j: value for j, b in enumerate(basis) if (value := _pairing(a, b)) != 0} for a in basis
-    ]
+    gram = [{j: value for j, b in enumerate(basis) if (value := pair(a, b)) != 0} for a in basis]
     span, mu = Span(gram), setting.elements(setting.momenta)
     weights = []
     for place in range(len(basis)):
@@ -95,11 +93,6 @@ def _momentum(setting: Setting) -> Matrix:
         weights.append(setting.field.sum(mu[n] * value for n, value in inverse.items()))
     M: Matrix = weigh(weights, setting.algebra.matrices)
     return M
-
-
-def _pairing(a: SparseMatrix, b: SparseMatrix) -> object:
-    """``tr(a^T b)``."""
-    return sum(value * b[place] for place, value in a.items() if place in b)
 
 
 def _trace_with(field: Field, a: Matrix, e: SparseMatrix) -> Element:
