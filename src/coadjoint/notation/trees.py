@@ -80,8 +80,9 @@ def write_tree(
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
                 row = len(shapes.get(text, ())) == 2 and len(indices) == 1
-                whole = attach(name(text, bold=row), below=[number(i) for i in indices])
-                return replace(whole, text=_number(text, indices, shapes.get(text, ())))
+                own = known[text] if text in known else name(text, bold=row)
+                whole = attach(own, below=[number(i) for i in indices])
+                return replace(whole, text=_number(own.text, indices, shapes.get(text, ())))
             case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
                 place = _place(part)

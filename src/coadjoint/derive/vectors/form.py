@@ -36,7 +36,7 @@ def vector_form(equations: Equations) -> VectorForm:
     if equations.spec.family is not None:
         return member_form(equations)
     vocabulary = make_vocabulary(equations)
-    lines, missing = plane_lines(equations), list[str]()
+    lines, missing, told = plane_lines(equations), list[str](), ""
     for target in vocabulary.targets:
         found, left = _find_lines(equations, vocabulary, target)
         lines += found
@@ -46,15 +46,31 @@ def vector_form(equations: Equations) -> VectorForm:
     if missing and equations.spec.constraints:
         balance = balance_lines(equations)
         if balance is not None:
-            lines[:0], missing = balance.lines, []
+            lines = [*balance.lines, *_by_velocity(equations, lines)]
+            missing = []
             shapes |= balance.shapes
             written |= balance.written
+            told = balance.told
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
-    told = f"E_k is the basis of {equations.setting.algebra.name}" if _names_basis(lines) else ""
+    if _names_basis(lines):
+        told = f"E_k is the basis of {equations.setting.algebra.name}"
     return VectorForm(
         lines=tuple(lines), missing=tuple(missing), shapes=shapes, written=written, told=told
     )
+
+
+def _by_velocity(equations: Equations, lines: Sequence[VectorLine]) -> Iterator[VectorLine]:
+    """Lines, with the rates of coordinates by the velocities that constraints give."""
+    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
+    for line in lines:
+        right = line.right
+        for v in equations.spec.having_role("velocity"):
+            moved = next((q for q in equations.spec.state if q.name == v.of), None)
+            if moved is not None and line.left == rate_of(tree.Name(moved.name)):
+                own = [rates[n] for n in moved.components]
+                right = tree.Name(v.name) if own == [*equations.setting.elements(v.components)] else right
+        yield VectorLine(line.left, right)
 
 
 def _names_basis(lines: Sequence[VectorLine]) -> bool:
@@ -141,7 +157,7 @@ def _short_names(
     shown = list[VectorLine]()
     for each in reversed(spec.definitions):
         if not each.arguments and any(
-            tree.Name(each.name) in tree.walk(line.right) for line in (*lines, *shown)
+            tree.Name(each.name) in (*tree.walk(line.left), *tree.walk(line.right)) for line in (*lines, *shown)
         ):
             shown.append(VectorLine(tree.Name(each.name), each.typed))
     return reversed(shown)

@@ -115,7 +115,10 @@ def gradient(
         known = shapes(formula, scope)
         pulled = _pull(formula, Addend(), by, known)
         found = _collect(_drop_transposes(each, symmetric) for each in pulled)
-        slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
+        slopes = [
+            _collect(map(_put_entries_last, _pull(formula, Addend(), tree.Name(each), known)))
+            for each in parts
+        ]
     except (_GivesUpError, AssertionError, ExpressionError):
         return None
     if any(slopes):
@@ -123,6 +126,12 @@ def gradient(
             Addend(vector=tree.Call(function="vector", arguments=tuple(map(total_of, slopes))))
         )
     return found
+
+
+def _put_entries_last(addend: Addend) -> Addend:
+    """An addend whose scalars stand before the components of vectors."""
+    above = sorted(addend.above, key=lambda factor: isinstance(factor, tree.Index))
+    return replace(addend, above=tuple(above))
 
 
 def _drop_transposes(addend: Addend, symmetric: Collection[str]) -> Addend:
@@ -145,8 +154,14 @@ def _collect(addends: Iterable[Addend]) -> list[Addend]:
 def _is_it(node: tree.Node, by: tree.Node) -> bool:
     """Whether a node is the variable; a component may be written with a subscript."""
     if isinstance(node, tree.Index) and isinstance(by, tree.Name):
-        return "".join(map(str, (node.name, *node.indices))) == by.name
+        return by.name in component_names(node.name, node.indices)
     return node == by
+
+
+def component_names(name: str, indices: Sequence[int]) -> tuple[str, str]:
+    """What a component may be called: ``Pi1``, and of a name that ends in a digit ``R1_1``."""
+    places = "".join(map(str, indices))
+    return name + places, f"{name}_{places}"
 
 
 def _names(node: tree.Node, by: tree.Node) -> bool:
@@ -187,6 +202,9 @@ def _pull(
         case tree.Call(function="dot", arguments=(a, b)):
             yield from down(a, _with(adjoint, b))
             yield from down(b, _with(adjoint, a))
+        case tree.Call(function="vector", arguments=parts):
+            for place, part in enumerate(parts, 1):
+                yield from down(part, _entry_of(adjoint, place))
         case tree.Call(function="cross", arguments=(a, b)):
             g = _vector_of(adjoint)
             yield from down(
@@ -195,6 +213,10 @@ def _pull(
             yield from down(
                 b, replace(adjoint, vector=tree.Call(function="cross", arguments=(g, a)))
             )
+        case tree.Call(function="rotate", arguments=(q, a)) if not _names(q, by):
+            turned = tree.Call(function="conjugate", arguments=(q,))
+            g = tree.Call(function="rotate", arguments=(turned, _vector_of(adjoint)))
+            yield from down(a, replace(adjoint, vector=g))
         case tree.Call(function="trace", arguments=(a,)) if adjoint.vector is None:
             yield from _pull_traces(a, adjoint, down, known)
         case tree.Call(function="det", arguments=(a,)) if adjoint.vector is None:
@@ -265,6 +287,15 @@ def _vector_of(adjoint: Addend) -> tree.Node:
     if adjoint.vector is None:
         raise _GivesUpError
     return adjoint.vector
+
+
+def _entry_of(adjoint: Addend, place: int) -> Addend:
+    """What an adjoint by its name has at one place of a vector that is written out."""
+    vector = _vector_of(adjoint)
+    if not isinstance(vector, tree.Name):
+        raise _GivesUpError
+    entry = tree.Index(name=vector.name, indices=(place,))
+    return times(replace(adjoint, vector=None), entry)
 
 
 def _with(adjoint: Addend, vector: tree.Node) -> Addend:

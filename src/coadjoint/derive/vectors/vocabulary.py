@@ -113,6 +113,8 @@ class Vocabulary:
             yield from self._turns(own)
         if level and len(like) == 3:
             yield from self._crosses(own, own)
+        if level > 1 and len(like) != 3:
+            yield from self._weighted(own)
         if level > 2 and len(like) == 3:
             plain = [word for word in own if isinstance(word.node, tree.Name | tree.Member)]
             plain = plain[:MOST_PLAIN]
@@ -132,6 +134,20 @@ class Vocabulary:
             node = tree.Call(function="cross", arguments=(a.node, b.node))
             known = self.products[a.node, b.node] = Candidate(node, dense.cross(a.value, b.value))
         return known
+
+    def _weighted(self, own: list[Candidate]) -> Iterator[Candidate]:
+        """Vectors by diagonal matrices, and by scalar products of others, of any length."""
+        plain = [word for word in own if isinstance(word.node, tree.Name)][:MOST_PLAIN]
+        for a, b in pairs(plain, plain):
+            if a.node != b.node:
+                node = tree.Call(function="diag", arguments=(a.node,))
+                value = tuple(x * y for x, y in zip(a.value, b.value, strict=True))
+                yield Candidate(tree.Binary(operator="*", left=node, right=b.node), value)
+        for n, a in enumerate(plain):
+            for b, c in pairs(plain[n:], plain):
+                node = tree.Call(function="dot", arguments=(a.node, b.node))
+                value = dense.scale(dense.dot(a.value, b.value), c.value)
+                yield Candidate(tree.Binary(operator="*", left=node, right=c.node), value)
 
     def _turns(self, own: list[Candidate]) -> Iterator[Candidate]:
         """Quaternions times vectors, from either side."""

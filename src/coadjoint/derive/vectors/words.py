@@ -78,6 +78,7 @@ class _Maker:
         """What every name stands for in a printed tree."""
         field, setting = self.field, self.setting
         values = {name: self._close(value) for name, value in setting.values.items()}
+        values |= {} if self.closed else setting.reactions
         values |= {word.node.name: word.value for word in words if isinstance(word.node, tree.Name)}
         values |= {name: field[name] for name in self._scalar_names() if name not in values}
         return {**self._pi(), **values}
@@ -128,10 +129,13 @@ class _Maker:
 
     def _short_values(self) -> Iterator[tuple[str, tuple[Element, ...]]]:
         """Vectors that the spec gives short names, with their values, nothing put in."""
+        values = self.setting.values
+        if not self.closed:
+            values = {**values, **self.setting.reactions}
         for short in self.spec.definitions:
             if len(short.shape or ()) == 1 and not short.arguments:
                 try:
-                    yield short.name, interpret(short.tree, self.setting.values, self.field)
+                    yield short.name, interpret(short.tree, values, self.field)
                 except (DerivationError, KeyError):
                     continue
 
@@ -153,6 +157,7 @@ class _Maker:
         found = gradients + [node for each in formulas for node in self._vectors_in(each)]
         found += [node for each in gradients for node in self._vectors_in(each)]
         values = {**self._pi(), **self.setting.values, **self.short, **self._slopes}
+        values |= {} if self.closed else self.setting.reactions
         for node in list(dict.fromkeys(found))[:MOST_WORDS]:
             if any(isinstance(n, tree.Name) and n.name in given for n in tree.walk(node)):
                 continue
@@ -249,16 +254,21 @@ class _Maker:
         noise = [each.formula for each in self.spec.noise]
         symmetric = [v.name for v in self.spec.variables if v.form == "symmetric"]
         scope = {"pi": (), **self.shapes}
-        formulas = [
-            each
-            for each in (self.spec.hamiltonian, self.spec.lagrangian, *noise)
-            if each is not None
-        ]
+        declared = (self.spec.hamiltonian, self.spec.lagrangian, *noise)
+        formulas = [each.tree for each in declared if each is not None]
+        formulas += [] if self.closed else self._powers()
         for formula, (node, parts) in product(formulas, list(self._unknowns())):
-            found = gradient(formula.tree, node, parts, scope, symmetric)
+            found = gradient(formula, node, parts, scope, symmetric)
             if found:
                 own = [self._without_scalars(each).tree for each in found if each.vector]
                 yield from map(self._shorten, (*own, total_of(found)))
+
+    def _powers(self) -> Iterator[tree.Node]:
+        """What constraints work, of which the slopes by velocities are their forces."""
+        for each in self.spec.constraints:
+            if len(each.shape) == 1:
+                sides = tree.Binary(operator="-", left=each.left.tree, right=each.right.tree)
+                yield tree.Call(function="dot", arguments=(tree.Name(each.reaction), sides))
 
     def _shorten(self, node: tree.Node) -> tree.Node:
         """A formula in which vectors stand by their short names."""
