@@ -113,8 +113,15 @@ def write_tree(
                 return write_sum(indices, below, sign)
             case tree.Call(function="atan", arguments=(tree.Number(value=1),)):
                 return multiply([number(Fraction(1, 4)), PI])
-            case tree.Call(function="diag"):
-                return call("diag", below)
+            case tree.Call(function="diag", arguments=(tree.Call(function="vector") as entries,)):
+                own = [write_tree(each, shapes, names) for each in entries.arguments]
+                return call("diag", own)
+            case tree.Call(function="rate_of", arguments=(tree.Index() as of,)) if (
+                len(of.indices) == 1 and len(shapes.get(of.name, ())) == 2
+            ):
+                places = [number(i) for i in of.indices]
+                shown = attach(name(of.name, bold=True), below=places, dot=True)
+                return replace(shown, text=f"d{below[0].text}/dt")
             case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
                 written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)
                 return written if text not in known else write_rate(below[0])

@@ -13,14 +13,8 @@ from coadjoint.derive.interpret import entries, interpret
 from coadjoint.derive.mechanics.frames import frame_of
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.vectors.gradients import gradient, total_of
-from coadjoint.derive.vectors.recognise import (
-    VectorForm,
-    VectorLine,
-    count_nodes,
-    is_short,
-    rate_of,
-    recognise,
-)
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
+from coadjoint.derive.vectors.recognise import count_nodes, is_short, recognise
 from coadjoint.derive.vectors.vocabulary import Vocabulary
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.exact import Element
@@ -95,10 +89,8 @@ def _write_momentum(
     return min(nodes, key=count_nodes, default=None)
 
 
-def _write_multipliers(
-    spec: Spec, lines: Sequence[VectorLine]
-) -> tuple[dict[str, Written], str]:
-    """The multipliers that lines name as lambda, by numbers if they are several; and what they are."""
+def _write_multipliers(spec: Spec, lines: Sequence[VectorLine]) -> tuple[dict[str, Written], str]:
+    """The multipliers in lines as lambda, by numbers if they are several; and what they are."""
     used = {n.name for line in lines for n in tree.walk(line.right) if isinstance(n, tree.Name)}
     shown = [each for each in spec.constraints if each.reaction in used]
     named = {n for q in (*spec.variables, *spec.parameters) for n in (q.name, *q.components)}

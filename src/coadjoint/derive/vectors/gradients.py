@@ -21,6 +21,7 @@ from coadjoint.derive.vectors.transposes import (
     multiply,
     pull_trace,
     turn,
+    turn_products,
 )
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
@@ -114,7 +115,7 @@ def gradient(
     try:
         known = shapes(formula, scope)
         pulled = _pull(formula, Addend(), by, known)
-        found = _collect(_drop_transposes(each, symmetric) for each in pulled)
+        found = _collect(_simplify(each, symmetric, scope) for each in pulled)
         slopes = [
             _collect(map(_put_entries_last, _pull(formula, Addend(), tree.Name(each), known)))
             for each in parts
@@ -134,11 +135,12 @@ def _put_entries_last(addend: Addend) -> Addend:
     return replace(addend, above=tuple(above))
 
 
-def _drop_transposes(addend: Addend, symmetric: Collection[str]) -> Addend:
-    """An addend in which matrices that are symmetric have no transposes."""
-    if addend.vector is None or not symmetric:
+def _simplify(addend: Addend, symmetric: Collection[str], scope: Mapping[str, Shape]) -> Addend:
+    """An addend without transposes of products, and of matrices that are symmetric."""
+    if addend.vector is None:
         return addend
-    return replace(addend, vector=drop_transposes(addend.vector, symmetric))
+    vector = turn_products(addend.vector, shapes(addend.vector, scope))
+    return replace(addend, vector=drop_transposes(vector, symmetric) if symmetric else vector)
 
 
 def _collect(addends: Iterable[Addend]) -> list[Addend]:
@@ -219,6 +221,9 @@ def _pull(
             yield from down(a, replace(adjoint, vector=g))
         case tree.Call(function="trace", arguments=(a,)) if adjoint.vector is None:
             yield from _pull_traces(a, adjoint, down, known)
+        case tree.Call(function="diag", arguments=(a,)) if len(known[id(a)]) == 2:
+            along = tree.Call(function="diag", arguments=(_vector_of(adjoint),))
+            yield from down(a, replace(adjoint, vector=along))
         case tree.Call(function="det", arguments=(a,)) if adjoint.vector is None:
             cofactors = tree.Call(function="inverse", arguments=(turn(a),))
             yield from down(a, replace(times(adjoint, node), vector=cofactors))
@@ -252,11 +257,19 @@ def _pull_product(
         yield from down(left, times(adjoint, right))
         if _names(right, by):
             yield from down(right, _by_factor(adjoint, left, first))
-    elif len(first) == 2 and len(second) == 1 and not _names(left, by):
-        yield from down(right, replace(adjoint, vector=multiply(turn(left), _vector_of(adjoint))))
-    elif len(first) == 2 and len(second) == 1 and not _names(right, by):
-        outer = tree.Call(function="outer", arguments=(_vector_of(adjoint), right))
-        yield from down(left, replace(adjoint, vector=outer))
+    elif len(first) == 2 and len(second) == 1:
+        g = _vector_of(adjoint)
+        if _names(right, by):
+            yield from down(right, replace(adjoint, vector=multiply(turn(left), g)))
+        if _names(left, by):
+            outer = tree.Call(function="outer", arguments=(g, right))
+            yield from down(left, replace(adjoint, vector=outer))
+    elif len(first) == len(second) == 2:
+        g = _vector_of(adjoint)
+        if _names(left, by):
+            yield from down(left, replace(adjoint, vector=multiply(g, turn(right))))
+        if _names(right, by):
+            yield from down(right, replace(adjoint, vector=multiply(turn(left), g)))
     else:
         raise _GivesUpError
 
@@ -329,15 +342,8 @@ def times(adjoint: Addend, factor: tree.Node) -> Addend:
             return times(times(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
             return over(times(adjoint, left), right)
-        case tree.Power(base=base, exponent=n) if n < 0:
-            return over(adjoint, base if n == -1 else tree.Power(base=base, exponent=-n))
-    for n, each in enumerate(adjoint.below):
-        if each == factor or (isinstance(each, tree.Power) and each.base == factor):
-            power = each.exponent - 1 if isinstance(each, tree.Power) and each != factor else 0
-            left = tree.Power(base=factor, exponent=power) if power > 1 else factor
-            below = (*adjoint.below[:n], *((left,) if power else ()), *adjoint.below[n + 1 :])
-            return replace(adjoint, below=below)
-    return replace(adjoint, above=(*adjoint.above, factor))
+    base, exponent = _split_power(factor)
+    return _raise(adjoint, base, exponent)
 
 
 def over(adjoint: Addend, divisor: tree.Node) -> Addend:
@@ -349,18 +355,31 @@ def over(adjoint: Addend, divisor: tree.Node) -> Addend:
             return over(over(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
             return times(over(adjoint, left), right)
-    if divisor in adjoint.above:
-        rest = list(adjoint.above)
-        rest.remove(divisor)
-        return replace(adjoint, above=tuple(rest))
-    base, exponent = (
-        (divisor.base, divisor.exponent) if isinstance(divisor, tree.Power) else (divisor, 1)
+    base, exponent = _split_power(divisor)
+    return _raise(adjoint, base, -exponent)
+
+
+def _split_power(node: tree.Node) -> tuple[tree.Node, int]:
+    """A base and its exponent."""
+    return (node.base, node.exponent) if isinstance(node, tree.Power) else (node, 1)
+
+
+def _raise(adjoint: Addend, base: tree.Node, exponent: int) -> Addend:
+    """An addend times a power; of one base there is one power, above or below."""
+
+    def find(factors: tuple[tree.Node, ...], sign: int) -> tuple[int, int]:
+        for n, each in enumerate(factors):
+            own, power = _split_power(each)
+            if own == base:
+                return n, sign * power
+        return len(factors), 0
+
+    up, above = find(adjoint.above, 1)
+    down, below = find(adjoint.below, -1)
+    total = above + below + exponent
+    power = [base if abs(total) == 1 else tree.Power(base=base, exponent=abs(total))]
+    return replace(
+        adjoint,
+        above=(*adjoint.above[:up], *(power * (total > 0)), *adjoint.above[up + 1 :]),
+        below=(*adjoint.below[:down], *(power * (total < 0)), *adjoint.below[down + 1 :]),
     )
-    lower, power = list(adjoint.below), exponent
-    for each in adjoint.below:
-        own = each.base if isinstance(each, tree.Power) else each
-        if own == base:
-            power += each.exponent if isinstance(each, tree.Power) else 1
-            lower.remove(each)
-    lower.append(base if power == 1 else tree.Power(base=base, exponent=power))
-    return replace(adjoint, below=tuple(lower))

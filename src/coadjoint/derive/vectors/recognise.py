@@ -12,8 +12,8 @@ Comes in: a vocabulary and the value of a rate. Goes out: addends. Read next:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import tee
 
@@ -22,9 +22,7 @@ from coadjoint.derive.vectors.gradients import Addend, over, times, total_of
 from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import scale, subtract
-from coadjoint.notation.written import Written
 from coadjoint.spec.core import tree
-from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.shapes import shapes
 
 #: Terms of components beyond which nothing is searched for.
@@ -43,46 +41,9 @@ MOST_RATIOS = 12
 ZERO = tree.Number(Fraction(0))
 
 
-@dataclass(frozen=True)
-class VectorLine:
-    """An equation of a whole quantity.
-
-    Attributes:
-        left: Its left side.
-        right: Its right side.
-    """
-
-    left: tree.Node
-    right: tree.Node
-
-
-@dataclass(frozen=True)
-class VectorForm:
-    """What was found.
-
-    Attributes:
-        lines: The equations.
-        missing: Names of whole quantities of the state whose equations stand in components alone.
-        shapes: Shapes of whole quantities, for printing.
-        written: How some names are written.
-        told: What is said of names that stand in the lines alone.
-    """
-
-    lines: tuple[VectorLine, ...]
-    missing: tuple[str, ...]
-    shapes: Mapping[str, Shape]
-    written: Mapping[str, Written]
-    told: str = ""
-
-
-def rate_of(node: tree.Node) -> tree.Node:
-    """The rate of a quantity."""
-    return tree.Call(function="rate_of", arguments=(node,))
-
-
-def tree_name(node: tree.Node) -> str:
-    """The name of a whole quantity."""
-    assert isinstance(node, tree.Name), node
+def owner_name(node: tree.Node) -> str:
+    """The name of a whole quantity, or of what has the row."""
+    assert isinstance(node, tree.Name | tree.Index), node
     return node.name
 
 
@@ -111,7 +72,7 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
     for whole in (True, False) if not matrix and words <= MOST_WORDS else (True,):
         found = _search(vocabulary, value, whole=whole)
         if found == [] or (found and vocabulary.evaluate(total_of(found)) == value):
-            return found
+            return list(map(vocabulary.settle, found))
     return None
 
 
@@ -119,7 +80,7 @@ def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend]
     """Addends taken one by one, the simplest kind of product first."""
     like, found = rest, list[Addend]()
     for level in range(vocabulary.levels):
-        candidates = vocabulary.candidates(like, level)
+        candidates = vocabulary.candidates(like, level, whole=whole)
         while len(found) < MOST_PRODUCTS and any(map(bool, entries(rest))):
             candidates, again = tee(candidates)  # which are made once, and only as far as asked for
             step = _best(vocabulary, again, rest, whole=whole)

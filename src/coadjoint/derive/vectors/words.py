@@ -8,6 +8,7 @@ Read next: `coadjoint.derive.vectors.recognise`, which searches among their prod
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -16,9 +17,17 @@ from typing import Any
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.setting import assemble, weigh
+from coadjoint.derive.setting import assemble, shape, weigh
+from coadjoint.derive.vectors.attitudes import (
+    drop_rotations,
+    name_parts,
+    name_poses,
+    parts_of,
+    torque,
+)
 from coadjoint.derive.vectors.gradients import Addend, gradient, total_of
-from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, measure
+from coadjoint.derive.vectors.transposes import multiply, turn
+from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, evaluate, measure
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec.core import tree
@@ -56,6 +65,13 @@ class _Maker:
         if spec.time is not None:
             self.shapes[spec.time.name] = ()
         self.values = {name: self._close(self.setting.values[name]) for name in whole}
+        self.poses = name_poses(spec)
+        self.parts = parts_of(self.poses)
+        for pose in self.poses:
+            matrix = self.values[pose.variable.name]
+            attitude, place = tuple(r[:-1] for r in matrix), tuple(r[-1] for r in matrix)
+            for name, value in zip(pose.names, (attitude, place), strict=True):
+                self.values[name], self.shapes[name] = value, measure(value)
         self.short = dict(self._short_values())
         self.named = list[tuple[tree.Node, tree.Node]]()
 
@@ -72,12 +88,16 @@ class _Maker:
             shapes=self.shapes,
             values=self._name_values(words),
             parts=self._parts(),
+            moving=frozenset(self.setting.state),
+            attitudes=frozenset(attitude for attitude, _ in self._turns()),
+            shorten=self._shorten,
         )
 
     def _name_values(self, words: Iterable[Candidate]) -> dict[str, Value]:
         """What every name stands for in a printed tree."""
         field, setting = self.field, self.setting
         values = {name: self._close(value) for name, value in setting.values.items()}
+        values |= {name: self.values[name] for pose in self.poses for name in pose.names}
         values |= {} if self.closed else setting.reactions
         values |= {word.node.name: word.value for word in words if isinstance(word.node, tree.Name)}
         values |= {name: field[name] for name in self._scalar_names() if name not in values}
@@ -110,10 +130,33 @@ class _Maker:
         return {name: self._close(rate) for name, rate in zip(names, rates, strict=True)}
 
     def _targets(self) -> Iterator[Candidate]:
-        """The rates of whole vectors and matrices of the state."""
+        """The rates of whole vectors and matrices of the state, or of rows."""
         for variable in self.spec.state:
             if variable.value_shape and set(variable.components) <= self._rates.keys():
-                yield Candidate(tree.Name(variable.name), assemble(variable, self._rates))
+                value = assemble(variable, self._rates)
+                if variable.name in self._stacked:
+                    for row in self._list_rows(variable.name):
+                        yield Candidate(row, value[row.indices[0] - 1])
+                else:
+                    yield Candidate(tree.Name(variable.name), value)
+
+    @cached_property
+    def _stacked(self) -> frozenset[str]:
+        """Names of matrices whose rows are vectors of their own: formulas add up such rows."""
+        sums = [node for node in self._nodes() if isinstance(node, tree.Binary)]
+        sides = [side for node in sums if node.operator in "+-" for side in (node.left, node.right)]
+        names = {n.name for n in sides if isinstance(n, tree.Index) and len(n.indices) == 1}
+        matrices = {v.name for v in self.spec.state if len(v.value_shape) == 2}
+        return frozenset(v.name for v in self.spec.variables if {v.name, v.of} & names & matrices)
+
+    def _list_rows(self, name: str) -> Iterator[tree.Index]:
+        """The rows of a matrix."""
+        for place in range(1, len(self.values[name]) + 1):
+            yield tree.Index(name=name, indices=(place,))
+
+    def _nodes(self) -> Iterator[tree.Node]:
+        """The nodes of all formulas."""
+        return (node for formula in self._formulas() for node in tree.walk(formula))
 
     def _parts(self) -> dict[str, list[Part]]:
         """The rates of those parts of a quantity that the spec gives short names."""
@@ -125,7 +168,16 @@ class _Maker:
             if len(whole) == 1 and "" not in whole:
                 rate = Candidate(tree.Name(short), tuple(self._rates[n] for n in names))
                 parts.setdefault(whole.pop(), []).append(Part(rate, names))
+        for pose in self.poses:
+            parts[pose.variable.name] = [
+                Part(Candidate(tree.Name(name), shape(self.elements(own), self.shapes[name])), own)
+                for name, own in zip(pose.names, pose.components, strict=True)
+            ]
         return parts
+
+    def elements(self, names: Iterable[str]) -> list[Element]:
+        """The rates of components."""
+        return [self._rates[name] for name in names]
 
     def _short_values(self) -> Iterator[tuple[str, tuple[Element, ...]]]:
         """Vectors that the spec gives short names, with their values, nothing put in."""
@@ -145,12 +197,19 @@ class _Maker:
         given = {v.name for v in self.spec.defined} if self.spec.constraints and self.closed else ()
         diagonal = set(_diagonals(self._formulas()))
         hidden = {*diagonal, *given, *self._slopes}
+        hidden |= {pose.variable.name for pose in self.poses}
+        variables |= {name for pose in self.poses for name in pose.names}
         whole = [n for n in self.values if n not in hidden]
         yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n in variables)
         yield from self._slopes_along_space()
         yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n not in variables)
-        for row in self._rows():
+        rows = [
+            *self._rows(),
+            *(row for name in sorted(self._stacked) for row in self._list_rows(name)),
+        ]
+        for row in rows:
             yield Candidate(row, self.values[row.name][row.indices[0] - 1])
+        yield from self._loads()
         yield from self._others()
         yield from self._further_slopes()
         formulas, gradients = list(self._formulas()), list(self._gradients())
@@ -158,6 +217,7 @@ class _Maker:
         found += [node for each in gradients for node in self._vectors_in(each)]
         values = {**self._pi(), **self.setting.values, **self.short, **self._slopes}
         values |= {} if self.closed else self.setting.reactions
+        values |= {name: self.values[name] for pose in self.poses for name in pose.names}
         for node in list(dict.fromkeys(found))[:MOST_WORDS]:
             if any(isinstance(n, tree.Name) and n.name in given for n in tree.walk(node)):
                 continue
@@ -183,11 +243,16 @@ class _Maker:
         declared = [spec.lagrangian, spec.hamiltonian, *spec.forces.values(), spec.dissipation]
         declared += [each.left for each in spec.constraints]
         declared += [each.right for each in spec.constraints]
-        declared += [force.formula for force in spec.newton if hasattr(force, "formula")]
+        declared += [each.force for each in spec.newton]
         for each in declared:
             if each is not None:  # names of members as typed are those of any member
                 of_members = any(isinstance(n, tree.Member) for n in tree.walk(each.typed))
-                yield from dict.fromkeys((each.tree,) if of_members else (each.typed, each.tree))
+                found = (each.tree,) if of_members else (each.typed, each.tree)
+                yield from dict.fromkeys(self._name_parts(node) for node in found)
+
+    def _name_parts(self, node: tree.Node) -> tree.Node:
+        """A formula with the names of attitudes and places."""
+        return name_parts(node, self.parts) if self.parts else node
 
     def _vectors_in(self, formula: tree.Node) -> Iterator[tree.Node]:
         """Vectors that a formula is made of: matrices times vectors, and other parts of it."""
@@ -255,13 +320,43 @@ class _Maker:
         symmetric = [v.name for v in self.spec.variables if v.form == "symmetric"]
         scope = {"pi": (), **self.shapes}
         declared = (self.spec.hamiltonian, self.spec.lagrangian, *noise)
-        formulas = [each.tree for each in declared if each is not None]
+        formulas = [self._name_parts(each.tree) for each in declared if each is not None]
         formulas += [] if self.closed else self._powers()
         for formula, (node, parts) in product(formulas, list(self._unknowns())):
             found = gradient(formula, node, parts, scope, symmetric)
             if found:
                 own = [self._without_scalars(each).tree for each in found if each.vector]
                 yield from map(self._shorten, (*own, total_of(found)))
+
+    def _turns(self) -> Iterator[tuple[tree.Node, tree.Node | None]]:
+        """Attitudes, with the places of bodies that have a pose."""
+        for pose in self.poses:
+            yield tree.Name(pose.attitude), tree.Name(pose.place)
+        for variable in self.spec.state:
+            if variable.turning == "attitude":
+                yield tree.Name(variable.name), None
+
+    def _loads(self) -> Iterator[Candidate]:
+        """Torques and forces of the energy on attitudes and places."""
+        declared = (self.spec.hamiltonian, self.spec.lagrangian)
+        formulas = [self._name_parts(each.tree) for each in declared if each is not None]
+        scope, left = {"pi": (), **self.shapes}, self.setting.sign > 0
+        values = {**self._pi(), **self.setting.values, **self.values}
+        for formula, (attitude, place) in product(formulas[:1], list(self._turns())):
+            found = [
+                replace(each, vector=torque(attitude, each.vector, left, scope))
+                for each in gradient(formula, attitude, (), scope) or ()
+                if each.vector is not None
+            ]
+            if place is not None and left:
+                found += (
+                    replace(each, vector=multiply(turn(attitude), each.vector))
+                    for each in gradient(formula, place, (), scope) or ()
+                    if each.vector is not None
+                )
+            for each in found:
+                node = self._without_scalars(each).tree
+                yield Candidate(node, evaluate(node, values, self.field))
 
     def _powers(self) -> Iterator[tree.Node]:
         """What constraints work, of which the slopes by velocities are their forces."""
@@ -272,7 +367,12 @@ class _Maker:
 
     def _shorten(self, node: tree.Node) -> tree.Node:
         """A formula in which vectors stand by their short names."""
-        known = {each.tree: each.name for each in self.spec.definitions if each.name in self.short}
+        attitudes, scope = [each for each, _ in self._turns()], {"pi": (), **self.shapes}
+        known = {
+            drop_rotations(self._name_parts(each.tree), attitudes, scope): each.name
+            for each in self.spec.definitions
+            if each.name in self.short
+        }
         if not known:
             return node
         below = [self._shorten(each) for each in tree.children(node)]
@@ -284,11 +384,17 @@ class _Maker:
             if variable.value_shape:
                 is_vector = len(variable.value_shape) == 1
                 yield tree.Name(variable.name), tuple(variable.components) if is_vector else ()
-        for row in self._rows():
+        rows = (
+            *self._rows(),
+            *(row for name in sorted(self._stacked) for row in self._list_rows(name)),
+        )
+        for row in rows:
             yield row, tuple(f"{row.name}{row.indices[0]}{n}" for n in (1, 2, 3))
 
     def _rows(self) -> Iterator[tree.Index]:
-        """Rows of three of attitudes of which formulas name entries."""
+        """Rows of attitudes of which formulas name entries, and of matrices that are stacked."""
+        for name in sorted(self._stacked):
+            yield from self._list_rows(name)
         attitudes = [v.name for v in self.spec.state if v.value_shape == (3, 3)]
         nodes = (node for formula in self._formulas() for node in tree.walk(formula))
         named = [node for node in nodes if isinstance(node, tree.Index) and len(node.indices) == 2]
@@ -307,6 +413,13 @@ class _Maker:
 
     def _scalar_names(self) -> frozenset[str]:
         scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
+        named = {n.name for n in self._nodes() if isinstance(n, tree.Name)}
+        named |= {
+            n.name + "".join(map(str, n.indices))
+            for n in self._nodes()
+            if isinstance(n, tree.Index)
+        }
+        scalars |= {n for q in self.spec.parameters if q.shape for n in q.components if n in named}
         scalars |= {self.spec.time.name} if self.spec.time is not None else set()
         scalars |= {v.name for v in self.spec.state if not v.value_shape}
         if not self.closed:
