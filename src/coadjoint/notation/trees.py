@@ -80,9 +80,9 @@ def write_tree(
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
                 row = len(shapes.get(text, ())) == 2 and len(indices) == 1
-                own = known[text] if text in known else name(text, bold=row)
-                whole = attach(own, below=[number(i) for i in indices])
-                return replace(whole, text=_number(own.text, indices, shapes.get(text, ())))
+                base = known[text] if text in known else name(text, bold=row)
+                whole = attach(base, below=[number(i) for i in indices])
+                return replace(whole, text=_number(base.text, indices, shapes.get(text, ())))
             case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
                 place = _place(part)
@@ -114,13 +114,12 @@ def write_tree(
             case tree.Call(function="atan", arguments=(tree.Number(value=1),)):
                 return multiply([number(Fraction(1, 4)), PI])
             case tree.Call(function="diag", arguments=(tree.Call(function="vector") as entries,)):
-                own = [write_tree(each, shapes, names) for each in entries.arguments]
-                return call("diag", own)
+                return call("diag", [write_tree(each, shapes, names) for each in entries.arguments])
             case tree.Call(function="rate_of", arguments=(tree.Index() as of,)) if (
                 len(of.indices) == 1 and len(shapes.get(of.name, ())) == 2
             ):
-                places = [number(i) for i in of.indices]
-                shown = attach(name(of.name, bold=True), below=places, dot=True)
+                whole = name(of.name, bold=True)
+                shown = attach(whole, below=[number(i) for i in of.indices], dot=True)
                 return replace(shown, text=f"d{below[0].text}/dt")
             case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
                 written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)

@@ -87,9 +87,9 @@ def tell_attitudes(spec: Spec, lines: Iterable[VectorLine]) -> list[str]:
     for pose in poses:
         if not short.isdisjoint(pose.names):
             continue
-        names = (pose.variable.name, *pose.names)
+        names = [pose.variable.name, *pose.names]
         if spec.family is not None:
-            names = tuple(f"{each.rpartition('_')[0]}[{spec.family.index.name}]" for each in names)
+            names = [f"{each.rpartition('_')[0]}[{spec.family.index.name}]" for each in names]
         told.append(f"{names[0]} has the rotation {names[1]} and the translation {names[2]}")
     if any(isinstance(each, tree.Call) and each.function == "vee" for each in nodes):
         told.append("vee undoes hat")

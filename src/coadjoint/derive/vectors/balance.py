@@ -12,9 +12,9 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
 from coadjoint.derive.mechanics.frames import frame_of
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.vectors.gradients import gradient, total_of
+from coadjoint.derive.vectors.gradients import count_nodes, gradient, total_of
 from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
-from coadjoint.derive.vectors.recognise import count_nodes, is_short, recognise
+from coadjoint.derive.vectors.recognise import is_short, recognise
 from coadjoint.derive.vectors.vocabulary import Vocabulary
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.exact import Element

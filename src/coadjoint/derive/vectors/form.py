@@ -11,6 +11,7 @@ from fractions import Fraction
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.setting import assemble
+from coadjoint.derive.vectors.affine import affine_lines
 from coadjoint.derive.vectors.attitudes import tell_attitudes
 from coadjoint.derive.vectors.balance import balance_lines, momentum_of
 from coadjoint.derive.vectors.brackets import BASIS, commutator_lines, plane_lines
@@ -36,6 +37,13 @@ def vector_form(equations: Equations) -> VectorForm:
         found, left = _find_lines(equations, vocabulary, target)
         lines += found
         missing += left
+    within = frozenset[str]()
+    if missing:
+        found, within = affine_lines(equations)
+        covered = {line.left for line in found}
+        missing = [each for each in missing if rate_of(tree.Name(each)) not in covered]
+        lines += found
+        told = "Id is the identity" if found else told
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and equations.spec.constraints:
@@ -52,7 +60,12 @@ def vector_form(equations: Equations) -> VectorForm:
         told = f"E_k is the basis of {equations.setting.algebra.name}"
     told = "; ".join(filter(None, (told, *tell_attitudes(equations.spec, lines))))
     return VectorForm(
-        lines=tuple(lines), missing=tuple(missing), shapes=shapes, written=written, told=told
+        lines=tuple(lines),
+        missing=tuple(missing),
+        shapes=shapes,
+        written=written,
+        told=told,
+        within=within,
     )
 
 

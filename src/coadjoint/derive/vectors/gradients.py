@@ -23,6 +23,7 @@ from coadjoint.derive.vectors.transposes import (
     turn,
     turn_products,
 )
+from coadjoint.exact import Element, Field
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError
@@ -86,6 +87,11 @@ def _write_turns(
 _EIGHTH = tree.Call(function="atan", arguments=(tree.Number(Fraction(1)),))
 
 
+def count_nodes(node: tree.Node) -> int:
+    """How long a formula is."""
+    return sum(1 for _ in tree.walk(node))
+
+
 def total_of(addends: list[Addend]) -> tree.Node:
     """The sum of addends."""
     signed = [(each.number < 0, each.tree) for each in addends]
@@ -94,6 +100,21 @@ def total_of(addends: list[Addend]) -> tree.Node:
     for minus, part in others:
         whole = tree.Binary(operator="-" if minus else "+", left=whole, right=part)
     return whole
+
+
+def write_polynomial(field: Field, value: Element, first: Collection[str] = ()) -> tree.Node | None:
+    """A polynomial in symbols as a tree, some of these before others; None for anything else."""
+    found = list[Addend]()
+    for part in field.quotients(value) if value else ():
+        for monomial in part.monomials:
+            if part.divisors or any(name in field.adjoined for name, _ in monomial.powers):
+                return None
+            powers = (
+                tree.Name(name) if e == 1 else tree.Power(base=tree.Name(name), exponent=e)
+                for name, e in sorted(monomial.powers, key=lambda power: power[0] not in first)
+            )
+            found.append(Addend(Fraction(monomial.number), tuple(powers)))
+    return total_of(found)
 
 
 def gradient(
@@ -216,9 +237,9 @@ def _pull(
                 b, replace(adjoint, vector=tree.Call(function="cross", arguments=(g, a)))
             )
         case tree.Call(function="rotate", arguments=(q, a)) if not _names(q, by):
-            turned = tree.Call(function="conjugate", arguments=(q,))
-            g = tree.Call(function="rotate", arguments=(turned, _vector_of(adjoint)))
-            yield from down(a, replace(adjoint, vector=g))
+            back = tree.Call(function="conjugate", arguments=(q,))
+            pulled = tree.Call(function="rotate", arguments=(back, _vector_of(adjoint)))
+            yield from down(a, replace(adjoint, vector=pulled))
         case tree.Call(function="trace", arguments=(a,)) if adjoint.vector is None:
             yield from _pull_traces(a, adjoint, down, known)
         case tree.Call(function="diag", arguments=(a,)) if len(known[id(a)]) == 2:

@@ -37,6 +37,7 @@ class VectorForm:
         shapes: Shapes of whole quantities, for printing.
         written: How some names are written.
         told: What is said of names that stand in the lines alone.
+        within: Names of scalars that are entries of matrices whose equations stand in the lines.
     """
 
     lines: tuple[VectorLine, ...]
@@ -44,6 +45,7 @@ class VectorForm:
     shapes: Mapping[str, Shape]
     written: Mapping[str, Written]
     told: str = ""
+    within: frozenset[str] = frozenset()
 
 
 def rate_of(node: tree.Node) -> tree.Node:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.vectors.attitudes import name_poses, tell_attitudes
@@ -93,7 +94,8 @@ class _Rename:
         if not self.pairs:
             return self.node(total_of(list(found)))
         alone, groups = list[Addend](), dict[int, list[Addend]]()
-        for each in _split(found):
+        parts = (_split([each]) if len(self._partners(each)) > 1 else [each] for each in found)
+        for each in chain.from_iterable(parts):
             partners = self._partners(each)
             if len(partners) > 1:
                 return None

@@ -18,7 +18,7 @@ from fractions import Fraction
 from itertools import tee
 
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.vectors.gradients import Addend, over, times, total_of
+from coadjoint.derive.vectors.gradients import Addend, count_nodes, over, times, total_of
 from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import scale, subtract
@@ -52,11 +52,6 @@ def is_short(node: tree.Node) -> bool:
     return count_nodes(node) <= LONGEST
 
 
-def count_nodes(node: tree.Node) -> int:
-    """How long a formula is."""
-    return sum(1 for _ in tree.walk(node))
-
-
 def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
     """Addends whose sum is a value, exactly; None where none were found.
 
@@ -72,8 +67,15 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
     for whole in (True, False) if not matrix and words <= MOST_WORDS else (True,):
         found = _search(vocabulary, value, whole=whole)
         if found == [] or (found and vocabulary.evaluate(total_of(found)) == value):
-            return list(map(vocabulary.settle, found))
+            return _begin_with_plus(map(vocabulary.settle, found))
     return None
+
+
+def _begin_with_plus(found: Iterable[Addend]) -> list[Addend]:
+    """Addends, first of them one that is not subtracted, where there is one."""
+    addends = list(found)
+    place = next((n for n, each in enumerate(addends) if each.number > 0), 0)
+    return [*addends[place : place + 1], *addends[:place], *addends[place + 1 :]]
 
 
 def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend] | None:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from coadjoint.derive.vectors.gradients import count_nodes
 from coadjoint.derive.vectors.lines import VectorLine
-from coadjoint.derive.vectors.recognise import count_nodes
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 

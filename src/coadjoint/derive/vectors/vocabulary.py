@@ -27,8 +27,10 @@ MOST_ROWS = 10
 MOST_MATRICES = 8
 #: Rows of matrices beyond which products of three cost too much.
 MOST_TRIPLE = 2
-#: Terms of the factors, multiplied, up to which any vector product is tried.
+#: Terms of factors, multiplied, up to which any product is tried; and how many times the terms of
+#: what is looked for they may be. Products of longer factors would take minutes.
 MOST_CROSSED = 200
+MOST_SPREAD = 4
 #: Vectors beyond which products of three are too many.
 MOST_PLAIN = 8
 
@@ -116,12 +118,13 @@ class Vocabulary:
             like: The value.
             level: How far from simple words.
             whole: Whether all terms of a candidate are among those of the value, so that words
-                with other quantities of the state are not asked for.
+                of other quantities of the state alone are not asked for.
         """
         words = self.words
         if whole:
             reached = self._reach(like)
-            words = tuple(w for w in words if self._reach(w.value) & self.moving <= reached)
+            owned = [(word, self._reach(word.value) & self.moving) for word in words]
+            words = tuple(word for word, own in owned if not own or own & reached)
         if isinstance(like[0], tuple):
             yield from self._matrices(words, like, level)
             return
@@ -134,7 +137,7 @@ class Vocabulary:
         if level:
             yield from self._applied(words, like)
         if level and len(like) == 3:
-            most = MOST_CROSSED + 2 * self._count(like) if whole else None
+            most = MOST_CROSSED + MOST_SPREAD * self._count(like) if whole else None
             yield from self._crosses(own, own, most)
         if level > 1 and len(like) != 3:
             yield from self._weighted(own)
@@ -208,7 +211,9 @@ class Vocabulary:
         own = [w for w in words if measure(w.value) == measure(like)]
         own = [w for w in own if level > 1 or not _is_sum(w.node)]
         if len(like) == 3:
+            reached = self._reach(like)
             vectors = [w for w in words if measure(w.value) == (3,)]
+            vectors = [w for w in vectors if self._reach(w.value) & self.moving <= reached]
             own += [
                 Candidate(tree.Call(function="hat", arguments=(w.node,)), dense.hat(w.value))
                 for w in vectors
@@ -223,12 +228,15 @@ class Vocabulary:
                 for w in own
             ]
             own += squares
-        for n, a in enumerate(own):
-            for b in own[n + 1 :]:
+        most = MOST_CROSSED + MOST_SPREAD * self._count(like)
+        counts = {id(word): self._count(word.value) for word in own}
+        small = [ab for ab in pairs(own, own) if counts[id(ab[0])] * counts[id(ab[1])] <= most]
+        places = {id(word): n for n, word in enumerate(own)}
+        for a, b in small:
+            if places[id(a)] < places[id(b)]:
                 value = dense.commutator(a.value, b.value)
                 yield Candidate(tree.Call(function="commutator", arguments=(a.node, b.node)), value)
-        products = [self._product(a, b) for a, b in pairs(own, own)]
-        yield from products
+        yield from (self._product(a, b) for a, b in small)
         if level > 2 and len(like) <= MOST_TRIPLE:
             plain = [w for w in own if isinstance(w.node, tree.Name)]
             for a, b, c in pairs(plain, plain, plain):

@@ -7,7 +7,7 @@ Read next: `coadjoint.derive.vectors.recognise`, which searches among their prod
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -25,7 +25,13 @@ from coadjoint.derive.vectors.attitudes import (
     parts_of,
     torque,
 )
-from coadjoint.derive.vectors.gradients import Addend, gradient, total_of
+from coadjoint.derive.vectors.gradients import (
+    Addend,
+    count_nodes,
+    gradient,
+    total_of,
+    write_polynomial,
+)
 from coadjoint.derive.vectors.transposes import multiply, turn
 from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, evaluate, measure
 from coadjoint.errors import DerivationError
@@ -38,6 +44,8 @@ from coadjoint.spec.model import Variable
 
 #: Vectors of a vocabulary; their products are as many as the square of it.
 MOST_WORDS = 24
+#: Nodes of gradients by components up to which they are vectors to be shown.
+LONGEST_SLOPES = 20
 
 
 def make_vocabulary(equations: Equations, *, closed: bool = True) -> Vocabulary:
@@ -211,6 +219,7 @@ class _Maker:
             yield Candidate(row, self.values[row.name][row.indices[0] - 1])
         yield from self._loads()
         yield from self._others()
+        yield from self._right_angle()
         yield from self._further_slopes()
         formulas, gradients = list(self._formulas()), list(self._gradients())
         found = gradients + [node for each in formulas for node in self._vectors_in(each)]
@@ -226,6 +235,20 @@ class _Maker:
             except (DerivationError, KeyError):
                 continue
             yield Candidate(node, value)
+
+    def _right_angle(self) -> Iterator[Candidate]:
+        """The turn by a right angle of vectors in a plane."""
+        if any(v.value_shape == (2,) for v in self.spec.state) and "J" not in self.values:
+            self.shapes["J"] = (2, 2)
+            one, zero = self.field.one, self.field.zero
+            value = ((zero, -one), (one, zero))
+            rows = (
+                tuple(tree.Number(Fraction(int(x == one) - int(x == -one))) for x in row)
+                for row in value
+            )
+            pair = [tree.Call(function="vector", arguments=row) for row in rows]
+            self.named.append((tree.Name("J"), tree.Call(function="rows", arguments=tuple(pair))))
+            yield Candidate(tree.Name("J"), value)
 
     def _others(self) -> Iterator[Candidate]:
         """Multipliers of constraints, and vectors that the spec gives short names."""
@@ -319,11 +342,15 @@ class _Maker:
         noise = [each.formula for each in self.spec.noise]
         symmetric = [v.name for v in self.spec.variables if v.form == "symmetric"]
         scope = {"pi": (), **self.shapes}
-        declared = (self.spec.hamiltonian, self.spec.lagrangian, *noise)
+        casimirs = [each for each in self.spec.casimirs if not each.shape]
+        casimirs = casimirs if self.spec.algebra is None else []  # of an algebra ad* tells more
+        declared = (self.spec.hamiltonian, self.spec.lagrangian, *noise, *casimirs)
         formulas = [self._name_parts(each.tree) for each in declared if each is not None]
         formulas += [] if self.closed else self._powers()
         for formula, (node, parts) in product(formulas, list(self._unknowns())):
             found = gradient(formula, node, parts, scope, symmetric)
+            if found is None:
+                yield from self._write_slopes(formula, parts)
             if found:
                 own = [self._without_scalars(each).tree for each in found if each.vector]
                 yield from map(self._shorten, (*own, total_of(found)))
@@ -357,6 +384,24 @@ class _Maker:
             for each in found:
                 node = self._without_scalars(each).tree
                 yield Candidate(node, evaluate(node, values, self.field))
+
+    def _write_slopes(self, formula: tree.Node, parts: Sequence[str]) -> Iterator[tree.Node]:
+        """Short gradients of the addends of a formula, by their components."""
+        match formula:
+            case tree.Binary(operator="+" | "-", left=left, right=right):
+                yield from self._write_slopes(left, parts)
+                yield from self._write_slopes(right, parts)
+                return
+        try:
+            value = interpret(formula, {**self._pi(), **self.setting.values}, self.field)
+        except (DerivationError, KeyError):
+            return
+        field, first = self.field, self.setting.parameters
+        slopes = [write_polynomial(field, field.derivative(value, n), first) for n in parts]
+        shown = [each for each in slopes if each is not None]
+        vector = tree.Call(function="vector", arguments=tuple(shown))
+        if len(shown) == len(parts) > 1 and count_nodes(vector) <= LONGEST_SLOPES:
+            yield vector
 
     def _powers(self) -> Iterator[tree.Node]:
         """What constraints work, of which the slopes by velocities are their forces."""
