@@ -80,8 +80,6 @@ def _write_momentum(
 ) -> tree.Node | None:
     """The momentum of a velocity: the slope of the Lagrangian, where some velocities are 0."""
     node = momentum_of(setting, velocity, vocabulary.shapes)
-    if node is not None and not (resting or setting.spec.definitions):
-        return node
     slopes = setting.field.gradient(setting.lagrangian, velocity.components)
     found = recognise(vocabulary, tuple(setting.field.substitute(x, resting) for x in slopes))
     nodes = [node] if node is not None and not resting else []
@@ -99,7 +97,10 @@ def _write_multipliers(spec: Spec, lines: Sequence[VectorLine]) -> tuple[dict[st
         return {}, ""
     pairs = [(each, label) for each, label in zip(shown, labels, strict=True)]
     written = {each.reaction: name(label, bold=bool(each.shape)) for each, label in pairs}
-    told = ", ".join(f"{label} is the multiplier of {each.name}" for each, label in pairs)
+    for each, label in pairs if len(pairs) == 1 else ():
+        labels = (f"{label}{n}" for n in range(1, len(each.reactions) + 1))
+        written |= zip(each.reactions, map(name, labels), strict=True) if each.shape else ()
+    told = ", ".join(f"{label} is the force of the constraint {each.name}" for each, label in pairs)
     return written, told
 
 

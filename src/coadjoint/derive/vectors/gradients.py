@@ -144,9 +144,11 @@ def gradient(
     except (_GivesUpError, AssertionError, ExpressionError):
         return None
     if any(slopes):
-        found.append(
-            Addend(vector=tree.Call(function="vector", arguments=tuple(map(total_of, slopes))))
-        )
+        sizes = {abs(each.number) for slope in slopes for each in slope}
+        size = sizes.pop() if len(sizes) == 1 else Fraction(1)
+        plain = ([replace(each, number=each.number / size) for each in slope] for slope in slopes)
+        vector = tree.Call(function="vector", arguments=tuple(map(total_of, plain)))
+        found.append(Addend(number=size, vector=vector))
     return found
 
 

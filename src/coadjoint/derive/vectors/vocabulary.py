@@ -228,7 +228,7 @@ class Vocabulary:
                 for w in own
             ]
             own += squares
-        most = MOST_CROSSED + MOST_SPREAD * self._count(like)
+        most = len(like) * (MOST_CROSSED + MOST_SPREAD * self._count(like))
         counts = {id(word): self._count(word.value) for word in own}
         small = [ab for ab in pairs(own, own) if counts[id(ab[0])] * counts[id(ab[1])] <= most]
         places = {id(word): n for n, word in enumerate(own)}
