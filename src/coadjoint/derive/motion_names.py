@@ -65,7 +65,8 @@ def complete_vectors(
         n
         for v in spec.state
         for n in v.components
-        if n in rates and ({v.name, n} & {*form.missing} or not v.value_shape)
+        if n in rates and n not in form.within
+        if {v.name, n} & {*form.missing} or not v.value_shape
     ]
     lines = [rates[n][1] for n in further]
     if measure(lines) > LONGEST_NAMES:

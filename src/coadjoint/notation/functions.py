@@ -60,18 +60,19 @@ CALLS: Final[Mapping[str, Callable[..., Written]]] = {
     "vector": lambda *a: enclose(a, "()"),
     "pow": power,
     "hat": lambda a: _hat(a),
+    "vee": lambda a: replace(raise_mark(a, "vee", "∨"), text=f"vee({a.text})"),
 }
 
 
 def raise_mark(base: Written, text: str, mark: str) -> Written:
     """A mark above: of a transpose, of its inverse, a conjugate."""
     own = bracket(base, ATOM)
-    latex = text.replace("T", r"\top")
+    latex = text.replace("T", r"\top").replace("vee", r"\vee")
     return Written(
         text=f"{own.text}^{text}",
         latex=f"{own.latex}^{{{latex}}}",
         mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
-        typst=f"{own.typst}^({text.replace('T', 'top').replace('*', 'ast')})",
+        typst=f"{own.typst}^({text.replace('T', 'top').replace('*', 'ast').replace('vee', 'or')})",
     )
 
 

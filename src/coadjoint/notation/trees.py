@@ -78,8 +78,12 @@ def write_tree(
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
                 row = len(shapes.get(text, ())) == 2 and len(indices) == 1
-                whole = attach(name(text, bold=row), below=[number(i) for i in indices])
-                return replace(whole, text=_number(text, indices, shapes.get(text, ())))
+                own = _number(text, indices, shapes.get(text, ()))
+                if own in known:
+                    return known[own]
+                base = known[text] if text in known else name(text, bold=row)
+                whole = attach(base, below=[number(i) for i in indices])
+                return replace(whole, text=_number(base.text, indices, shapes.get(text, ())))
             case tree.Member(name=text, indices=indices):
                 whole = name(text, bold=len(shapes.get(text, ())) == 1 and not indices)
                 place = _place(part)
@@ -110,8 +114,14 @@ def write_tree(
                 return write_sum(indices, below, sign)
             case tree.Call(function="atan", arguments=(tree.Number(value=1),)):
                 return multiply([number(Fraction(1, 4)), PI])
-            case tree.Call(function="diag"):
-                return call("diag", below)
+            case tree.Call(function="diag", arguments=(tree.Call(function="vector") as entries,)):
+                return call("diag", [write_tree(each, shapes, names) for each in entries.arguments])
+            case tree.Call(function="rate_of", arguments=(tree.Index() as of,)) if (
+                len(of.indices) == 1 and len(shapes.get(of.name, ())) == 2
+            ):
+                whole = name(of.name, bold=True)
+                shown = attach(whole, below=[number(i) for i in of.indices], dot=True)
+                return replace(shown, text=f"d{below[0].text}/dt")
             case tree.Call(function="rate_of", arguments=(tree.Name(name=text),)):
                 written = name(text, bold=len(shapes.get(text, ())) == 1, dot=True)
                 return written if text not in known else write_rate(below[0])

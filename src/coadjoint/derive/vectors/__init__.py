@@ -4,6 +4,6 @@ Read `coadjoint.derive.vectors.recognise` first.
 """
 
 from coadjoint.derive.vectors.form import vector_form
-from coadjoint.derive.vectors.recognise import VectorForm, VectorLine
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine
 
 __all__ = ["VectorForm", "VectorLine", "vector_form"]

@@ -6,22 +6,22 @@ Comes in: Equations under constraints. Goes out: their vector form. Read next:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import entries, interpret
+from coadjoint.derive.mechanics.frames import frame_of
 from coadjoint.derive.setting import Setting
-from coadjoint.derive.vectors.gradients import gradient, total_of
-from coadjoint.derive.vectors.recognise import (
-    VectorForm,
-    VectorLine,
-    is_short,
-    rate_of,
-    recognise,
-)
+from coadjoint.derive.vectors.gradients import count_nodes, gradient, total_of
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
+from coadjoint.derive.vectors.recognise import is_short, recognise
+from coadjoint.derive.vectors.vocabulary import Vocabulary
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.exact import Element
+from coadjoint.exact.roots import simplify_roots
 from coadjoint.notation.names import name
+from coadjoint.notation.written import Written
+from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.model import Variable
@@ -35,31 +35,73 @@ def balance_lines(equations: Equations) -> VectorForm | None:
     velocities, as Hamel's, has no rates of these.
     """
     setting, spec = equations.setting, equations.spec
-    field, names = setting.field, setting.velocities
+    field, names = setting.field, frame_of(setting).velocities
     if not speeds_of(equations).keys() >= set(names):
         return None
-    if spec.algebra is None or spec.lagrangian is None or spec.variational or spec.dissipation:
+    if spec.lagrangian is None or spec.variational or spec.dissipation:
         return None
     if any(each.left.shape != each.right.shape for each in spec.constraints):
         return None
     left, right = momentum_balance(equations)
     if not is_derived(equations, left, right):
         return None
+    resting = dict.fromkeys(_find_resting(spec), field.zero)
     vocabulary = make_vocabulary(equations, closed=False)
     lines, sides = list[VectorLine](), dict(zip(names, right, strict=True))
     for variable in spec.having_role("velocity"):
+        if variable.components[0] in resting:
+            continue
         if len(variable.value_shape) != 1 or not set(variable.components) <= sides.keys():
             return None
-        found = recognise(vocabulary, tuple(sides[n] for n in variable.components))
-        momentum = momentum_of(setting, variable, vocabulary.shapes)
+        found = recognise(
+            vocabulary, tuple(field.substitute(sides[n], resting) for n in variable.components)
+        )
+        momentum = _write_momentum(vocabulary, variable, setting, resting)
         if found is None or momentum is None or not is_short(total_of(found)):
             return None
         lines.append(VectorLine(rate_of(momentum), total_of(found)))
-    lines += [VectorLine(*_sides(each.left.tree, each.right.tree)) for each in spec.constraints]
-    reactions = [each.reaction for each in spec.constraints if each.shape]
-    taken = "lambda" in field.names or len(reactions) != 1
-    written = {} if taken else {reactions[0]: name("lambda", bold=True)}
-    return VectorForm(lines=tuple(lines), missing=(), shapes=vocabulary.shapes, written=written)
+    lines += [VectorLine(*_sides(each.left.typed, each.right.typed)) for each in spec.constraints]
+    written, told = _write_multipliers(spec, lines)
+    return VectorForm(
+        lines=tuple(lines), missing=(), shapes=vocabulary.shapes, written=written, told=told
+    )
+
+
+def _find_resting(spec: Spec) -> Iterator[str]:
+    """Components of velocities that constraints keep at 0."""
+    for each in spec.constraints:
+        sides = (each.left.tree, each.right.tree)
+        if each.solves and any(isinstance(side, tree.Number) and not side.value for side in sides):
+            yield from next(v.components for v in spec.variables if v.name == each.solves)
+
+
+def _write_momentum(
+    vocabulary: Vocabulary, velocity: Variable, setting: Setting, resting: Mapping[str, Element]
+) -> tree.Node | None:
+    """The momentum of a velocity: the slope of the Lagrangian, where some velocities are 0."""
+    node = momentum_of(setting, velocity, vocabulary.shapes)
+    slopes = setting.field.gradient(setting.lagrangian, velocity.components)
+    found = recognise(vocabulary, tuple(setting.field.substitute(x, resting) for x in slopes))
+    nodes = [node] if node is not None and not resting else []
+    nodes += [total_of(found)] if found else []
+    return min(nodes, key=count_nodes, default=None)
+
+
+def _write_multipliers(spec: Spec, lines: Sequence[VectorLine]) -> tuple[dict[str, Written], str]:
+    """The multipliers in lines as lambda, by numbers if they are several; and what they are."""
+    used = {n.name for line in lines for n in tree.walk(line.right) if isinstance(n, tree.Name)}
+    shown = [each for each in spec.constraints if each.reaction in used]
+    named = {n for q in (*spec.variables, *spec.parameters) for n in (q.name, *q.components)}
+    labels = ["lambda"] if len(shown) == 1 else [f"lambda{n}" for n in range(1, len(shown) + 1)]
+    if not named.isdisjoint(labels):
+        return {}, ""
+    pairs = [(each, label) for each, label in zip(shown, labels, strict=True)]
+    written = {each.reaction: name(label, bold=bool(each.shape)) for each, label in pairs}
+    for each, label in pairs if len(pairs) == 1 else ():
+        labels = (f"{label}{n}" for n in range(1, len(each.reactions) + 1))
+        written |= zip(each.reactions, map(name, labels), strict=True) if each.shape else ()
+    told = ", ".join(f"{label} is the force of the constraint {each.name}" for each, label in pairs)
+    return written, told
 
 
 def momentum_of(
@@ -83,18 +125,17 @@ def _sides(left: tree.Node, right: tree.Node) -> tuple[tree.Node, tree.Node]:
 
 
 def momentum_balance(equations: Equations) -> tuple[list[Element], list[Element]]:
-    """``dp/dt`` and ``ad*_xi p + dl/da <> a + f + A^T lambda`` along the basis of the algebra."""
+    """``dp/dt`` and ``ad*_xi p + dl/da <> a + f + A^T lambda`` along the frame of velocities.
+
+    Along velocities of coordinates q, the second and the third are ``dl/dq``.
+    """
     setting, spec = equations.setting, equations.spec
-    field, names = setting.field, setting.velocities
-    lagrangian = setting.lagrangian
+    field, frame = setting.field, frame_of(setting)
+    names, lagrangian = frame.velocities, setting.lagrangian
     momenta = field.gradient(lagrangian, names)
-    xi = setting.elements(names)
-    right = [setting.sign * each for each in setting.algebra.ad_star(xi, momenta)]
-    for variable in setting.advected:
-        action = setting.actions[variable.name]
-        slopes = field.gradient(lagrangian, variable.components)
-        torque = action.diamond(slopes, setting.elements(variable.components))
-        right = [r + setting.sign * t for r, t in zip(right, torque, strict=True)]
+    inertial = frame.inertial(momenta, setting.elements(names))
+    slopes = [simplify_roots(field, each) for each in frame.slopes(lagrangian)]
+    right = [f + s for f, s in zip(inertial, slopes, strict=True)]
     places = {n: k for k, n in enumerate(names)}
     for of, formula in spec.forces.items():
         owner = next((v for v in spec.variables if v.name == of), None)
@@ -103,9 +144,10 @@ def momentum_balance(equations: Equations) -> tuple[list[Element], list[Element]
             right[places[part]] += value
     work = field.zero
     for each in spec.constraints:
-        sides = (setting.components(side) for side in (each.left, each.right))
         multipliers = entries(setting.reactions[each.reaction])
-        for a, b, multiplier in zip(*sides, multipliers, strict=False):
+        one, other = (setting.components(side) for side in (each.left, each.right))
+        others = other if len(other) == len(one) else other * len(one)  # 0, in the place of zeros
+        for a, b, multiplier in zip(one, others, multipliers, strict=True):
             work += multiplier * (a - b)
     right = [r + w for r, w in zip(right, field.gradient(work, names), strict=True)]
     speeds = speeds_of(equations)
@@ -120,7 +162,7 @@ def speeds_of(equations: Equations) -> dict[str, Element]:
     field = equations.setting.field
     rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
     solved = {label for label, _ in equations.exact.definitions}
-    for n in (*equations.setting.velocities, *equations.variables):
+    for n in (*frame_of(equations.setting).velocities, *equations.variables):
         if f"d{n}_dt" in solved:
             rates[n] = field[f"d{n}_dt"]
     return rates
@@ -139,7 +181,7 @@ def is_derived(equations: Equations, left: Sequence[Element], right: Sequence[El
         for label, row, side in zip(solve.names, solve.matrix, solve.known, strict=True):
             products = [a * field[n] for a, n in zip(row, solve.names, strict=True)]
             rows[label] = field.substitute(field.sum([*products, -side]), known)
-    for velocity, a, b in zip(equations.setting.velocities, left, right, strict=True):
+    for velocity, a, b in zip(frame_of(equations.setting).velocities, left, right, strict=True):
         rest = field.substitute(a - b, known)
         own = rows.get(f"d{velocity}_dt")
         if rest and not (own is not None and field.is_zero(rest - own)):

@@ -17,7 +17,7 @@ from fractions import Fraction
 from coadjoint.algebra.matrices import SparseMatrix, commutator, size
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.jets import jets_of
-from coadjoint.derive.vectors.recognise import VectorLine, rate_of
+from coadjoint.derive.vectors.lines import VectorLine, rate_of
 from coadjoint.exact.linear import Span
 from coadjoint.spec.core import tree
 from coadjoint.spec.model import Variable

@@ -11,18 +11,14 @@ from fractions import Fraction
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.setting import assemble
+from coadjoint.derive.vectors.affine import affine_lines
+from coadjoint.derive.vectors.attitudes import tell_attitudes
 from coadjoint.derive.vectors.balance import balance_lines, momentum_of
 from coadjoint.derive.vectors.brackets import BASIS, commutator_lines, plane_lines
 from coadjoint.derive.vectors.gradients import total_of
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
 from coadjoint.derive.vectors.members import member_form
-from coadjoint.derive.vectors.recognise import (
-    VectorForm,
-    VectorLine,
-    is_short,
-    rate_of,
-    recognise,
-    tree_name,
-)
+from coadjoint.derive.vectors.recognise import is_short, owner_name, recognise
 from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.notation.trees import BY_PROCESS, DIFFERENTIAL, IN_TIME
@@ -36,25 +32,58 @@ def vector_form(equations: Equations) -> VectorForm:
     if equations.spec.family is not None:
         return member_form(equations)
     vocabulary = make_vocabulary(equations)
-    lines, missing = plane_lines(equations), list[str]()
+    lines, missing, told = plane_lines(equations), list[str](), ""
     for target in vocabulary.targets:
         found, left = _find_lines(equations, vocabulary, target)
         lines += found
         missing += left
+    within = frozenset[str]()
+    if missing:
+        found, within = affine_lines(equations)
+        covered = {line.left for line in found}
+        missing = [each for each in missing if rate_of(tree.Name(each)) not in covered]
+        lines += found
+        told = "Id is the identity" if found else told
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and equations.spec.constraints:
         balance = balance_lines(equations)
         if balance is not None:
-            lines[:0], missing = balance.lines, []
+            lines = [*balance.lines, *_by_velocity(equations, lines)]
+            missing = []
             shapes |= balance.shapes
             written |= balance.written
+            told = balance.told
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
-    told = f"E_k is the basis of {equations.setting.algebra.name}" if _names_basis(lines) else ""
+    if _names_basis(lines):
+        told = f"E_k is the basis of {equations.setting.algebra.name}"
+    told = "; ".join(filter(None, (told, *tell_attitudes(equations.spec, lines))))
     return VectorForm(
-        lines=tuple(lines), missing=tuple(missing), shapes=shapes, written=written, told=told
+        lines=tuple(lines),
+        missing=tuple(missing),
+        shapes=shapes,
+        written=written,
+        told=told,
+        within=within,
     )
+
+
+def _by_velocity(equations: Equations, lines: Sequence[VectorLine]) -> Iterator[VectorLine]:
+    """Lines, with the rates of coordinates by the velocities that constraints give."""
+    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
+    for line in lines:
+        right = line.right
+        for v in equations.spec.having_role("velocity"):
+            moved = next((q for q in equations.spec.state if q.name == v.of), None)
+            if moved is not None and line.left == rate_of(tree.Name(moved.name)):
+                own = [rates[n] for n in moved.components]
+                right = (
+                    tree.Name(v.name)
+                    if own == [*equations.setting.elements(v.components)]
+                    else right
+                )
+        yield VectorLine(line.left, right)
 
 
 def _names_basis(lines: Sequence[VectorLine]) -> bool:
@@ -70,7 +99,7 @@ def _find_lines(
     whole = _find_line(equations, vocabulary, target)
     if whole is not None:
         return [whole], []
-    name = tree_name(target.node)
+    name = owner_name(target.node)
     lines, told = list[VectorLine](), set[str]()
     for part in vocabulary.parts.get(name, ()) if not equations.spec.noise else ():
         line = _find_line(equations, vocabulary, part.rate)
@@ -97,7 +126,7 @@ def _find_line(
     fields = noise_fields(equations.setting)
     if not fields:
         return VectorLine(rate_of(target.node), total_of(found))
-    (variable,) = (v for v in equations.spec.state if v.name == tree_name(target.node))
+    (variable,) = (v for v in equations.spec.state if v.name == owner_name(target.node))
     parts = [tree.Call(function=IN_TIME, arguments=(total_of(found),))] * bool(found)
     for each in fields:
         moved = dict(zip(equations.setting.state, each.field, strict=True))
@@ -141,7 +170,8 @@ def _short_names(
     shown = list[VectorLine]()
     for each in reversed(spec.definitions):
         if not each.arguments and any(
-            tree.Name(each.name) in tree.walk(line.right) for line in (*lines, *shown)
+            tree.Name(each.name) in (*tree.walk(line.left), *tree.walk(line.right))
+            for line in (*lines, *shown)
         ):
             shown.append(VectorLine(tree.Name(each.name), each.typed))
     return reversed(shown)

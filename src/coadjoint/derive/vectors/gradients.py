@@ -21,7 +21,9 @@ from coadjoint.derive.vectors.transposes import (
     multiply,
     pull_trace,
     turn,
+    turn_products,
 )
+from coadjoint.exact import Element, Field
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.faults import ExpressionError
@@ -85,6 +87,11 @@ def _write_turns(
 _EIGHTH = tree.Call(function="atan", arguments=(tree.Number(Fraction(1)),))
 
 
+def count_nodes(node: tree.Node) -> int:
+    """How long a formula is."""
+    return sum(1 for _ in tree.walk(node))
+
+
 def total_of(addends: list[Addend]) -> tree.Node:
     """The sum of addends."""
     signed = [(each.number < 0, each.tree) for each in addends]
@@ -93,6 +100,21 @@ def total_of(addends: list[Addend]) -> tree.Node:
     for minus, part in others:
         whole = tree.Binary(operator="-" if minus else "+", left=whole, right=part)
     return whole
+
+
+def write_polynomial(field: Field, value: Element, first: Collection[str] = ()) -> tree.Node | None:
+    """A polynomial in symbols as a tree, some of these before others; None for anything else."""
+    found = list[Addend]()
+    for part in field.quotients(value) if value else ():
+        for monomial in part.monomials:
+            if part.divisors or any(name in field.adjoined for name, _ in monomial.powers):
+                return None
+            powers = (
+                tree.Name(name) if e == 1 else tree.Power(base=tree.Name(name), exponent=e)
+                for name, e in sorted(monomial.powers, key=lambda power: power[0] not in first)
+            )
+            found.append(Addend(Fraction(monomial.number), tuple(powers)))
+    return total_of(found)
 
 
 def gradient(
@@ -114,22 +136,34 @@ def gradient(
     try:
         known = shapes(formula, scope)
         pulled = _pull(formula, Addend(), by, known)
-        found = _collect(_drop_transposes(each, symmetric) for each in pulled)
-        slopes = [_collect(_pull(formula, Addend(), tree.Name(each), known)) for each in parts]
+        found = _collect(_simplify(each, symmetric, scope) for each in pulled)
+        slopes = [
+            _collect(map(_put_entries_last, _pull(formula, Addend(), tree.Name(each), known)))
+            for each in parts
+        ]
     except (_GivesUpError, AssertionError, ExpressionError):
         return None
     if any(slopes):
-        found.append(
-            Addend(vector=tree.Call(function="vector", arguments=tuple(map(total_of, slopes))))
-        )
+        sizes = {abs(each.number) for slope in slopes for each in slope}
+        size = sizes.pop() if len(sizes) == 1 else Fraction(1)
+        plain = ([replace(each, number=each.number / size) for each in slope] for slope in slopes)
+        vector = tree.Call(function="vector", arguments=tuple(map(total_of, plain)))
+        found.append(Addend(number=size, vector=vector))
     return found
 
 
-def _drop_transposes(addend: Addend, symmetric: Collection[str]) -> Addend:
-    """An addend in which matrices that are symmetric have no transposes."""
-    if addend.vector is None or not symmetric:
+def _put_entries_last(addend: Addend) -> Addend:
+    """An addend whose scalars stand before the components of vectors."""
+    above = sorted(addend.above, key=lambda factor: isinstance(factor, tree.Index))
+    return replace(addend, above=tuple(above))
+
+
+def _simplify(addend: Addend, symmetric: Collection[str], scope: Mapping[str, Shape]) -> Addend:
+    """An addend without transposes of products, and of matrices that are symmetric."""
+    if addend.vector is None:
         return addend
-    return replace(addend, vector=drop_transposes(addend.vector, symmetric))
+    vector = turn_products(addend.vector, shapes(addend.vector, scope))
+    return replace(addend, vector=drop_transposes(vector, symmetric) if symmetric else vector)
 
 
 def _collect(addends: Iterable[Addend]) -> list[Addend]:
@@ -145,8 +179,14 @@ def _collect(addends: Iterable[Addend]) -> list[Addend]:
 def _is_it(node: tree.Node, by: tree.Node) -> bool:
     """Whether a node is the variable; a component may be written with a subscript."""
     if isinstance(node, tree.Index) and isinstance(by, tree.Name):
-        return "".join(map(str, (node.name, *node.indices))) == by.name
+        return by.name in component_names(node.name, node.indices)
     return node == by
+
+
+def component_names(name: str, indices: Sequence[int]) -> tuple[str, str]:
+    """What a component may be called: ``Pi1``, and of a name that ends in a digit ``R1_1``."""
+    places = "".join(map(str, indices))
+    return name + places, f"{name}_{places}"
 
 
 def _names(node: tree.Node, by: tree.Node) -> bool:
@@ -187,6 +227,9 @@ def _pull(
         case tree.Call(function="dot", arguments=(a, b)):
             yield from down(a, _with(adjoint, b))
             yield from down(b, _with(adjoint, a))
+        case tree.Call(function="vector", arguments=parts):
+            for place, part in enumerate(parts, 1):
+                yield from down(part, _entry_of(adjoint, place))
         case tree.Call(function="cross", arguments=(a, b)):
             g = _vector_of(adjoint)
             yield from down(
@@ -195,8 +238,15 @@ def _pull(
             yield from down(
                 b, replace(adjoint, vector=tree.Call(function="cross", arguments=(g, a)))
             )
+        case tree.Call(function="rotate", arguments=(q, a)) if not _names(q, by):
+            back = tree.Call(function="conjugate", arguments=(q,))
+            pulled = tree.Call(function="rotate", arguments=(back, _vector_of(adjoint)))
+            yield from down(a, replace(adjoint, vector=pulled))
         case tree.Call(function="trace", arguments=(a,)) if adjoint.vector is None:
             yield from _pull_traces(a, adjoint, down, known)
+        case tree.Call(function="diag", arguments=(a,)) if len(known[id(a)]) == 2:
+            along = tree.Call(function="diag", arguments=(_vector_of(adjoint),))
+            yield from down(a, replace(adjoint, vector=along))
         case tree.Call(function="det", arguments=(a,)) if adjoint.vector is None:
             cofactors = tree.Call(function="inverse", arguments=(turn(a),))
             yield from down(a, replace(times(adjoint, node), vector=cofactors))
@@ -230,11 +280,19 @@ def _pull_product(
         yield from down(left, times(adjoint, right))
         if _names(right, by):
             yield from down(right, _by_factor(adjoint, left, first))
-    elif len(first) == 2 and len(second) == 1 and not _names(left, by):
-        yield from down(right, replace(adjoint, vector=multiply(turn(left), _vector_of(adjoint))))
-    elif len(first) == 2 and len(second) == 1 and not _names(right, by):
-        outer = tree.Call(function="outer", arguments=(_vector_of(adjoint), right))
-        yield from down(left, replace(adjoint, vector=outer))
+    elif len(first) == 2 and len(second) == 1:
+        g = _vector_of(adjoint)
+        if _names(right, by):
+            yield from down(right, replace(adjoint, vector=multiply(turn(left), g)))
+        if _names(left, by):
+            outer = tree.Call(function="outer", arguments=(g, right))
+            yield from down(left, replace(adjoint, vector=outer))
+    elif len(first) == len(second) == 2:
+        g = _vector_of(adjoint)
+        if _names(left, by):
+            yield from down(left, replace(adjoint, vector=multiply(g, turn(right))))
+        if _names(right, by):
+            yield from down(right, replace(adjoint, vector=multiply(turn(left), g)))
     else:
         raise _GivesUpError
 
@@ -265,6 +323,15 @@ def _vector_of(adjoint: Addend) -> tree.Node:
     if adjoint.vector is None:
         raise _GivesUpError
     return adjoint.vector
+
+
+def _entry_of(adjoint: Addend, place: int) -> Addend:
+    """What an adjoint by its name has at one place of a vector that is written out."""
+    vector = _vector_of(adjoint)
+    if not isinstance(vector, tree.Name):
+        raise _GivesUpError
+    entry = tree.Index(name=vector.name, indices=(place,))
+    return times(replace(adjoint, vector=None), entry)
 
 
 def _with(adjoint: Addend, vector: tree.Node) -> Addend:
@@ -298,15 +365,8 @@ def times(adjoint: Addend, factor: tree.Node) -> Addend:
             return times(times(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
             return over(times(adjoint, left), right)
-        case tree.Power(base=base, exponent=n) if n < 0:
-            return over(adjoint, base if n == -1 else tree.Power(base=base, exponent=-n))
-    for n, each in enumerate(adjoint.below):
-        if each == factor or (isinstance(each, tree.Power) and each.base == factor):
-            power = each.exponent - 1 if isinstance(each, tree.Power) and each != factor else 0
-            left = tree.Power(base=factor, exponent=power) if power > 1 else factor
-            below = (*adjoint.below[:n], *((left,) if power else ()), *adjoint.below[n + 1 :])
-            return replace(adjoint, below=below)
-    return replace(adjoint, above=(*adjoint.above, factor))
+    base, exponent = _split_power(factor)
+    return _raise(adjoint, base, exponent)
 
 
 def over(adjoint: Addend, divisor: tree.Node) -> Addend:
@@ -318,18 +378,31 @@ def over(adjoint: Addend, divisor: tree.Node) -> Addend:
             return over(over(adjoint, left), right)
         case tree.Binary(operator="/", left=left, right=right):
             return times(over(adjoint, left), right)
-    if divisor in adjoint.above:
-        rest = list(adjoint.above)
-        rest.remove(divisor)
-        return replace(adjoint, above=tuple(rest))
-    base, exponent = (
-        (divisor.base, divisor.exponent) if isinstance(divisor, tree.Power) else (divisor, 1)
+    base, exponent = _split_power(divisor)
+    return _raise(adjoint, base, -exponent)
+
+
+def _split_power(node: tree.Node) -> tuple[tree.Node, int]:
+    """A base and its exponent."""
+    return (node.base, node.exponent) if isinstance(node, tree.Power) else (node, 1)
+
+
+def _raise(adjoint: Addend, base: tree.Node, exponent: int) -> Addend:
+    """An addend times a power; of one base there is one power, above or below."""
+
+    def find(factors: tuple[tree.Node, ...], sign: int) -> tuple[int, int]:
+        for n, each in enumerate(factors):
+            own, power = _split_power(each)
+            if own == base:
+                return n, sign * power
+        return len(factors), 0
+
+    up, above = find(adjoint.above, 1)
+    down, below = find(adjoint.below, -1)
+    total = above + below + exponent
+    power = [base if abs(total) == 1 else tree.Power(base=base, exponent=abs(total))]
+    return replace(
+        adjoint,
+        above=(*adjoint.above[:up], *(power * (total > 0)), *adjoint.above[up + 1 :]),
+        below=(*adjoint.below[:down], *(power * (total < 0)), *adjoint.below[down + 1 :]),
     )
-    lower, power = list(adjoint.below), exponent
-    for each in adjoint.below:
-        own = each.base if isinstance(each, tree.Power) else each
-        if own == base:
-            power += each.exponent if isinstance(each, tree.Power) else 1
-            lower.remove(each)
-    lower.append(base if power == 1 else tree.Power(base=base, exponent=power))
-    return replace(adjoint, below=tuple(lower))

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 from coadjoint.derive.equations import Equations
+from coadjoint.derive.vectors.attitudes import name_poses, tell_attitudes
 from coadjoint.derive.vectors.gradients import Addend, total_of
-from coadjoint.derive.vectors.recognise import (
-    VectorForm,
-    VectorLine,
-    rate_of,
-    recognise,
-    tree_name,
-)
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
+from coadjoint.derive.vectors.recognise import owner_name, recognise
+from coadjoint.derive.vectors.shared import name_shared
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.spec.core import tree
 
@@ -31,19 +29,29 @@ def member_form(equations: Equations) -> VectorForm:
     lines, missing = list[VectorLine](), list[str]()
     rename = _Rename(equations, own, count)
     for target in vocabulary.targets:
-        label = tree_name(target.node)
+        label = owner_name(target.node)
         if label not in wanted:
             continue
-        found = recognise(vocabulary, target.value)
-        generic = None if found is None else rename.gather(found)
-        if generic is None:
-            missing.append(label.rpartition("_")[0])
-            continue
-        lines.append(VectorLine(rate_of(rename.node(target.node)), generic))
+        for part in [each.rate for each in vocabulary.parts.get(label, ())] or [target]:
+            found = recognise(vocabulary, part.value)
+            generic = None if found is None else rename.gather(found)
+            if generic is None:
+                missing.append(label.rpartition("_")[0])
+                continue
+            lines.append(VectorLine(rate_of(rename.node(part.node)), generic))
     shapes = dict(vocabulary.shapes)
     for label, own_shape in list(shapes.items()):
         shapes.setdefault(label.rpartition("_")[0], own_shape)
-    return VectorForm(lines=tuple(lines), missing=tuple(missing), shapes=shapes, written={})
+    taken = {*shapes, *(q.name for q in equations.spec.parameters)}
+    lines, named = name_shared(lines, shapes, taken)
+    told = tell_attitudes(equations.spec, lines)
+    return VectorForm(
+        lines=tuple(lines),
+        missing=tuple(missing),
+        shapes={**shapes, **named},
+        written={},
+        told="; ".join(told),
+    )
 
 
 class _Rename:
@@ -57,6 +65,8 @@ class _Rename:
         self.ring = declared.index.periodic
         self.other = "j" if self.index != "j" else "k"
         self.bases = {*declared.variables, *declared.indexed, *declared.indexed_inputs}
+        for pose in name_poses(equations.spec):
+            self.bases |= {name.rpartition("_")[0] for name in pose.names}
 
     def member_of(self, label: str) -> tuple[str, int] | None:
         """The quantity and the member that a name means."""
@@ -84,7 +94,8 @@ class _Rename:
         if not self.pairs:
             return self.node(total_of(list(found)))
         alone, groups = list[Addend](), dict[int, list[Addend]]()
-        for each in _split(found):
+        parts = (_split([each]) if len(self._partners(each)) > 1 else [each] for each in found)
+        for each in chain.from_iterable(parts):
             partners = self._partners(each)
             if len(partners) > 1:
                 return None

@@ -12,19 +12,17 @@ Comes in: a vocabulary and the value of a rate. Goes out: addends. Read next:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import tee
 
 from coadjoint.derive.interpret import Value, entries
-from coadjoint.derive.vectors.gradients import Addend, over, times, total_of
+from coadjoint.derive.vectors.gradients import Addend, count_nodes, over, times, total_of
 from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import scale, subtract
-from coadjoint.notation.written import Written
 from coadjoint.spec.core import tree
-from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.shapes import shapes
 
 #: Terms of components beyond which nothing is searched for.
@@ -43,52 +41,15 @@ MOST_RATIOS = 12
 ZERO = tree.Number(Fraction(0))
 
 
-@dataclass(frozen=True)
-class VectorLine:
-    """An equation of a whole quantity.
-
-    Attributes:
-        left: Its left side.
-        right: Its right side.
-    """
-
-    left: tree.Node
-    right: tree.Node
-
-
-@dataclass(frozen=True)
-class VectorForm:
-    """What was found.
-
-    Attributes:
-        lines: The equations.
-        missing: Names of whole quantities of the state whose equations stand in components alone.
-        shapes: Shapes of whole quantities, for printing.
-        written: How some names are written.
-        told: What is said of names that stand in the lines alone.
-    """
-
-    lines: tuple[VectorLine, ...]
-    missing: tuple[str, ...]
-    shapes: Mapping[str, Shape]
-    written: Mapping[str, Written]
-    told: str = ""
-
-
-def rate_of(node: tree.Node) -> tree.Node:
-    """The rate of a quantity."""
-    return tree.Call(function="rate_of", arguments=(node,))
-
-
-def tree_name(node: tree.Node) -> str:
-    """The name of a whole quantity."""
-    assert isinstance(node, tree.Name), node
+def owner_name(node: tree.Node) -> str:
+    """The name of a whole quantity, or of what has the row."""
+    assert isinstance(node, tree.Name | tree.Index), node
     return node.name
 
 
 def is_short(node: tree.Node) -> bool:
     """Whether a formula can be read at one look."""
-    return sum(1 for _ in tree.walk(node)) <= LONGEST
+    return count_nodes(node) <= LONGEST
 
 
 def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
@@ -106,15 +67,22 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
     for whole in (True, False) if not matrix and words <= MOST_WORDS else (True,):
         found = _search(vocabulary, value, whole=whole)
         if found == [] or (found and vocabulary.evaluate(total_of(found)) == value):
-            return found
+            return _begin_with_plus(map(vocabulary.settle, found))
     return None
+
+
+def _begin_with_plus(found: Iterable[Addend]) -> list[Addend]:
+    """Addends, first of them one that is not subtracted, where there is one."""
+    addends = list(found)
+    place = next((n for n, each in enumerate(addends) if each.number > 0), 0)
+    return [*addends[place : place + 1], *addends[:place], *addends[place + 1 :]]
 
 
 def _search(vocabulary: Vocabulary, rest: Value, *, whole: bool) -> list[Addend] | None:
     """Addends taken one by one, the simplest kind of product first."""
     like, found = rest, list[Addend]()
     for level in range(vocabulary.levels):
-        candidates = vocabulary.candidates(like, level)
+        candidates = vocabulary.candidates(like, level, whole=whole)
         while len(found) < MOST_PRODUCTS and any(map(bool, entries(rest))):
             candidates, again = tee(candidates)  # which are made once, and only as far as asked for
             step = _best(vocabulary, again, rest, whole=whole)
@@ -139,7 +107,7 @@ def _best(
         for each in entries(rest)
     ]
     for candidate in candidates:
-        for factor in _factors(vocabulary, candidate.value, wanted):
+        for factor in _factors(vocabulary, candidate.value, wanted, whole=whole):
             left = subtract(rest, scale(factor, candidate.value))
             count = _count(field, left)
             if count > fewest or (whole and before - count < _count(field, candidate.value)):
@@ -148,7 +116,7 @@ def _best(
             if written is None:
                 continue
             addend = _put(vocabulary, written, candidate.node)
-            length = sum(1 for _ in tree.walk(addend.tree))
+            length = count_nodes(addend.tree)
             if (count, length) >= (fewest, shortest):
                 continue
             fewest, shortest, best = count, length, (addend, left)
@@ -159,18 +127,16 @@ def _best(
 
 def _put(vocabulary: Vocabulary, scalar: Addend, vector: tree.Node) -> Addend:
     """A scalar times a vector; minus a vector product is the product of the factors exchanged."""
-    match vector:
+    whole = _take_scalars(vocabulary, scalar, vector)
+    match whole.vector:
         case tree.Call(function="cross" | "commutator" as function, arguments=(a, b)):
             for side in (a, b):
-                scalar = _take_scalars(vocabulary, scalar, side)
+                whole = _take_scalars(vocabulary, whole, side)
             a, b = (_bare(vocabulary, side) for side in (a, b))
-            sides = (a, b) if scalar.number > 0 else (b, a)
-            return replace(
-                scalar,
-                number=abs(scalar.number),
-                vector=tree.Call(function=function, arguments=sides),
-            )
-    return _take_scalars(vocabulary, scalar, vector)
+            sides = (a, b) if whole.number > 0 else (b, a)
+            product = tree.Call(function=function, arguments=sides)
+            return replace(whole, number=abs(whole.number), vector=product)
+    return whole
 
 
 def _bare(vocabulary: Vocabulary, node: tree.Node) -> tree.Node:
@@ -187,12 +153,14 @@ def _take_scalars(vocabulary: Vocabulary, scalar: Addend, node: tree.Node) -> Ad
         return not shapes(part, {"pi": (), **vocabulary.shapes})[id(part)]
 
     match node:
+        case tree.Negate(operand=operand):
+            return _take_scalars(vocabulary, replace(scalar, number=-scalar.number), operand)
         case tree.Binary(operator="*", left=left, right=right) if is_scalar(left):
             return _take_scalars(vocabulary, times(scalar, left), right)
         case tree.Binary(operator="/", left=left, right=right):
             return _take_scalars(vocabulary, over(scalar, right), left)
         case tree.Call(function="vector", arguments=parts) if any(map(_is_minus, parts)):
-            plain = [each.operand if isinstance(each, tree.Negate) else each for each in parts]
+            plain = [_turn_sign(each) if _is_minus(each) else each for each in parts]
             if all(_is_minus(each) or each == ZERO for each in parts):
                 turned = tree.Call(function="vector", arguments=tuple(plain))
                 return replace(scalar, number=-scalar.number, vector=turned)
@@ -200,23 +168,47 @@ def _take_scalars(vocabulary: Vocabulary, scalar: Addend, node: tree.Node) -> Ad
 
 
 def _is_minus(node: tree.Node) -> bool:
-    """Whether a formula begins with a minus."""
+    """Whether every addend of a formula has a minus."""
+    match node:
+        case tree.Binary(operator="+", left=left, right=right):
+            return _is_minus(left) and _is_minus(right)
+        case tree.Binary(operator="-", left=left):
+            return _is_minus(left)
     return isinstance(node, tree.Negate)
 
 
+def _turn_sign(node: tree.Node) -> tree.Node:
+    """Minus a formula of which every addend has a minus."""
+    match node:
+        case tree.Negate(operand=operand):
+            return operand
+        case tree.Binary(operator="+" | "-" as sign, left=left, right=right):
+            right = _turn_sign(right) if sign == "+" else right
+            return tree.Binary(operator="+", left=_turn_sign(left), right=right)
+    raise AssertionError(node)
+
+
 def _factors(
-    vocabulary: Vocabulary, value: Value, wanted: Sequence[Sequence[tuple[Element, list[int]]]]
+    vocabulary: Vocabulary,
+    value: Value,
+    wanted: Sequence[Sequence[tuple[Element, list[int]]]],
+    *,
+    whole: bool,
 ) -> list[Element]:
     """Scalars of the spec by which a term of a candidate is a term of what remains.
 
     Terms of what remains stand with the powers of what is no scalar, as `powers_outside` has them.
+    A candidate of which every term remains is known by its first one.
     """
+    field = vocabulary.field
     for own, terms in zip(entries(value), wanted, strict=True):
         if own and terms:
-            first = vocabulary.field.first_term(own)
-            inverse, powers = first.inverse(), vocabulary.powers_outside(first)
-            ratios = (term * inverse for term, outside in terms if outside == powers)
-            return [each for each in ratios if vocabulary.is_scalar(each)]
+            found = list[Element]()
+            for first in [field.first_term(own)] if whole else field.terms(own)[:MOST_RATIOS]:
+                inverse, powers = first.inverse(), vocabulary.powers_outside(first)
+                ratios = (term * inverse for term, outside in terms if outside == powers)
+                found += (each for each in ratios if vocabulary.is_scalar(each))
+            return list(dict.fromkeys(found))
         if own:
             # a candidate that has an entry where nothing remains can only add terms
             return []

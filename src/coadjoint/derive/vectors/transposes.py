@@ -54,6 +54,18 @@ def list_factors(node: tree.Node, known: Mapping[int, Shape]) -> list[tree.Node]
     return [node]
 
 
+def turn_products(node: tree.Node, known: Mapping[int, Shape]) -> tree.Node:
+    """A formula in which no product of matrices stands below a transpose."""
+    match node:
+        case tree.Call(
+            function="transpose", arguments=(tree.Binary(operator="*", left=a, right=b) as product,)
+        ) if known[id(a)] and known[id(b)]:
+            factors = (turn_products(each, known) for each in list_factors(product, known))
+            return multiply(*(turn(each) for each in reversed(list(factors))))
+    below = tree.children(node)
+    return tree.rebuild(node, [turn_products(each, known) for each in below]) if below else node
+
+
 def pull_trace(
     node: tree.Node, known: Mapping[int, Shape]
 ) -> Iterator[tuple[tree.Node, tree.Node]]:

@@ -6,14 +6,15 @@ they are. Read next: `coadjoint.derive.vectors.words`, which finds the words of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from dataclasses import field as attribute
 from fractions import Fraction
 from functools import cached_property
 from itertools import product as pairs
 
-from coadjoint.derive.interpret import Value, interpret
+from coadjoint.derive.interpret import Value, entries, interpret
+from coadjoint.derive.vectors.attitudes import drop_rotations
 from coadjoint.derive.vectors.gradients import Addend
 from coadjoint.exact import Element, Field, dense
 from coadjoint.groups.quaternions import Quaternion
@@ -26,6 +27,10 @@ MOST_ROWS = 10
 MOST_MATRICES = 8
 #: Rows of matrices beyond which products of three cost too much.
 MOST_TRIPLE = 2
+#: Terms of factors, multiplied, up to which any product is tried; and how many times the terms of
+#: what is looked for they may be. Products of longer factors would take minutes.
+MOST_CROSSED = 200
+MOST_SPREAD = 4
 #: Vectors beyond which products of three are too many.
 MOST_PLAIN = 8
 
@@ -66,6 +71,9 @@ class Vocabulary:
         values: The value of each name that a printed tree may hold.
         parts: Of a quantity, the parts that have short names.
         levels: How many kinds of candidates there are, the simplest first.
+        moving: Names of the components of the state.
+        attitudes: Names of rotations.
+        shorten: Puts short names into a formula.
         products: Products of two vectors that were made, by the trees of both.
     """
 
@@ -78,52 +86,82 @@ class Vocabulary:
     values: Mapping[str, Value] = attribute(default_factory=dict)
     parts: Mapping[str, Sequence[Part]] = attribute(default_factory=dict)
     levels: int = 4
+    moving: frozenset[str] = frozenset()
+    attitudes: frozenset[tree.Node] = frozenset()
+    shorten: Callable[[tree.Node], tree.Node] = lambda node: node
     products: dict[tuple[tree.Node, tree.Node], Candidate] = attribute(default_factory=dict)
 
     def evaluate(self, node: tree.Node) -> Value:
         """The value of a printed tree, from that of each name in it."""
-        names, spare = dict(self.values), list[tree.Node]()
+        return evaluate(node, self.values, self.field)
 
-        def plain(part: tree.Node) -> tree.Node:
-            rebuilt = tree.rebuild(part, [plain(each) for each in tree.children(part)])
-            match rebuilt:
-                case tree.Call(function="qmul", arguments=(a, b)):
-                    sides = (interpret(each, names, self.field) for each in (a, b))
-                    left, right = (
-                        Quaternion(*x) if len(x) == len("wxyz") else Quaternion.pure(x)
-                        for x in sides
-                    )
-                    spare.append(rebuilt)
-                    names[f"_q{len(spare)}"] = (left * right).components
-                    return tree.Name(f"_q{len(spare)}")
-            return rebuilt
+    def settle(self, addend: Addend) -> Addend:
+        """An addend as it is printed: with ``R^T R = 1``, and with short names."""
+        if not self.attitudes:
+            return addend
+        scope = {"pi": (), **self.shapes}
 
-        return interpret(plain(node), names, self.field)
+        def settled(node: tree.Node) -> tree.Node:
+            return self.shorten(drop_rotations(node, self.attitudes, scope))
 
-    def candidates(self, like: Value, level: int) -> Iterator[Candidate]:
-        """Candidates of the shape of a value: the words; their products; products of products."""
+        return replace(
+            addend,
+            above=tuple(map(settled, addend.above)),
+            below=tuple(map(settled, addend.below)),
+            vector=None if addend.vector is None else settled(addend.vector),
+        )
+
+    def candidates(self, like: Value, level: int, *, whole: bool) -> Iterator[Candidate]:
+        """Candidates of the shape of a value: the words; their products; products of products.
+
+        Args:
+            like: The value.
+            level: How far from simple words.
+            whole: Whether all terms of a candidate are among those of the value, so that words
+                of other quantities of the state alone are not asked for.
+        """
+        words = self.words
+        if whole:
+            reached = self._reach(like)
+            owned = [(word, self._reach(word.value) & self.moving) for word in words]
+            words = tuple(word for word, own in owned if not own or own & reached)
         if isinstance(like[0], tuple):
-            yield from self._matrices(like, level)
+            yield from self._matrices(words, like, level)
             return
-        whole = [word for word in self.words if measure(word.value) == measure(like)]
-        own = [word for word in whole if level > 1 or not _is_sum(word.node)]
+        same = [word for word in words if measure(word.value) == measure(like)]
+        own = [word for word in same if level > 1 or not _is_sum(word.node)]
         # a product of the spec's is no simpler than those of level 1
         yield from (word for word in own if level or not _is_cross(word.node))
         if level and len(like) == 4:
-            yield from self._turns(own)
+            yield from self._turns(own, words)
+        if level:
+            yield from self._applied(words, like)
         if level and len(like) == 3:
-            yield from self._crosses(own, own)
+            most = MOST_CROSSED + MOST_SPREAD * self._count(like) if whole else None
+            yield from self._crosses(own, own, most)
+        if level > 1 and len(like) != 3:
+            yield from self._weighted(own)
         if level > 2 and len(like) == 3:
             plain = [word for word in own if isinstance(word.node, tree.Name | tree.Member)]
             plain = plain[:MOST_PLAIN]
             yield from self._crosses(plain, list(self._crosses(plain, plain)))
 
-    def _crosses(self, left: list[Candidate], right: list[Candidate]) -> Iterator[Candidate]:
+    def _crosses(
+        self, left: list[Candidate], right: list[Candidate], most: int | None = None
+    ) -> Iterator[Candidate]:
+        """Products of vectors; none that would have far more terms than some number."""
+        counts = {id(word): self._count(word.value) for word in (*left, *right)} if most else {}
         for n, a in enumerate(left):
             for b in right[n + 1 :] if right is left else right:
+                if most and counts[id(a)] * counts[id(b)] > most:
+                    continue
                 found = self._cross(a, b)
                 if any(map(bool, found.value)):
                     yield found
+
+    def _count(self, value: Value) -> int:
+        """The number of terms of all components."""
+        return sum(self.field.count_terms(each) for each in entries(value))
 
     def _cross(self, a: Candidate, b: Candidate) -> Candidate:
         """A product, made once: each level of each search begins with the same."""
@@ -133,9 +171,33 @@ class Vocabulary:
             known = self.products[a.node, b.node] = Candidate(node, dense.cross(a.value, b.value))
         return known
 
-    def _turns(self, own: list[Candidate]) -> Iterator[Candidate]:
+    @staticmethod
+    def _applied(words: Sequence[Candidate], like: Value) -> Iterator[Candidate]:
+        """Matrices by their names, times vectors by theirs."""
+        plain = [word for word in words if isinstance(word.node, tree.Name)]
+        for a, b in pairs(plain, plain):
+            if measure(a.value) == (len(like), *measure(b.value)):
+                node = tree.Binary(operator="*", left=a.node, right=b.node)
+                yield Candidate(node, dense.apply(a.value, b.value))
+
+    def _weighted(self, own: list[Candidate]) -> Iterator[Candidate]:
+        """Vectors by diagonal matrices, and by scalar products of others, of any length."""
+        plain = [word for word in own if isinstance(word.node, tree.Name)][:MOST_PLAIN]
+        for n, a in enumerate(plain):  # what is declared first is the state
+            for b in plain[:n]:
+                node = tree.Call(function="diag", arguments=(a.node,))
+                value = tuple(x * y for x, y in zip(a.value, b.value, strict=True))
+                yield Candidate(tree.Binary(operator="*", left=node, right=b.node), value)
+        for n, a in enumerate(plain):
+            for b, c in pairs(plain[n:], plain):
+                node = tree.Call(function="dot", arguments=(a.node, b.node))
+                value = dense.scale(dense.dot(a.value, b.value), c.value)
+                yield Candidate(tree.Binary(operator="*", left=node, right=c.node), value)
+
+    @staticmethod
+    def _turns(own: list[Candidate], words: Sequence[Candidate]) -> Iterator[Candidate]:
         """Quaternions times vectors, from either side."""
-        for q, w in pairs(own, self.words):
+        for q, w in pairs(own, words):
             if measure(w.value) == (3,):
                 a, b = Quaternion(*q.value), Quaternion.pure(w.value)
                 yield Candidate(
@@ -145,11 +207,13 @@ class Vocabulary:
                     tree.Call(function="qmul", arguments=(w.node, q.node)), (b * a).components
                 )
 
-    def _matrices(self, like: Value, level: int) -> Iterator[Candidate]:
-        own = [w for w in self.words if measure(w.value) == measure(like)]
+    def _matrices(self, words: Sequence[Candidate], like: Value, level: int) -> Iterator[Candidate]:
+        own = [w for w in words if measure(w.value) == measure(like)]
         own = [w for w in own if level > 1 or not _is_sum(w.node)]
         if len(like) == 3:
-            vectors = [w for w in self.words if measure(w.value) == (3,)]
+            reached = self._reach(like)
+            vectors = [w for w in words if measure(w.value) == (3,)]
+            vectors = [w for w in vectors if self._reach(w.value) & self.moving <= reached]
             own += [
                 Candidate(tree.Call(function="hat", arguments=(w.node,)), dense.hat(w.value))
                 for w in vectors
@@ -164,12 +228,15 @@ class Vocabulary:
                 for w in own
             ]
             own += squares
-        for n, a in enumerate(own):
-            for b in own[n + 1 :]:
+        most = len(like) * (MOST_CROSSED + MOST_SPREAD * self._count(like))
+        counts = {id(word): self._count(word.value) for word in own}
+        small = [ab for ab in pairs(own, own) if counts[id(ab[0])] * counts[id(ab[1])] <= most]
+        places = {id(word): n for n, word in enumerate(own)}
+        for a, b in small:
+            if places[id(a)] < places[id(b)]:
                 value = dense.commutator(a.value, b.value)
                 yield Candidate(tree.Call(function="commutator", arguments=(a.node, b.node)), value)
-        products = [self._product(a, b) for a, b in pairs(own, own)]
-        yield from products
+        yield from (self._product(a, b) for a, b in small)
         if level > 2 and len(like) <= MOST_TRIPLE:
             plain = [w for w in own if isinstance(w.node, tree.Name)]
             for a, b, c in pairs(plain, plain, plain):
@@ -180,6 +247,10 @@ class Vocabulary:
                 yield whole
                 node = tree.Binary(operator="-", left=whole.node, right=turned.node)
                 yield Candidate(node, dense.subtract(whole.value, turned.value))
+
+    def _reach(self, value: Value) -> frozenset[str]:
+        """The names in a value."""
+        return frozenset[str]().union(*map(self.field.reach, entries(value)))
 
     def _product(self, a: Candidate, b: Candidate) -> Candidate:
         node = tree.Binary(operator="*", left=a.node, right=b.node)
@@ -235,3 +306,28 @@ def _power(base: tree.Node, exponent: int) -> tree.Node:
 def measure(value: Value) -> Shape:
     """The shape of a vector or a matrix."""
     return (len(value), len(value[0])) if isinstance(value[0], tuple) else (len(value),)
+
+
+def evaluate(node: tree.Node, values: Mapping[str, Value], field: Field) -> Value:
+    """The value of a printed tree, from that of each name in it."""
+    names, spare = dict(values), list[tree.Node]()
+
+    def plain(part: tree.Node) -> tree.Node:
+        rebuilt = tree.rebuild(part, [plain(each) for each in tree.children(part)])
+        match rebuilt:
+            case tree.Call(function="qmul", arguments=(a, b)):
+                sides = (interpret(each, names, field) for each in (a, b))
+                left, right = (
+                    Quaternion(*x) if len(x) == len("wxyz") else Quaternion.pure(x) for x in sides
+                )
+                value = (left * right).components
+            case tree.Call(function="vee", arguments=(a,)):
+                skew = interpret(a, names, field)
+                value = (skew[2][1], skew[0][2], skew[1][0])
+            case _:
+                return rebuilt
+        spare.append(rebuilt)
+        names[f"_q{len(spare)}"] = value
+        return tree.Name(f"_q{len(spare)}")
+
+    return interpret(plain(node), names, field)

@@ -7,7 +7,8 @@ Read next: `coadjoint.derive.vectors.recognise`, which searches among their prod
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -16,9 +17,23 @@ from typing import Any
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value, entries, interpret
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.setting import assemble, weigh
-from coadjoint.derive.vectors.gradients import Addend, gradient, total_of
-from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, measure
+from coadjoint.derive.setting import assemble, shape, weigh
+from coadjoint.derive.vectors.attitudes import (
+    drop_rotations,
+    name_parts,
+    name_poses,
+    parts_of,
+    torque,
+)
+from coadjoint.derive.vectors.gradients import (
+    Addend,
+    count_nodes,
+    gradient,
+    total_of,
+    write_polynomial,
+)
+from coadjoint.derive.vectors.transposes import multiply, turn
+from coadjoint.derive.vectors.vocabulary import Candidate, Part, Vocabulary, evaluate, measure
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec.core import tree
@@ -29,6 +44,8 @@ from coadjoint.spec.model import Variable
 
 #: Vectors of a vocabulary; their products are as many as the square of it.
 MOST_WORDS = 24
+#: Nodes of gradients by components up to which they are vectors to be shown.
+LONGEST_SLOPES = 20
 
 
 def make_vocabulary(equations: Equations, *, closed: bool = True) -> Vocabulary:
@@ -56,6 +73,13 @@ class _Maker:
         if spec.time is not None:
             self.shapes[spec.time.name] = ()
         self.values = {name: self._close(self.setting.values[name]) for name in whole}
+        self.poses = name_poses(spec)
+        self.parts = parts_of(self.poses)
+        for pose in self.poses:
+            matrix = self.values[pose.variable.name]
+            attitude, place = tuple(r[:-1] for r in matrix), tuple(r[-1] for r in matrix)
+            for name, value in zip(pose.names, (attitude, place), strict=True):
+                self.values[name], self.shapes[name] = value, measure(value)
         self.short = dict(self._short_values())
         self.named = list[tuple[tree.Node, tree.Node]]()
 
@@ -72,12 +96,17 @@ class _Maker:
             shapes=self.shapes,
             values=self._name_values(words),
             parts=self._parts(),
+            moving=frozenset(self.setting.state),
+            attitudes=frozenset(attitude for attitude, _ in self._turns()),
+            shorten=self._shorten,
         )
 
     def _name_values(self, words: Iterable[Candidate]) -> dict[str, Value]:
         """What every name stands for in a printed tree."""
         field, setting = self.field, self.setting
         values = {name: self._close(value) for name, value in setting.values.items()}
+        values |= {name: self.values[name] for pose in self.poses for name in pose.names}
+        values |= {} if self.closed else setting.reactions
         values |= {word.node.name: word.value for word in words if isinstance(word.node, tree.Name)}
         values |= {name: field[name] for name in self._scalar_names() if name not in values}
         return {**self._pi(), **values}
@@ -109,10 +138,33 @@ class _Maker:
         return {name: self._close(rate) for name, rate in zip(names, rates, strict=True)}
 
     def _targets(self) -> Iterator[Candidate]:
-        """The rates of whole vectors and matrices of the state."""
+        """The rates of whole vectors and matrices of the state, or of rows."""
         for variable in self.spec.state:
             if variable.value_shape and set(variable.components) <= self._rates.keys():
-                yield Candidate(tree.Name(variable.name), assemble(variable, self._rates))
+                value = assemble(variable, self._rates)
+                if variable.name in self._stacked:
+                    for row in self._list_rows(variable.name):
+                        yield Candidate(row, value[row.indices[0] - 1])
+                else:
+                    yield Candidate(tree.Name(variable.name), value)
+
+    @cached_property
+    def _stacked(self) -> frozenset[str]:
+        """Names of matrices whose rows are vectors of their own: formulas add up such rows."""
+        sums = [node for node in self._nodes() if isinstance(node, tree.Binary)]
+        sides = [side for node in sums if node.operator in "+-" for side in (node.left, node.right)]
+        names = {n.name for n in sides if isinstance(n, tree.Index) and len(n.indices) == 1}
+        matrices = {v.name for v in self.spec.state if len(v.value_shape) == 2}
+        return frozenset(v.name for v in self.spec.variables if {v.name, v.of} & names & matrices)
+
+    def _list_rows(self, name: str) -> Iterator[tree.Index]:
+        """The rows of a matrix."""
+        for place in range(1, len(self.values[name]) + 1):
+            yield tree.Index(name=name, indices=(place,))
+
+    def _nodes(self) -> Iterator[tree.Node]:
+        """The nodes of all formulas."""
+        return (node for formula in self._formulas() for node in tree.walk(formula))
 
     def _parts(self) -> dict[str, list[Part]]:
         """The rates of those parts of a quantity that the spec gives short names."""
@@ -124,14 +176,26 @@ class _Maker:
             if len(whole) == 1 and "" not in whole:
                 rate = Candidate(tree.Name(short), tuple(self._rates[n] for n in names))
                 parts.setdefault(whole.pop(), []).append(Part(rate, names))
+        for pose in self.poses:
+            parts[pose.variable.name] = [
+                Part(Candidate(tree.Name(name), shape(self.elements(own), self.shapes[name])), own)
+                for name, own in zip(pose.names, pose.components, strict=True)
+            ]
         return parts
+
+    def elements(self, names: Iterable[str]) -> list[Element]:
+        """The rates of components."""
+        return [self._rates[name] for name in names]
 
     def _short_values(self) -> Iterator[tuple[str, tuple[Element, ...]]]:
         """Vectors that the spec gives short names, with their values, nothing put in."""
+        values = self.setting.values
+        if not self.closed:
+            values = {**values, **self.setting.reactions}
         for short in self.spec.definitions:
             if len(short.shape or ()) == 1 and not short.arguments:
                 try:
-                    yield short.name, interpret(short.tree, self.setting.values, self.field)
+                    yield short.name, interpret(short.tree, values, self.field)
                 except (DerivationError, KeyError):
                     continue
 
@@ -141,18 +205,28 @@ class _Maker:
         given = {v.name for v in self.spec.defined} if self.spec.constraints and self.closed else ()
         diagonal = set(_diagonals(self._formulas()))
         hidden = {*diagonal, *given, *self._slopes}
+        hidden |= {pose.variable.name for pose in self.poses}
+        variables |= {name for pose in self.poses for name in pose.names}
         whole = [n for n in self.values if n not in hidden]
         yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n in variables)
         yield from self._slopes_along_space()
         yield from (Candidate(tree.Name(n), self.values[n]) for n in whole if n not in variables)
-        for row in self._rows():
+        rows = [
+            *self._rows(),
+            *(row for name in sorted(self._stacked) for row in self._list_rows(name)),
+        ]
+        for row in rows:
             yield Candidate(row, self.values[row.name][row.indices[0] - 1])
+        yield from self._loads()
         yield from self._others()
+        yield from self._right_angle()
         yield from self._further_slopes()
         formulas, gradients = list(self._formulas()), list(self._gradients())
         found = gradients + [node for each in formulas for node in self._vectors_in(each)]
         found += [node for each in gradients for node in self._vectors_in(each)]
         values = {**self._pi(), **self.setting.values, **self.short, **self._slopes}
+        values |= {} if self.closed else self.setting.reactions
+        values |= {name: self.values[name] for pose in self.poses for name in pose.names}
         for node in list(dict.fromkeys(found))[:MOST_WORDS]:
             if any(isinstance(n, tree.Name) and n.name in given for n in tree.walk(node)):
                 continue
@@ -161,6 +235,20 @@ class _Maker:
             except (DerivationError, KeyError):
                 continue
             yield Candidate(node, value)
+
+    def _right_angle(self) -> Iterator[Candidate]:
+        """The turn by a right angle of vectors in a plane."""
+        if any(v.value_shape == (2,) for v in self.spec.state) and "J" not in self.values:
+            self.shapes["J"] = (2, 2)
+            one, zero = self.field.one, self.field.zero
+            value = ((zero, -one), (one, zero))
+            rows = (
+                tuple(tree.Number(Fraction(int(x == one) - int(x == -one))) for x in row)
+                for row in value
+            )
+            pair = [tree.Call(function="vector", arguments=row) for row in rows]
+            self.named.append((tree.Name("J"), tree.Call(function="rows", arguments=tuple(pair))))
+            yield Candidate(tree.Name("J"), value)
 
     def _others(self) -> Iterator[Candidate]:
         """Multipliers of constraints, and vectors that the spec gives short names."""
@@ -178,11 +266,16 @@ class _Maker:
         declared = [spec.lagrangian, spec.hamiltonian, *spec.forces.values(), spec.dissipation]
         declared += [each.left for each in spec.constraints]
         declared += [each.right for each in spec.constraints]
-        declared += [force.formula for force in spec.newton if hasattr(force, "formula")]
+        declared += [each.force for each in spec.newton]
         for each in declared:
             if each is not None:  # names of members as typed are those of any member
                 of_members = any(isinstance(n, tree.Member) for n in tree.walk(each.typed))
-                yield from dict.fromkeys((each.tree,) if of_members else (each.typed, each.tree))
+                found = (each.tree,) if of_members else (each.typed, each.tree)
+                yield from dict.fromkeys(self._name_parts(node) for node in found)
+
+    def _name_parts(self, node: tree.Node) -> tree.Node:
+        """A formula with the names of attitudes and places."""
+        return name_parts(node, self.parts) if self.parts else node
 
     def _vectors_in(self, formula: tree.Node) -> Iterator[tree.Node]:
         """Vectors that a formula is made of: matrices times vectors, and other parts of it."""
@@ -249,20 +342,82 @@ class _Maker:
         noise = [each.formula for each in self.spec.noise]
         symmetric = [v.name for v in self.spec.variables if v.form == "symmetric"]
         scope = {"pi": (), **self.shapes}
-        formulas = [
-            each
-            for each in (self.spec.hamiltonian, self.spec.lagrangian, *noise)
-            if each is not None
-        ]
+        casimirs = [each for each in self.spec.casimirs if not each.shape]
+        casimirs = casimirs if self.spec.algebra is None else []  # of an algebra ad* tells more
+        declared = (self.spec.hamiltonian, self.spec.lagrangian, *noise, *casimirs)
+        formulas = [self._name_parts(each.tree) for each in declared if each is not None]
+        formulas += [] if self.closed else self._powers()
         for formula, (node, parts) in product(formulas, list(self._unknowns())):
-            found = gradient(formula.tree, node, parts, scope, symmetric)
+            found = gradient(formula, node, parts, scope, symmetric)
+            if found is None:
+                yield from self._write_slopes(formula, parts)
             if found:
                 own = [self._without_scalars(each).tree for each in found if each.vector]
                 yield from map(self._shorten, (*own, total_of(found)))
 
+    def _turns(self) -> Iterator[tuple[tree.Node, tree.Node | None]]:
+        """Attitudes, with the places of bodies that have a pose."""
+        for pose in self.poses:
+            yield tree.Name(pose.attitude), tree.Name(pose.place)
+        for variable in self.spec.state:
+            if variable.turning == "attitude":
+                yield tree.Name(variable.name), None
+
+    def _loads(self) -> Iterator[Candidate]:
+        """Torques and forces of the energy on attitudes and places."""
+        declared = (self.spec.hamiltonian, self.spec.lagrangian)
+        formulas = [self._name_parts(each.tree) for each in declared if each is not None]
+        scope, left = {"pi": (), **self.shapes}, self.setting.sign > 0
+        values = {**self._pi(), **self.setting.values, **self.values}
+        for formula, (attitude, place) in product(formulas[:1], list(self._turns())):
+            found = [
+                replace(each, vector=torque(attitude, each.vector, left, scope))
+                for each in gradient(formula, attitude, (), scope) or ()
+                if each.vector is not None
+            ]
+            if place is not None and left:
+                found += (
+                    replace(each, vector=multiply(turn(attitude), each.vector))
+                    for each in gradient(formula, place, (), scope) or ()
+                    if each.vector is not None
+                )
+            for each in found:
+                node = self._without_scalars(each).tree
+                yield Candidate(node, evaluate(node, values, self.field))
+
+    def _write_slopes(self, formula: tree.Node, parts: Sequence[str]) -> Iterator[tree.Node]:
+        """Short gradients of the addends of a formula, by their components."""
+        match formula:
+            case tree.Binary(operator="+" | "-", left=left, right=right):
+                yield from self._write_slopes(left, parts)
+                yield from self._write_slopes(right, parts)
+                return
+        try:
+            value = interpret(formula, {**self._pi(), **self.setting.values}, self.field)
+        except (DerivationError, KeyError):
+            return
+        field, first = self.field, self.setting.parameters
+        slopes = [write_polynomial(field, field.derivative(value, n), first) for n in parts]
+        shown = [each for each in slopes if each is not None]
+        vector = tree.Call(function="vector", arguments=tuple(shown))
+        if len(shown) == len(parts) > 1 and count_nodes(vector) <= LONGEST_SLOPES:
+            yield vector
+
+    def _powers(self) -> Iterator[tree.Node]:
+        """What constraints work, of which the slopes by velocities are their forces."""
+        for each in self.spec.constraints:
+            if len(each.shape) == 1:
+                sides = tree.Binary(operator="-", left=each.left.tree, right=each.right.tree)
+                yield tree.Call(function="dot", arguments=(tree.Name(each.reaction), sides))
+
     def _shorten(self, node: tree.Node) -> tree.Node:
         """A formula in which vectors stand by their short names."""
-        known = {each.tree: each.name for each in self.spec.definitions if each.name in self.short}
+        attitudes, scope = [each for each, _ in self._turns()], {"pi": (), **self.shapes}
+        known = {
+            drop_rotations(self._name_parts(each.tree), attitudes, scope): each.name
+            for each in self.spec.definitions
+            if each.name in self.short
+        }
         if not known:
             return node
         below = [self._shorten(each) for each in tree.children(node)]
@@ -274,11 +429,17 @@ class _Maker:
             if variable.value_shape:
                 is_vector = len(variable.value_shape) == 1
                 yield tree.Name(variable.name), tuple(variable.components) if is_vector else ()
-        for row in self._rows():
+        rows = (
+            *self._rows(),
+            *(row for name in sorted(self._stacked) for row in self._list_rows(name)),
+        )
+        for row in rows:
             yield row, tuple(f"{row.name}{row.indices[0]}{n}" for n in (1, 2, 3))
 
     def _rows(self) -> Iterator[tree.Index]:
-        """Rows of three of attitudes of which formulas name entries."""
+        """Rows of attitudes of which formulas name entries, and of matrices that are stacked."""
+        for name in sorted(self._stacked):
+            yield from self._list_rows(name)
         attitudes = [v.name for v in self.spec.state if v.value_shape == (3, 3)]
         nodes = (node for formula in self._formulas() for node in tree.walk(formula))
         named = [node for node in nodes if isinstance(node, tree.Index) and len(node.indices) == 2]
@@ -297,6 +458,13 @@ class _Maker:
 
     def _scalar_names(self) -> frozenset[str]:
         scalars = {q.name for q in (*self.spec.parameters, *self.spec.inputs) if not q.shape}
+        named = {n.name for n in self._nodes() if isinstance(n, tree.Name)}
+        named |= {
+            n.name + "".join(map(str, n.indices))
+            for n in self._nodes()
+            if isinstance(n, tree.Index)
+        }
+        scalars |= {n for q in self.spec.parameters if q.shape for n in q.components if n in named}
         scalars |= {self.spec.time.name} if self.spec.time is not None else set()
         scalars |= {v.name for v in self.spec.state if not v.value_shape}
         if not self.closed:
