@@ -212,7 +212,7 @@ id("cut").addEventListener("click", () => {
     panel.plotted = !panel.plotted;
     id("section-box").hidden = !panel.plotted;
     id("cut").setAttribute("aria-pressed", String(panel.plotted));
-    id("section").setAttribute("aria-label", "Components against time");
+    id("section").setAttribute("aria-label", `Components against ${scene.clock.name}`);
     id("section-told").textContent = panel.tellClosed();
     return;
   }
@@ -360,7 +360,7 @@ function paint() {
   }
   strip.update(theme, frames % 12 === 0);
   if (frames % 6 === 0) {
-    id("clock").textContent = `t = ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
+    id("clock").textContent = `${scene.clock.symbol} = ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
     if (id("hint").textContent !== view.hint) id("hint").textContent = view.hint;
     if (running) showSliders(false);
   }

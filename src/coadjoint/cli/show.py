@@ -96,7 +96,7 @@ def make_chapter(
     if "claims" not in certificate and (form != "text" or is_resized):
         certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
     record = complete(record, certificate, folder)
-    if form in ("html", "latex"):
+    if form in ("html", "latex", "typst"):
         record |= draw_motion(system, form, sizes=sizes, seconds=seconds)
     return record
 
@@ -108,7 +108,7 @@ def draw_motion(
     sizes: Mapping[str, int] = MappingProxyType({}),
     seconds: int | None = None,
 ) -> dict[str, Any]:
-    """A picture of a motion, of a page or of LaTeX, with its caption.
+    """A picture of a motion, of a page, of LaTeX or of Typst, with its caption.
 
     Empty without matplotlib, and where a spec can be derived and not be run.
     """

@@ -16,7 +16,13 @@ import numpy as np
 
 from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
-from coadjoint.solve.labels import observable_label, symbol_label, unit_label
+from coadjoint.solve.labels import (
+    number_label,
+    observable_label,
+    symbol_label,
+    time_axis,
+    unit_label,
+)
 from coadjoint.solve.maps import Map, draw_map, find_map
 
 if TYPE_CHECKING:
@@ -209,7 +215,7 @@ def draw_panels(
         has_strip = conserved and column == 0
         axes.tick_params(labelsize=8, labelbottom=is_last and not has_strip)
         if is_last and not has_strip:
-            axes.set_xlabel(_tell_time_axis(solution), fontsize=9)
+            axes.set_xlabel(time_axis(solution), fontsize=9)
             axes.xaxis.set_in_layout(columns == 1)  # below is room: next to the strip
         _limit_time(axes, solution)
     if conserved:
@@ -217,10 +223,6 @@ def draw_panels(
         draw_drift(axes, solution)
         if columns > 1:  # its names stand below the other column
             axes.get_legend().set_in_layout(False)
-
-
-def _tell_time_axis(solution: Solution) -> str:
-    return f"time {unit_label(solution.unit('time'))}".rstrip()
 
 
 def _draw_lines(axes: Any, solution: Solution, name: str) -> None:
@@ -301,7 +303,8 @@ def draw_drift(axes: Any, solution: Solution) -> None:
     for n, (stroke, (name, (time, change))) in enumerate(
         zip(_strokes(), curves.items(), strict=False)
     ):
-        largest = tell_drift(solution, name) if solution.drift[name] else "no change"
+        drift = tell_drift(solution, name)
+        largest = number_label(drift) if solution.drift[name] else "no change"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
         label = f"{observable_label(solution.system, name)} ({largest})"
         drawn = np.where(change == 0, 10.0**low, change)
@@ -315,7 +318,7 @@ def draw_drift(axes: Any, solution: Solution) -> None:
     )
     axes.yaxis.set_minor_formatter("")
     _limit_time(axes, solution)
-    axes.set_xlabel(_tell_time_axis(solution), fontsize=9)
+    axes.set_xlabel(time_axis(solution), fontsize=9)
     axes.set_ylabel("relative\nchange", fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)

@@ -15,7 +15,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.curves import Curves, draw_curves, find_curves
-from coadjoint.solve.labels import symbol_label, unit_label
+from coadjoint.solve.labels import symbol_label, time_axis, unit_label
 from coadjoint.solve.maps import is_globe
 from coadjoint.solve.panels import AT_RIGHT, COLOURS, draw_panels, list_panels
 from coadjoint.solve.rolling_bodies import RollingBody, box_of, draw_rolling, find_rolling
@@ -299,7 +299,7 @@ def _limit_space(axes: Any, paths: Paths) -> None:
 def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
     """What the colours mean."""
     bar = figure.colorbar(lines, ax=axes, shrink=0.6, pad=0.06, aspect=32)
-    bar.set_label(f"time {unit_label(solution.unit('time'))}", fontsize=9)
+    bar.set_label(time_axis(solution), fontsize=9)
     bar.ax.tick_params(labelsize=8)
 
 
