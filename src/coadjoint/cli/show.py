@@ -26,7 +26,7 @@ from coadjoint.cli.arguments import (
     system_argument,
 )
 from coadjoint.cli.methods import print_methods
-from coadjoint.cli.output import json_option, print_json, show_text
+from coadjoint.cli.output import find_width, json_option, print_json, show_text
 from coadjoint.resources import systems_folder
 
 
@@ -64,9 +64,9 @@ def command(
     if as_json or form == "json":
         text = json.dumps(record, indent=2) + "\n"
     else:
-        from coadjoint.render.document import render_document
+        from coadjoint.render.document import WIDTH, render_document
 
-        text = render_document(record, form)
+        text = render_document(record, form, find_width(output, WIDTH))
     show_text(text, output)
 
 

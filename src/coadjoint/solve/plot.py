@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 #: Heights in inches: of the strip of drift below a scene, and of curves above panels.
 STRIP, CURVES = 0.9, 3.5
+#: Of a body that is drawn at several times, which a film does not.
+PALE = ", pale before its end"
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -265,7 +267,7 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
     axes.zaxis.get_major_locator().set_params(nbins=2)
     axes.set_title(
         "trace: the contact, coloured by time; gray line: the centre of mass\n"
-        "blue sectors: the body, pale before its end"
+        f"blue sectors: the body{PALE}"
         + ("" if body.is_flat else "; orange cap: where its third axis leaves it"),
         fontsize=9,
         color="#5b6570",
