@@ -9,6 +9,7 @@ import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 
 from coadjoint.algebra import algebra_by_name
@@ -76,13 +77,35 @@ def test_each_has_html_that_is_whole(shown):
         "algebra": "<msub><mi>J</mi><mn>3</mn></msub>",
         "examination": "Killing",
         "system": '<mi mathvariant="normal">kg</mi>',
-        "solution": "<pre>",
+        "solution": ">relative<",
     }
     for name, value in shown.items():
         page = value._repr_html_()
         tags = Tags(page)
         assert (tags.open, "script" in tags.names) == ([], False), name
         assert marks[name] in page, name
+
+
+def test_a_solution_writes_its_drifts_as_mathematics(shown):
+    """Symbols, powers of ten and units; none of it in letters of a typewriter."""
+    text = shown["solution"]._repr_html_()
+    assert "<pre>" not in text
+    assert "e-1" not in re.sub(r'src="[^"]*"', "", text)
+    assert "<msub><mi>𝒞</mi><mn>1</mn></msub>" in text
+    assert re.search(r"<mn>10</mn><mn>-1\d</mn>|<mn>0</mn>", text)
+    assert text.count("relative") == len(shown["solution"].drift) > 0
+
+
+def test_a_drift_of_what_begins_at_zero_has_its_unit():
+    """It is absolute; and that of an attitude is that of its length."""
+    start = [0.0] * len(chaplygin_sleigh.system.STATE.components)
+    motion = chaplygin_sleigh.simulate(start, (0, 1), samples=5, progress=False)
+    motion.__dict__["drift"] = {"energy": 3.5e-9}
+    motion.change = lambda name: np.array([0.0, 3.5e-9])
+    text = re.sub(r'src="[^"]*"', "", motion._repr_html_())
+    assert "relative" not in text
+    assert "<mn>3.5</mn><mo>×</mo><msup><mn>10</mn><mn>-9</mn></msup>" in text
+    assert '<mi mathvariant="normal">kg</mi>' in text
 
 
 def test_claims_are_written_as_formulas(shown):

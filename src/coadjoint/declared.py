@@ -8,11 +8,14 @@ Read next: `coadjoint.kernel_functions`, the table of all functions of the kerne
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 if TYPE_CHECKING:
     from coadjoint.lower.program import Program
     from coadjoint.methods import JudgedMethod
+
+#: Symbol and name of the independent variable, where no spec tells another.
+CLOCK: Final = ("t", "time")
 
 
 @dataclass(frozen=True)
@@ -155,6 +158,7 @@ class KernelContext:
         inputs: Quantities of the inputs, in order; empty where there are none.
         time: The time, if the functions take it.
         unit_of_time: The unit of the time, also where they do not.
+        clock: Symbol and name of the independent variable.
         turning: Names of the attitudes that the projection moves back to rotations.
         written: The index of members that are all written out, and their number; else None.
         is_bound: Whether there are constraints.
@@ -179,6 +183,7 @@ class KernelContext:
     inputs: tuple[Quantity, ...] = ()
     time: tuple[Quantity, ...] = ()
     unit_of_time: str = "s"
+    clock: tuple[str, str] = CLOCK
     written: tuple[str, int] | None = None
     turning: tuple[str, ...] = ()
     is_bound: bool = False

@@ -109,7 +109,7 @@ def show_quantities(quantities: Quantities) -> str:
     from coadjoint.render.document import render_fragment
 
     def write(written: Written) -> dict[str, str]:
-        return {"mathml": f"<math>{written.mathml}</math>"}
+        return _as_math(written.mathml)
 
     (heads, *rows), own = quantities.table(), quantities.values()
     shown = [
@@ -143,12 +143,59 @@ def write_system(system: System) -> str | None:
     return f"$\\displaystyle {aligned(lines)}$" if lines else None
 
 
+def _show_drift(solution: Solution) -> str:
+    """A table of what the motion conserves: its symbol, name, drift and unit."""
+    from coadjoint.notation.names import name, unit
+    from coadjoint.render.document import render_fragment
+    from coadjoint.solve.drift import tell_drift
+
+    rows = list[tuple[Any, ...]]()
+    for label in solution.drift:
+        number, _, is_absolute = tell_drift(solution, label).partition(" ")
+        measured = _as_math(unit(solution.unit(label) or "1").mathml) if is_absolute else "relative"
+        rows.append((_as_math(name(label).mathml), label, write_number(number), measured))
+    for label, value in solution.attitude_drift.items():
+        norm = f"<mrow><mo>|</mo>{name(label, bold=True).mathml}<mo>|</mo></mrow>"
+        square = f"<msup>{norm}<mn>2</mn></msup>"
+        length = _as_math(f"<mrow>{square}<mo>-</mo><mn>1</mn></mrow>")
+        rows.append((length, label, write_number(f"{value:.1e}"), _as_math("<mn>1</mn>")))
+    if not rows:
+        return ""
+    head = ("symbol", "conserved", "largest drift" if solution.batch else "drift", "unit")
+    return render_fragment([section("", "quantities", rows=[head, *rows])])
+
+
+def _as_math(mathml: str) -> dict[str, str]:
+    """A cell of a table."""
+    return {"mathml": f"<math>{mathml}</math>"}
+
+
+def write_number(text: str) -> dict[str, str]:
+    """A number with its power of ten raised, as a cell of a table.
+
+    >>> write_number("1.5e-12")["mathml"]
+    '<math><mrow><mn>1.5</mn><mo>×</mo><msup><mn>10</mn><mn>-12</mn></msup></mrow></math>'
+    >>> write_number("0.0e+00")["mathml"]
+    '<math><mn>0</mn></math>'
+    """
+    digits, _, power = text.partition("e")
+    if float(text) == 0:
+        return _as_math("<mn>0</mn>")
+    if not power:  # infinite, or no number
+        return _as_math(f"<mtext>{escape(digits)}</mtext>")
+    raised = f"<msup><mn>10</mn><mn>{int(power)}</mn></msup>"
+    return _as_math(f"<mrow><mn>{digits}</mn><mo>×</mo>{raised}</mrow>")
+
+
 def show_solution(solution: Solution) -> str:
     """What a solution says, and a small picture where matplotlib is installed."""
     import base64
     import io
 
-    text = f"<pre>{escape(repr(solution))}</pre>"
+    first, *others = solution.describe()
+    told = (escape(each).replace(" .. ", " … ") for each in (f"Solution of {first}", *others))
+    text = "".join(f"<p>{each}</p>" for each in told)
+    text += _show_drift(solution)
     if solution.batch or not len(solution):
         return text
     try:

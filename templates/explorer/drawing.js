@@ -153,13 +153,13 @@ class Drawing {
   }
 
   /* A camera's picture, raised by a part of half the height where more is covered below than above. */
-  begin(camera, ambient, raised = 0) {
+  begin(camera, ambient, raised = 0, room = 1) {
     const gl = this.gl, box = this.canvas.getBoundingClientRect(), ratio = Math.min(devicePixelRatio || 1, 2);
     const wide = Math.max(1, Math.round(box.width * ratio)), high = Math.max(1, Math.round(box.height * ratio));
     if (this.canvas.width !== wide || this.canvas.height !== high) Object.assign(this.canvas, { width: wide, height: high });
     this.ratio = ratio;
     this.ambient = ambient;
-    const c = Math.cos(camera.pitch), reach = camera.distance * Math.max(1, 1.02 * high / wide);
+    const c = Math.cos(camera.pitch), reach = camera.distance * Math.max(1, 1.02 * high / wide, 0.8 / room);
     this.eye = plus(camera.target, scaled(reach, [c * Math.cos(camera.yaw), c * Math.sin(camera.yaw), Math.sin(camera.pitch)]));
     this.look = lookAt(this.eye, camera.target);
     const lens = perspective(0.6, wide / high, reach / 50, reach * 30);

@@ -6,7 +6,7 @@ const THEMES = {
   light: { dark: 0, floor: [0.93, 0.915, 0.88], line: [0.66, 0.64, 0.60], steel: [0.45, 0.48, 0.52], body: [0.24, 0.50, 0.78], body2: [0.88, 0.90, 0.92], ball: [0.90, 0.92, 0.94], ambient: 0.5, pen: "#222", inks: ["#1a5a9e", "#9a4b00", "#0b6650", "#9c2f26", "#6a3d9a"] },
   dark: { dark: 1, floor: [0.13, 0.15, 0.18], line: [0.42, 0.47, 0.53], steel: [0.60, 0.64, 0.69], body: [0.27, 0.53, 0.82], body2: [0.80, 0.83, 0.87], ball: [0.20, 0.24, 0.29], ambient: 0.38, pen: "#ddd", inks: ["#8cc2f5", "#f0b070", "#6fd3b4", "#f0988e", "#c4a6f0"] },
 };
-let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0, kept = [], raised = 0;
+let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = false, debt = 0, frames = 0, kept = [], raised = 0, room = 1;
 
 const drawing = new Drawing(id("scene")), view = new SCENES[scene.kind](model, drawing), panel = new SpherePanel(model, id("sphere"));
 const strip = new DriftStrip(model, id("drift"));
@@ -212,7 +212,7 @@ id("cut").addEventListener("click", () => {
     panel.plotted = !panel.plotted;
     id("section-box").hidden = !panel.plotted;
     id("cut").setAttribute("aria-pressed", String(panel.plotted));
-    id("section").setAttribute("aria-label", "Components against time");
+    id("section").setAttribute("aria-label", `Components against ${scene.clock.name}`);
     id("section-told").textContent = panel.tellClosed();
     return;
   }
@@ -308,7 +308,8 @@ function showLabels(box, labels, pen, kept = []) {
     const [w, h] = span.extent, at = pen.project(own.at);
     const near = at.front && at.x > -30 && at.x < wide + 30 && at.y > -30 && at.y < high + 30;
     const put = (side) => { const x = clamp(at.x + side[0] * (w + 16) - w / 2, 2, Math.max(wide - w - 2, 2)), y = clamp(at.y + 0.5 * side[1] * (h + 8) - h / 2, 2, Math.max(high - h - 2, 2)); return [x, y, x + w, y + h]; };
-    const free = (place) => !taken.some((each) => touch(each, place));
+    const tip = own.tip && pen.project(own.tip), ends = tip ? [[tip.x - 6, tip.y - 6, tip.x + 6, tip.y + 6]] : [];
+    const free = (place) => ![...taken, ...ends].some((each) => touch(each, place));
     const sides = span.side ? [span.side, ...SIDES] : SIDES, side = near && sides.find((each) => free(put(each)));
     span.hidden = !side;
     if (!side) return;
@@ -323,10 +324,11 @@ function keepFree() {
   const stage = id("scene").getBoundingClientRect();
   return [...document.querySelectorAll("h1, #about, #hint, #controls > *, #pad")].filter((each) => !each.hidden).map((each) => { const b = each.getBoundingClientRect(); return [b.left - stage.left, b.top - stage.top, b.right - stage.left, b.bottom - stage.top]; });
 }
-/* How far the picture is raised, so that it stands midway between the title and the hint. */
-function findRaise() {
+/* The part of the height between the title and the hint, and how far the picture is raised to its middle. */
+function findRoom() {
   const stage = id("scene").getBoundingClientRect(), above = id("about").querySelector("summary").getBoundingClientRect().bottom - stage.top;
-  return clamp((stage.bottom - id("hint").getBoundingClientRect().top - above) / stage.height, 0, 0.3);
+  const below = stage.bottom - id("hint").getBoundingClientRect().top;
+  return [clamp(1 - (above + below) / stage.height, 0.4, 1), clamp((below - above) / stage.height, 0, 0.3)];
 }
 function advance(seconds) {
   const until = performance.now() + 8;
@@ -344,8 +346,8 @@ function advance(seconds) {
 function paint() {
   theme = THEMES[dark.matches ? "dark" : "light"];
   view.labels = [];
-  if (frames % 30 === 0) { kept = keepFree(); raised = findRaise(); }
-  drawing.begin(view.camera, theme.ambient, raised);
+  if (frames % 30 === 0) { kept = keepFree(); [room, raised] = findRoom(); }
+  drawing.begin(view.camera, theme.ambient, raised, room);
   view.draw(theme);
   showLabels(id("scene-labels"), view.labels, drawing, kept);
   if (panel.shown) {
@@ -360,7 +362,7 @@ function paint() {
   }
   strip.update(theme, frames % 12 === 0);
   if (frames % 6 === 0) {
-    id("clock").textContent = `t = ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
+    id("clock").textContent = `${scene.clock.symbol} = ${model.clock[0].toFixed(2)}${unitText(scene.unitOfTime) || ""}`;
     if (id("hint").textContent !== view.hint) id("hint").textContent = view.hint;
     if (running) showSliders(false);
   }

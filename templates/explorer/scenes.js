@@ -23,9 +23,9 @@ class Scene {
   trail(name, most) { return (this.trails[name] ||= new Trail(most)); }
   clear() { this.trails = {}; }
   follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
-  label(text, at, kind = "") { this.labels.push({ text, at, kind }); }
+  label(text, at, kind = "", tip = null) { this.labels.push({ text, at, kind, tip }); }
   /* The name of an arrow, past its tip. */
-  nameArrow(text, from, tip, kind) { this.label(text, plus(tip, scaled(0.06, minus(tip, from))), kind); }
+  nameArrow(text, from, tip, kind) { this.label(text, plus(tip, scaled(0.06, minus(tip, from))), kind, tip); }
   /* Where a ray meets the plane through a point with a normal; by default that plane faces the eye. */
   meet(at, x, y, normal) {
     const { drawing } = this, facing = normal || unit(minus(drawing.eye, this.camera.target)), d = drawing.ray(x, y);
@@ -238,7 +238,7 @@ class RollingScene extends Scene {
     const contact = this.contact(), arm = rotate(q, model.arm(unit(up))), at = plus(contact, arm);
     this.centre = at;
     this.radius = size;
-    this.follow(at);
+    this.follow(plus(at, [0, 0, 0.25 * size])); // arrows stand above the body
     const cell = 10 ** Math.round(Math.log10(size)) / 2;
     drawing.floor(0, 22 * size, cell, theme.floor, theme.line, [at[0], at[1], 0.9 * size], at);
     this.sample();

@@ -9,7 +9,7 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from coadjoint.cli import main
-from coadjoint.cli.output import print_table
+from coadjoint.cli.output import find_width, print_table
 from coadjoint.errors import SpecError
 from coadjoint.spec import read_spec
 
@@ -48,12 +48,24 @@ def test_names_are_never_cut(width, monkeypatch, capsys):
     assert any("verified" in line for line in lines)
 
 
+def test_the_width_of_text_is_that_of_a_terminal(monkeypatch, tmp_path):
+    """At least 40 and at most what is asked for; that in a pipe and in a file."""
+    assert find_width(None, 100) == 100
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    for columns, expected in ((20, 40), (72, 72), (300, 100)):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        assert find_width(None, 100) == expected
+        assert find_width(tmp_path / "top.txt", 100) == 100
+
+
 @pytest.mark.parametrize(
     ("before", "begun", "found"),
     [
         (["show", "heavy_top", "--route"], "lie", ["lie-poisson"]),
         (["simulate", "heavy_top", "--set"], "ch", ["chi="]),
         (["simulate", "heavy_top", "--state"], "Ga", ["Gamma="]),
+        (["simulate", "heavy_top", "--method"], "ta", ["taylor"]),
+        (["export", "heavy_top", "--method"], "rk", ["rk4"]),
         (["algebra"], "se(", ["se(2)", "se(3)", "se(4)"]),
     ],
 )

@@ -249,6 +249,22 @@ def test_a_page_is_as_high_as_its_window(page, pages):
     assert page.run("document.getElementById('clock').textContent.startsWith('t = ')")
 
 
+def test_arrows_of_a_ball_stay_below_the_title(page, pages):
+    """With room for their names; a camera that looks lower shows them over the title."""
+    show(page, pages("chaplygin_ball"), width=1280, height=800, calm=True)
+    highest = """(() => {
+      const { view } = explorer;
+      for (let n = 0; n < 90; n += 1) explorer.paint();
+      return Math.min(...view.labels.map((each) => view.drawing.project(each.tip).y));
+    })()"""
+    title = page.run("document.querySelector('summary').getBoundingClientRect().bottom")
+    assert page.run(highest) > title > 50
+    named = "[...document.querySelectorAll('#scene-labels > :not([hidden])')].length"
+    assert page.run(named) == 2
+    page.run("explorer.view.follow = () => { explorer.view.camera.target[2] = 0.6 }")
+    assert page.run(highest) < title
+
+
 def test_a_raised_picture_is_met_where_it_is_drawn(page, pages):
     """On a phone a ray through the place of a point on the canvas goes through that point."""
     show(page, pages("kepler"), width=390, height=844, calm=True)

@@ -45,5 +45,8 @@ def test_typst_compiles(system):
 
     text = render_document(make_chapter(system, None, "typst"), "typst")
     assert typst.compile(text.encode()).startswith(b"%PDF")
+    if "image(" in text:  # a picture that is none is told
+        with pytest.raises(typst.TypstError, match="failed to parse SVG"):
+            typst.compile(text.replace("</svg>", "</sv>").encode())
     with pytest.raises(typst.TypstError, match="unknown variable"):
         typst.compile((text + "\n$ diff f $\n").encode())

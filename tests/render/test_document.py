@@ -25,6 +25,7 @@ from coadjoint.render.document import (
     WIDTH,
     align,
     leave_out_repeated,
+    list_rows,
     render_document,
     split_sides,
 )
@@ -467,3 +468,22 @@ def test_components_that_steps_have_are_not_printed_twice():
 
     assert '<details class="told">' in shown([line])
     assert '<details class="told">' not in shown([line, other])
+
+
+@pytest.mark.parametrize("width", [72, 80])
+def test_text_fits_a_width(width):
+    """Prose, formulas, tables and what is said of names; nothing is left out."""
+    record = asdict(document(derive(shipped("heavy_top"))))
+    text, whole = render_document(record, "text", width), render_document(record)
+    bracket = [x for x in text.splitlines() if re.match(" +(Pi|Gamma|-|[|])[-+0-9]* *[|+]", x)]
+    lines = [each for each in text.splitlines() if each not in bracket]
+    assert max(map(len, lines)) <= width < max(map(len, whole.splitlines()))
+    assert sorted(text.split()) == sorted(whole.split())
+
+
+def test_words_of_narrow_tables_stay_whole():
+    """The column that gives way is one whose words leave room."""
+    rows = [("name", "meaning", "unit"), ("g", "acceleration of gravity", "kg m^2/s^2")]
+    listed = list_rows(rows, 42)
+    assert "acceleration" in " ".join(listed).split()
+    assert max(map(len, listed)) <= 42 - INDENT

@@ -8,12 +8,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib import animation as films
+from matplotlib.colors import to_hex
 from PIL import Image
 
 from coadjoint.errors import KernelArgumentError
 from coadjoint.solve import animation
+from coadjoint.solve.panels import COLOURS
 from coadjoint.solve.plot import draw
-from coadjoint.systems import euler_2d, heavy_top, kepler, zeitlin_su_n
+from coadjoint.systems import chaplygin_ball, euler_2d, heavy_top, kepler, zeitlin_su_n
 
 TOP = ({"Pi": [0, 0, 3], "Gamma": [0.6, 0, 0.8]}, (0, 2), {"I": [1, 1, 0.6], "m": 0.3})
 
@@ -49,6 +51,29 @@ def test_marks_are_where_the_motion_is():
     assert np.abs(place - orbit["r"][:, 200]).max() > 0.1
     drift = next(axes for axes in figure.axes if hasattr(axes, "coadjoint_time"))
     assert list(drift.lines[-1].get_xdata()) == [1.0, 1.0]
+
+
+def test_what_moves_has_a_colour_that_no_mark_has():
+    """Neither that of the start nor that of the end, on a sphere and on an orbit."""
+    top = heavy_top.simulate(*TOP, samples=51)
+    figure = draw(top)
+    space = next(axes for axes in figure.axes if hasattr(axes, "coadjoint_path"))
+    marks = {to_hex(colour) for each in space.collections for colour in each.get_facecolor()}
+    list(animation._list_moves(figure, top))
+    assert {to_hex(COLOURS[1]), "#000000"} <= marks
+    assert to_hex(space.lines[-1].get_color()) not in marks
+
+
+def test_a_film_of_a_body_tells_of_one_body():
+    """That it is pale where it was before is said of a picture alone."""
+    ball = chaplygin_ball.simulate(None, (0, 1), samples=21, reconstruct=True)
+    figure = draw(ball)
+    told = [axes.get_title() for axes in figure.axes]
+    assert any("pale" in each for each in told)
+    list(animation._list_moves(figure, ball))
+    shown = [axes.get_title() for axes in figure.axes]
+    assert not any("pale" in each for each in shown)
+    assert any("blue sectors: the body" in each for each in shown)
 
 
 def test_a_page_plays_without_a_network(tmp_path):

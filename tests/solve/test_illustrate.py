@@ -1,12 +1,20 @@
 """Captions of pictures say what each colour is."""
 
 import io
+import re
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
 from coadjoint.cli.simulate import find_start
-from coadjoint.solve.illustrate import _has_colours_of_values, _take_colours, describe
+from coadjoint.solve.illustrate import (
+    _has_colours_of_values,
+    _take_colours,
+    describe,
+    illustrate,
+    write_svg,
+)
 from coadjoint.solve.panels import COLOURS
 from coadjoint.solve.plot import draw
 from coadjoint.solve.scenes import TIME_MAP
@@ -23,6 +31,7 @@ from coadjoint.systems import (
 )
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+from matplotlib.figure import Figure
 
 STARTS = {rigid_body: [1, 0.3, -0.8], kepler: [1, 0, 0, 0, 1.1, 0], so8_body: [0.1] * 28}
 TIME = "Colour is time, dark at the start."
@@ -98,3 +107,29 @@ def test_lines_keep_their_colours_among_those_of_a_surface():
     assert not any(each in few for each in ends)
     plain = {colour for _, colour in picture.quantize(64).convert("RGB").getcolors()}
     assert orange not in plain
+
+
+def test_a_picture_of_typst_is_whole_and_the_same_each_time():
+    """A string of Typst with an SVG picture, whose places are those of the figure to 0.01 pt."""
+    system, start = rigid_body.system, STARTS[rigid_body]
+    first, again = (illustrate(system, start, "typst")["picture"] for _ in range(2))
+    assert first == again
+    text = first[1:-1].replace('\\"', '"').replace("\\\\", "\\")
+    root = ET.fromstring(text.partition("?>")[2].partition('dtd">')[2])
+    assert root.tag.endswith("svg")
+    paths = [each.get("d") for each in root.iter() if each.get("d")]
+    assert len(paths) > 20
+    assert not [each for each in paths if re.search(r"\.\d{3}", each)]
+
+
+def test_a_line_of_an_svg_picture_is_where_the_figure_has_it():
+    """Points of data, carried by the figure's own transform."""
+    figure = Figure(figsize=(4, 3))
+    axes = figure.add_axes((0.1, 0.1, 0.8, 0.8))
+    x, y = np.array([0.0, 1.0, 2.0]), np.array([0.0, 3.0, -1.0])
+    axes.plot(x, y, linewidth=3.5)
+    line = re.search(r'd="([^"]*)"[^>]*stroke-width: 3.5', write_svg(figure))[1]
+    found = np.array(re.findall(r"[-\d.]+", line), float).reshape(-1, 2)
+    expected = axes.transData.transform(np.column_stack([x, y])) * 72 / figure.dpi
+    expected[:, 1] = 3 * 72 - expected[:, 1]
+    assert np.abs(found - expected).max() < 0.02

@@ -7,7 +7,7 @@ import pytest
 
 from coadjoint.cli.simulate import find_start
 from coadjoint.errors import KernelArgumentError, OutputError
-from coadjoint.solve.panels import PARTS, _choose_limits, list_panels
+from coadjoint.solve.panels import PARTS, _choose_limits, draw_drift, list_panels
 from coadjoint.solve.plot import plot
 from coadjoint.solve.scenes import faces_viewer
 from coadjoint.solve.solution import Solution
@@ -16,6 +16,7 @@ from coadjoint.systems import (
     heavy_top,
     heisenberg_lattice,
     kdv,
+    manakov_so6,
     n_body,
     rigid_body,
     se3_strand,
@@ -84,6 +85,24 @@ def test_many_components_have_lines_of_their_own(tmp_path):
     strokes = {(line.get_color(), line.get_linestyle()) for line in lines}
     assert len(lines) == len(strokes) == 28
     assert axes.get_legend()._ncols == 2
+
+
+def test_many_names_of_drifts_leave_the_width_to_the_motion(monkeypatch):
+    """Nine of them stand below; at the right they would take half of the width."""
+    start = find_start(manakov_so6.system, ())
+    motion = manakov_so6.simulate(start, (0, 1), samples=20, progress=False)
+    assert len(motion.conserved) > 8
+
+    def width():
+        figure = plot_figure(motion)
+        figure.draw_without_rendering()
+        return figure.axes[0].get_position().width
+
+    assert width() > 0.65
+    given = draw_drift
+    beside = lambda axes, solution, **_: given(axes, solution, beside=True)  # noqa: E731
+    monkeypatch.setattr("coadjoint.solve.panels.draw_drift", beside)
+    assert width() < 0.5
 
 
 def test_many_members_are_colours_over_time():

@@ -60,7 +60,7 @@ def test_a_solution_says_how_far_it_came():
     found = made(status="MAX_STEPS", message="stopped")
     assert "rigid_body: MAX_STEPS, 3 samples, t = 0 .. 2" in repr(found)
     assert "drift of energy: 1.5e+00 absolute" in repr(found)
-    assert "&lt;Solution" in found._repr_html_()
+    assert "<p>Solution of rigid_body: MAX_STEPS" in found._repr_html_()
     summary = found.summary()
     assert (summary["status"], summary["message"], summary["time"]) == ("MAX_STEPS", "stopped", 2.0)
     assert summary["final"] == {"Pi1": 1.5, "Pi2": 0.0, "Pi3": 0.0}

@@ -26,7 +26,7 @@ from coadjoint.cli.arguments import (
     shipped_names,
     spec_path,
 )
-from coadjoint.cli.output import plural, show_text
+from coadjoint.cli.output import find_width, plural, show_text
 from coadjoint.sandbox_child import prepared_by, report_progress
 
 if TYPE_CHECKING:
@@ -97,18 +97,18 @@ def command(
             f"{error} Or use fewer generators, or a lower --degree.",
             **{"found": algebra, **error.parts},
         ) from error
-    show_text(_render(record, form), output)
+    show_text(_render(record, form, output), output)
 
 
-def _render(record: Mapping[str, Any], form: str) -> str:
+def _render(record: Mapping[str, Any], form: str, output: Path | None) -> str:
     """The text of a format."""
     if form == "json":
         import json
 
         return json.dumps(record, indent=2) + "\n"
-    from coadjoint.render.document import render_document
+    from coadjoint.render.document import WIDTH, render_document
 
-    return render_document(record, form)
+    return render_document(record, form, find_width(output, WIDTH))
 
 
 @prepared_by("coadjoint.prove.examination")

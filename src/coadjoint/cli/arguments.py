@@ -144,6 +144,17 @@ def complete_names(table: str) -> Callable[..., list[str]]:
     return complete
 
 
+def complete_method(*others: str) -> Callable[..., list[str]]:
+    """A completion for names of methods: others, and those that keep structure."""
+
+    def complete(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+        from coadjoint.methods import MAPPED, STRUCTURED
+
+        return [name for name in (*others, *STRUCTURED, *MAPPED) if name.startswith(begun)]
+
+    return complete
+
+
 def complete_algebra(
     _context: click.Context, _parameter: click.Parameter, incomplete: str
 ) -> list[str]:

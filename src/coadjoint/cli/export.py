@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from coadjoint.cli.arguments import (
+    complete_method,
     output_option,
     seconds_option,
     size_option,
@@ -19,21 +20,13 @@ from coadjoint.cli.arguments import (
 from coadjoint.cli.output import show_text
 
 
-def _complete(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of methods that begin so."""
-    from coadjoint.methods import MAPPED, STRUCTURED
-
-    names = ("auto", "rk4", "dop853", *STRUCTURED, *MAPPED)
-    return [name for name in names if name.startswith(incomplete)]
-
-
 @click.command("export")
 @system_argument
 @click.option(
     "--method",
     default="auto",
     show_default=True,
-    shell_complete=_complete,
+    shell_complete=complete_method("auto", "rk4", "dop853"),
     help="As `coadjoint show SYSTEM --methods` lists them, rk4 or dop853.",
 )
 @click.option(

@@ -186,6 +186,13 @@ def write_text(path: Path, text: str) -> None:
         place.write_text(text, encoding="utf-8")
 
 
+def find_width(output: Path | None, most: int) -> int:
+    """Characters of a line: those of the terminal, at least 40; in a pipe or a file the most."""
+    if output is not None or not sys.stdout.isatty():
+        return most
+    return max(40, min(most, shutil.get_terminal_size().columns))
+
+
 def show_text(text: str, output: Path | None) -> None:
     """Print a text as it is, or write it to a file that the user named."""
     if output is None:

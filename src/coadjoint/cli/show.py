@@ -26,7 +26,7 @@ from coadjoint.cli.arguments import (
     system_argument,
 )
 from coadjoint.cli.methods import print_methods
-from coadjoint.cli.output import json_option, print_json, show_text
+from coadjoint.cli.output import find_width, json_option, print_json, show_text
 from coadjoint.resources import systems_folder
 
 
@@ -64,9 +64,9 @@ def command(
     if as_json or form == "json":
         text = json.dumps(record, indent=2) + "\n"
     else:
-        from coadjoint.render.document import render_document
+        from coadjoint.render.document import WIDTH, render_document
 
-        text = render_document(record, form)
+        text = render_document(record, form, find_width(output, WIDTH))
     show_text(text, output)
 
 
@@ -96,7 +96,7 @@ def make_chapter(
     if "claims" not in certificate and (form != "text" or is_resized):
         certificate = prove_bounded(path, sizes=sizes, seconds=seconds)
     record = complete(record, certificate, folder)
-    if form in ("html", "latex"):
+    if form in ("html", "latex", "typst"):
         record |= draw_motion(system, form, sizes=sizes, seconds=seconds)
     return record
 
@@ -108,7 +108,7 @@ def draw_motion(
     sizes: Mapping[str, int] = MappingProxyType({}),
     seconds: int | None = None,
 ) -> dict[str, Any]:
-    """A picture of a motion, of a page or of LaTeX, with its caption.
+    """A picture of a motion, of a page, of LaTeX or of Typst, with its caption.
 
     Empty without matplotlib, and where a spec can be derived and not be run.
     """

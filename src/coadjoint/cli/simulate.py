@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coadjoint.cli.arguments import (
+    complete_method,
     complete_names,
     load_system,
     seconds_option,
@@ -96,6 +97,7 @@ _repeatable = partial(click.option, metavar="NAME=NUMBERS", callback=_assignment
     "--method",
     default="auto",
     show_default=True,
+    shell_complete=complete_method("auto", "taylor", "rk4", "dop853"),
     help="taylor, dop853 or rk4, which are generated, or scipy:NAME; auto is taylor where it "
     "applies. With noise: heun, midpoint, spherical_midpoint or coadjoint_mean; auto is the first "
     "that `show --methods` lists.",

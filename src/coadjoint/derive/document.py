@@ -25,7 +25,7 @@ from coadjoint.notation.names import unit
 from coadjoint.notation.tex import is_formula
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
-from coadjoint.spec.model import Definition, Reconstructed
+from coadjoint.spec.model import Definition, Reconstructed, Time
 
 #: Components of a state beyond which its bracket is no matrix that a page holds.
 LARGEST_BRACKET = 9
@@ -145,7 +145,10 @@ def _list_symbols(
             doc = docs.get(own.name) or _tell_emitted(own.name, spec)
             shown = names.write(tree.Name(own.name))
             rows.append((whole_line(shown), own.name, doc, unit_line(own.unit)))
-    rows.append((whole_line(symbol("t")), "time", "time", unit_line(spec.units.time)))
+    clock = spec.clock
+    label = clock.name if clock.label != Time.label else clock.label
+    meaning, measured = clock.doc or clock.label, unit_line(spec.units.time)
+    rows.append((whole_line(symbol(clock.name)), label, meaning, measured))
     return rows
 
 

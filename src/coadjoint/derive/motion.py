@@ -28,6 +28,7 @@ from coadjoint.notation.written import Written, add, multiply, negate
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
+from coadjoint.spec.model import Time
 
 #: Characters of text of linear equations beyond which they are left to the steps.
 LONGEST_SOLVE: Final = 1500
@@ -72,6 +73,9 @@ def find_form(equations: Equations) -> VectorForm | None:
 def list_motion(equations: Equations, form: VectorForm | None, names: Names) -> list[Section]:
     """The same with names that further sections share."""
     own = _motion(equations, form, names)
+    clock = equations.spec.clock
+    if clock.label != Time.label:
+        own = replace(own, law=f"{own.law}; d/dt is the rate along the {clock.label} {clock.name}")
     if equations.spec.family is None:
         return [own]
     generic, *others = show_members(equations)

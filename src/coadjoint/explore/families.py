@@ -45,7 +45,7 @@ def describe_family(spec: Spec, context: FamilyContext, rendered: Rendered) -> d
         if spec.space is not None and context.index.size and each["default"] is None:
             each["default"] = [0.0] * (size * len(each["components"]))
     return {
-        **describe(spec, rendered, context.unit_of_time),
+        **describe(spec, rendered),
         "tables": {
             "state": state,
             "parameters": [

@@ -30,7 +30,7 @@ def refuse(spec: Spec, problem: str, expected: str) -> KernelArgumentError:
     )
 
 
-def describe(spec: Spec, rendered: Rendered, unit: str) -> dict[str, Any]:
+def describe(spec: Spec, rendered: Rendered) -> dict[str, Any]:
     """What the page says of a system."""
     record = json.loads(rendered.texts["certificate.json"])
     return {
@@ -38,7 +38,8 @@ def describe(spec: Spec, rendered: Rendered, unit: str) -> dict[str, Any]:
         "title": spec.title or spec.name,
         "source": spec.source,
         "description": " ".join(spec.description.split()),
-        "unitOfTime": unit,
+        "unitOfTime": spec.units.time,
+        "clock": {"symbol": spec.clock.name, "name": spec.clock.label},
         "spheres": record.get("structure", {}).get("spheres", []),
     }
 

@@ -41,7 +41,7 @@ def describe_scene(spec: Spec, rendered: Rendered) -> dict[str, Any]:
     assert context is not None
     finder = _Finder(context)
     return {
-        **describe(spec, rendered, context.unit_of_time),
+        **describe(spec, rendered),
         "tables": {
             "state": list_quantities(context.state, spec),
             "parameters": list_quantities(context.parameters, spec),

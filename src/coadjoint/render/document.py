@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from itertools import groupby
 from typing import Any, Final
 
@@ -36,12 +36,13 @@ LONG: Final = 24
 REPEATED: Final = 20_000
 
 
-def render_document(document: Mapping[str, Any], form: str = "text") -> str:
+def render_document(document: Mapping[str, Any], form: str = "text", width: int = WIDTH) -> str:
     """A derivation, ready to read.
 
     Args:
         document: The fields of a `coadjoint.derive.document.Document`.
-        form: ``"text"``, ``"latex"`` or ``"html"``.
+        form: ``"text"``, ``"latex"``, ``"html"`` or ``"typst"``.
+        width: Characters of a line of text; formulas without blanks may be longer.
 
     >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": ""}
     >>> section |= {"lines": (), "words": (), "table": (), "vectors": (), "rows": ()}
@@ -60,7 +61,8 @@ def render_document(document: Mapping[str, Any], form: str = "text") -> str:
         filled["sections"] = leave_out_repeated(filled["sections"])
     if form != "text":
         filled = set_prose(filled, form)
-    return _environment(form).get_template(f"document/{form}.j2").render(document=filled)
+    template = _environment(form, width).get_template(f"document/{form}.j2")
+    return template.render(document=filled)
 
 
 def _fill(document: Mapping[str, Any]) -> dict[str, Any]:
@@ -138,7 +140,7 @@ def render_book(chapters: Sequence[Mapping[str, Any]]) -> str:
 
 
 @cache
-def _environment(form: str) -> ImmutableSandboxedEnvironment:
+def _environment(form: str, width: int = WIDTH) -> ImmutableSandboxedEnvironment:
     """The environment of a format: everything printed is escaped, unless marked safe."""
     delimiters = {"variable_start_string": "<<", "variable_end_string": ">>"} | {
         "block_start_string": "<%",
@@ -152,17 +154,17 @@ def _environment(form: str) -> ImmutableSandboxedEnvironment:
         **(delimiters if form == "latex" else {}),  # braces are LaTeX's own
     )
     made.filters |= {
-        "aligned": align,
+        "aligned": partial(align, width=width),
         "columns": choose_columns,
         "abreast": count_abreast,
-        "described": describe,
+        "described": partial(describe, width=width),
         "fit": fit_paper,
-        "listed": list_rows,
+        "listed": partial(list_rows, width=width),
         "law": write_law,
         "narrow": is_narrow,
         "sides": split_sides,
         "tabulated": tabulate,
-        "wrapped": wrap,
+        "wrapped": partial(wrap, width=width),
     }
     return made
 
@@ -182,11 +184,7 @@ def write_law(section: Mapping[str, Any]) -> Markup | str:
     return law
 
 
-#: Characters of a line of a table in text, with the blanks between columns.
-ROOM: Final = 94
-
-
-def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
+def list_rows(rows: Sequence[Sequence[Any]], width: int = WIDTH) -> list[str]:
     """Rows of words in columns, wrapped where a line would be longer than there is room.
 
     >>> list_rows([["name", "unit"], ["m", "kg"]])
@@ -196,13 +194,14 @@ def list_rows(rows: Sequence[Sequence[Any]]) -> list[str]:
     if any(isinstance(row[0], Mapping) for row in rows):
         texts = [row[1:] for row in texts]  # a symbol is its name in text
     widths = [max(len(row[n]) for row in texts) for n in range(len(texts[0]))]
-    while sum(widths) + 2 * len(widths) > ROOM:
-        widths[widths.index(max(widths))] -= 1
+    columns = zip(*texts, strict=True)
+    words = [max(map(len, " ".join(column).split()), default=0) for column in columns]
+    while sum(widths) + 2 * len(widths) > max(width - INDENT, 3 * len(widths)):
+        wide = [n for n, most in enumerate(widths) if most > words[n]] or range(len(widths))
+        widths[max(wide, key=widths.__getitem__)] -= 1
     listed = list[str]()
     for row in texts:
-        cells = [
-            textwrap.wrap(cell, width) or [""] for cell, width in zip(row, widths, strict=True)
-        ]
+        cells = [textwrap.wrap(cell, most) or [""] for cell, most in zip(row, widths, strict=True)]
         for n in range(max(map(len, cells))):
             parts = [c[n] if n < len(c) else "" for c in cells]
             line = "  ".join(part.ljust(w) for part, w in zip(parts, widths, strict=True))
@@ -237,27 +236,28 @@ def _measure(cell: Any) -> int:
     return len(cell["text"] if isinstance(cell, Mapping) else str(cell))
 
 
-def wrap(text: str, indent: int = 0, room: int = 0) -> list[str]:
+def wrap(text: str, indent: int = 0, room: int = 0, width: int = WIDTH) -> list[str]:
     r"""A paragraph in lines of the text format, whatever its own line breaks.
 
     Args:
         text: The paragraph.
         indent: Blanks before its lines but the first.
-        room: Characters of a line; 0 for those of the text format less the indent.
+        room: Characters of a line; 0 for those of the page less the indent.
+        width: Characters of a line of the page.
 
     >>> wrap("one\ntwo")
     ['one two']
     """
     return textwrap.wrap(
         text,
-        room or WIDTH - indent,
+        max(room or width - indent, 1),
         subsequent_indent=" " * indent,
         break_long_words=False,
         break_on_hyphens=False,
     )
 
 
-def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
+def align(lines: Sequence[Mapping[str, str]], width: int = WIDTH) -> list[str]:
     """Lines ``left = right`` with their equals signs in one column, long ones continued.
 
     Many short lines stand in several such columns, to be read down.
@@ -265,16 +265,16 @@ def align(lines: Sequence[Mapping[str, str]]) -> list[str]:
     >>> align([{"text": "a = 1"}, {"text": "long = 2"}])
     ['a    = 1', 'long = 2']
     """
-    rows = _columns([line["text"].split(" = ", 1) for line in lines], " = ")
-    number = count_abreast(lines)
+    rows = _columns([line["text"].split(" = ", 1) for line in lines], " = ", width)
+    number = count_abreast(lines, width)
     if number == 1:
         return rows
     height = -(-len(rows) // number)
-    cell = (WIDTH - INDENT) // number
+    cell = (width - INDENT) // number
     return ["".join(row.ljust(cell) for row in rows[n::height]).rstrip() for n in range(height)]
 
 
-def count_abreast(lines: Sequence[Mapping[str, str]]) -> int:
+def count_abreast(lines: Sequence[Mapping[str, str]], width: int = WIDTH) -> int:
     """How many lines of a section stand side by side: one, unless they are many and short.
 
     >>> count_abreast([{"text": "a = 1"}] * 9), count_abreast([{"text": "[E12, E13] = -E23"}] * 90)
@@ -283,7 +283,7 @@ def count_abreast(lines: Sequence[Mapping[str, str]]) -> int:
     if len(lines) <= LONG:
         return 1
     widest = max(len(line["text"]) for line in lines)
-    return max(1, min(4, (WIDTH - INDENT) // (widest + 3)))
+    return max(1, min(4, (width - INDENT) // (widest + 3)))
 
 
 def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
@@ -302,24 +302,24 @@ def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
     return [texts[0], rule, *texts[1:]]
 
 
-def describe(words: Sequence[Sequence[str]]) -> list[str]:
+def describe(words: Sequence[Sequence[str]], width: int = WIDTH) -> list[str]:
     """Names with what is said of them in a second column, long texts continued.
 
     >>> describe([("rank", "2"), ("Killing form", "3 minus")])
     ['rank          2', 'Killing form  3 minus']
     """
-    return _columns(words, "  ")
+    return _columns(words, "  ", width)
 
 
-def _columns(sides: Sequence[Sequence[str]], joint: str) -> list[str]:
+def _columns(sides: Sequence[Sequence[str]], joint: str, width: int) -> list[str]:
     """Two columns, the second one wrapped; below a left side that is long the right one stands."""
-    short = [len(left) for left, _ in sides if len(left) <= LONG_LEFT]
-    width = max(short, default=0)
+    longest = min(LONG_LEFT, (width - INDENT) // 2)
+    first = max((len(left) for left, _ in sides if len(left) <= longest), default=0)
     listed = list[str]()
     for left, right in sides:
-        if len(left) > LONG_LEFT:
-            listed += wrap(left, 2, WIDTH - INDENT)
-            listed += wrap(f"  {joint.strip()} {right}", 4, WIDTH - INDENT)
+        if len(left) > longest:
+            listed += wrap(left, 2, width - INDENT)
+            listed += wrap(f"  {joint.strip()} {right}", 4, width - INDENT)
         else:
-            listed += wrap(f"{left:<{width}}{joint}{right}", width + len(joint), WIDTH - INDENT)
+            listed += wrap(f"{left:<{first}}{joint}{right}", first + len(joint), width - INDENT)
     return listed

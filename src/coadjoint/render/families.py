@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Final
 
-from coadjoint.declared import Quantity
+from coadjoint.declared import CLOCK, Quantity
 from coadjoint.families import (
     LANES,
     Connection,
@@ -72,6 +72,7 @@ class FamilyContext:
         repeating: Names of the quantities of which they repeat.
         supported: How many claims are numerically supported and not proved.
         unit_of_time: The unit of the time.
+        clock: Symbol and name of the independent variable.
         time: The time, if the functions take it.
         shared_inputs: Quantities of the inputs that members share, in order.
         indexed_inputs: Quantities of the inputs of a member, in order.
@@ -107,6 +108,7 @@ class FamilyContext:
     repeating: tuple[str, ...] = ()
     supported: int = 0
     unit_of_time: str = "s"
+    clock: tuple[str, str] = CLOCK
     time: tuple[Quantity, ...] = ()
     shared_inputs: tuple[Quantity, ...] = ()
     indexed_inputs: tuple[Quantity, ...] = ()
@@ -230,6 +232,7 @@ def render_family_template(
             *("STATE", "SHARED", "INDEXED", "OBSERVABLES", "FUNCTIONS", "ELEMENTARY"),
             quote(identity),
             *([f"unit_of_time={quote(context.unit_of_time)}"] * (context.unit_of_time != "s")),
+            *([f"clock={tuple_text(map(quote, context.clock))}"] * (context.clock != CLOCK)),
             *(f"{name.lower()}={name}" for name in _declare_driving(context)),
             *(["methods=METHODS"] * bool(context.methods)),
             *(["kinks=KINKS"] * bool(context.kinks)),

@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, Final
 
-from coadjoint.declared import Bound, KernelContext, Quantity
+from coadjoint.declared import CLOCK, Bound, KernelContext, Quantity
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
 from coadjoint.lower.compositions import list_schedules
@@ -292,6 +292,8 @@ def _system(context: KernelContext, identity: str) -> list[str]:
     present += ["methods=METHODS"] * bool(context.methods)
     if context.unit_of_time != "s":
         present.append(f"unit_of_time={quote(context.unit_of_time)}")
+    if context.clock != CLOCK:
+        present.append(f"clock={tuple_text(map(quote, context.clock))}")
     if context.written is not None:
         index, size = context.written
         present.append(f"written=({quote(index)}, {size})")

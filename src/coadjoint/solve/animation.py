@@ -18,7 +18,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.labels import tell_time
 from coadjoint.solve.panels import COLOURS
-from coadjoint.solve.plot import draw, new_figure
+from coadjoint.solve.plot import PALE, draw, new_figure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,6 +34,8 @@ SECONDS: Final = 8.0
 RATE: Final = 25
 #: Resolution, and megabytes that a page may have.
 DOTS, MEGABYTES = 80, 200
+#: Colour of a point that moves, which neither its start nor its time has.
+MOVING: Final = COLOURS[3]
 #: Symbols of the buttons of a page.
 ICONS: Final = {
     "minus": "&minus;",
@@ -155,13 +157,14 @@ def _list_moves(figure: Any, solution: Solution) -> Iterator[Move]:
             yield _move_field(axes, solution, *field)
         body = getattr(axes, "coadjoint_body", None)
         if body is not None:
+            axes.title.set_text(axes.get_title().replace(PALE, ""))
             yield _move_body(solution, body)
 
 
 def _move_along(axes: Any, time: Array, path: Array) -> Move:
     """A point on a path, ``(d, T)``."""
     marked = {"markersize": 9, "markeredgecolor": "white", "zorder": 6}
-    (point,) = axes.plot(*path[:, :1], marker="o", color=COLOURS[1], **marked)
+    (point,) = axes.plot(*path[:, :1], marker="o", color=MOVING, **marked)
 
     def move(now: float) -> None:
         place = [np.array([np.interp(now, time, row)]) for row in path]

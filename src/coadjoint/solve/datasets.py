@@ -65,7 +65,8 @@ def to_xarray(solution: Solution) -> Any:
         axis: (axis, np.arange(size), {"units": "1"})
         for axis, size in zip(axes, batch, strict=True)
     }
-    coordinates["time"] = ("time", solution.time, {"units": solution.unit("time")})
+    told = {"long_name": solution.system.clock[1], "units": solution.unit("time")}
+    coordinates["time"] = ("time", solution.time, told)
     space = _add_space(solution, coordinates, {*quantities, *axes, "time"})
     variables: dict[str, Any] = {}
     for name, quantity in quantities.items():
@@ -173,7 +174,7 @@ def _add_steps(
         names = [*system.STATE.components, *system.RECONSTRUCTED.components]
         axes = [STEP + name for name in ("step", "component", "order")]
         coordinates[axes[1]] = (axes[1], names[: coefficients.shape[1]])
-        units = {"begun": {"units": "s"}, "size": {"units": "s"}}
+        units = {name: {"units": solution.unit("time")} for name in ("begun", "size")}
         for name in ("member", "begun", "size"):
             variables[STEP + name] = (axes[0], said.pop(name), units.get(name, {}))
         variables[STEP + "coefficients"] = (axes, coefficients)

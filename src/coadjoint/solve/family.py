@@ -15,7 +15,7 @@ from itertools import count
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from coadjoint.declared import Quantity
+from coadjoint.declared import CLOCK, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.families import Connection, Index, PrincipalSymbol, Profiles, Spectral, Torus
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
@@ -86,6 +86,7 @@ class FamilySystem(System):
         elementary: Sequence[str],
         identity: str,
         unit_of_time: str = "s",
+        clock: tuple[str, str] = CLOCK,
         defaults: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
         repeating: Sequence[str] = (),
         time: Quantities | None = None,
@@ -144,6 +145,7 @@ class FamilySystem(System):
             ),
             time=time,
             unit_of_time=unit_of_time,
+            clock=clock,
             methods=methods,
         )
 
@@ -319,6 +321,7 @@ class FamilySystem(System):
         """The same for another index, and what else is changed."""
         given: dict[str, Any] = {
             "unit_of_time": self.unit_of_time,
+            "clock": self.clock,
             "defaults": self._defaults,
             "repeating": self._repeating,
             "time": self.TIME,

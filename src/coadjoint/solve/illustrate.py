@@ -1,4 +1,4 @@
-"""Pictures of motions for documents: drawn from the generated code, as dots or as TikZ.
+"""Pictures of motions for documents: drawn from the generated code, as dots, as TikZ or as SVG.
 
 Comes in: a System. Goes out: the picture and its caption. Read next: `coadjoint.solve.plot`.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -45,7 +46,8 @@ def illustrate(system: System, state: Sequence[float], form: str = "html") -> di
     Args:
         system: What moves.
         state: Where it begins.
-        form: ``"html"`` for dots as an address of data, ``"latex"`` for a ``tikzpicture``.
+        form: ``"html"`` for dots as an address of data, ``"latex"`` for a ``tikzpicture``,
+            ``"typst"`` for an SVG picture as a string of Typst.
 
     Raises:
         CoadjointError: matplotlib is not installed, or the motion cannot begin there.
@@ -60,11 +62,39 @@ def illustrate(system: System, state: Sequence[float], form: str = "html") -> di
         from coadjoint.solve.tikz import write_tikz
 
         return {"picture": write_tikz(figure), "caption": caption}
+    if form == "typst":
+        return {"picture": quote_typst(write_svg(figure)), "caption": caption}
     place = io.BytesIO()
     figure.savefig(place, format="png", dpi=RESOLUTION)
     count = MANY_COLOURS if _has_colours_of_values(figure) else COLOURS
     data = base64.b64encode(_take_colours(place, count)).decode("ascii")
     return {"picture": f"data:image/png;base64,{data}", "caption": caption}
+
+
+def write_svg(figure: Any) -> str:
+    """A figure as SVG, the same each time; letters are curves, since a reader may lack the font."""
+    import matplotlib as mpl
+
+    place = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": "coadjoint", "svg.fonttype": "path"}):
+        figure.savefig(place, format="svg", metadata={"Date": None, "Creator": None})
+    # to a hundredth of a point, which halves the text
+    return re.sub(r"(?<= d=)\"[^\"]*\"|(?<= [xy]=)\"[^\"]*\"", _round_places, place.getvalue())
+
+
+def _round_places(text: re.Match[str]) -> str:
+    """Numbers with two digits behind the point."""
+    return re.sub(r"(\.\d\d)\d+", r"\1", text[0])
+
+
+def quote_typst(text: str) -> str:
+    r"""A string of Typst.
+
+    >>> quote_typst('<a b="1\\2"/>')
+    '"<a b=\\"1\\\\2\\"/>"'
+    """
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
 
 
 def _simulate(system: System, state: Sequence[float], samples: int) -> list[Solution]:
@@ -137,7 +167,7 @@ def describe(solution: Solution, *others: Solution) -> str:
 
     unit = solution.unit("time").removeprefix("1")  # of what has no dimension
     length = solution.time_reached - solution.time[0]
-    span = f"{length:.3g} {unit}" if unit else f"a time of {length:.3g}"
+    span = f"{length:.3g} {unit}" if unit else f"a {solution.system.clock[1]} of {length:.3g}"
     if others:
         return (
             f"{len(SEEDS)} paths from one start with the default parameters over {span}, by the "
@@ -147,7 +177,8 @@ def describe(solution: Solution, *others: Solution) -> str:
     lead = f"A motion with the default parameters over {span}, by the generated code."
     if solution.status in ENDS:
         lead += f" {ENDS[solution.status]}"
-    return f"{lead} {_tell_colours(find_scene(solution))}".rstrip()
+    told = _tell_colours(find_scene(solution)).replace("time", solution.system.clock[1])
+    return f"{lead} {told}".rstrip()
 
 
 def _tell_colours(scene: Scene | None) -> str:

@@ -66,7 +66,21 @@ def _write_formula(text: str) -> str:
     return shown
 
 
+def number_label(text: str) -> str:
+    r"""A number with its power of ten raised, and what stands behind it.
+
+    >>> number_label("1.5e-12 absolute")
+    '1.5$\\cdot 10^{-12}$ absolute'
+    """
+    return re.sub(r"e([-+]\d+)", lambda power: rf"$\cdot 10^{{{int(power[1])}}}$", text)
+
+
+def time_axis(solution: Solution) -> str:
+    """The independent variable of an axis: the time, or what is in its place."""
+    return f"{solution.system.clock[1]} {unit_label(solution.unit('time'))}".rstrip()
+
+
 def tell_time(solution: Solution, at: int) -> str:
     """The time of a sample, with its unit."""
     unit = solution.unit("time").removeprefix("1")  # of what has no dimension
-    return f"t = {solution.time[at]:.4g} {_raise(unit)}".rstrip()
+    return f"{solution.system.clock[0]} = {solution.time[at]:.4g} {_raise(unit)}".rstrip()

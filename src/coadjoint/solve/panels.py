@@ -16,7 +16,13 @@ import numpy as np
 
 from coadjoint.solve.drift import begins_small, tell_drift
 from coadjoint.solve.family import FamilySystem
-from coadjoint.solve.labels import observable_label, symbol_label, unit_label
+from coadjoint.solve.labels import (
+    number_label,
+    observable_label,
+    symbol_label,
+    time_axis,
+    unit_label,
+)
 from coadjoint.solve.maps import Map, draw_map, find_map
 
 if TYPE_CHECKING:
@@ -31,6 +37,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 STYLES = ("solid", "dashed", "dotted", "dashdot")
 #: Names in one column of a legend, and lines of one panel.
 LEGEND_ROWS, LINES = 14, 28
+#: Names of the drift in one column, and columns of them.
+SHORT_LEGEND = 4
 #: Where a legend stands: its left edge at the right end of the axes, in the middle of their height.
 AT_RIGHT: Final[Mapping[str, Any]] = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
 #: Largest change of what is drawn as constant, over its size.
@@ -209,18 +217,14 @@ def draw_panels(
         has_strip = conserved and column == 0
         axes.tick_params(labelsize=8, labelbottom=is_last and not has_strip)
         if is_last and not has_strip:
-            axes.set_xlabel(_tell_time_axis(solution), fontsize=9)
+            axes.set_xlabel(time_axis(solution), fontsize=9)
             axes.xaxis.set_in_layout(columns == 1)  # below is room: next to the strip
         _limit_time(axes, solution)
     if conserved:
         axes = figure.add_subplot(grid[-1, 0], sharex=shared)
-        draw_drift(axes, solution)
+        draw_drift(axes, solution, beside=columns > 1)
         if columns > 1:  # its names stand below the other column
             axes.get_legend().set_in_layout(False)
-
-
-def _tell_time_axis(solution: Solution) -> str:
-    return f"time {unit_label(solution.unit('time'))}".rstrip()
 
 
 def _draw_lines(axes: Any, solution: Solution, name: str) -> None:
@@ -288,11 +292,16 @@ def _choose_limits(part: Array) -> tuple[float, float]:
     return (low + high - size) / 2, (low + high + size) / 2
 
 
-def draw_drift(axes: Any, solution: Solution) -> None:
+def draw_drift(axes: Any, solution: Solution, *, beside: bool = False) -> None:
     """Change of each conserved observable relative to its largest size, on a logarithmic axis.
 
     That of what begins at 0 is drawn as it is: its ratio to its own roundings would be 1. Of each
     part of the time the largest change is drawn, and 0 at the lower edge.
+
+    Args:
+        axes: To draw on.
+        solution: What is drawn.
+        beside: Whether there is room for many names at the right.
     """
     curves = {name: _find_change(solution, name) for name in solution.conserved}
     shown = np.concatenate([change for _, change in curves.values()])
@@ -301,7 +310,8 @@ def draw_drift(axes: Any, solution: Solution) -> None:
     for n, (stroke, (name, (time, change))) in enumerate(
         zip(_strokes(), curves.items(), strict=False)
     ):
-        largest = tell_drift(solution, name) if solution.drift[name] else "no change"
+        drift = tell_drift(solution, name)
+        largest = number_label(drift) if solution.drift[name] else "no change"
         width = max(0.7, 1.9 - 0.5 * n)  # often equal: the first stays visible below the others
         label = f"{observable_label(solution.system, name)} ({largest})"
         drawn = np.where(change == 0, 10.0**low, change)
@@ -315,13 +325,17 @@ def draw_drift(axes: Any, solution: Solution) -> None:
     )
     axes.yaxis.set_minor_formatter("")
     _limit_time(axes, solution)
-    axes.set_xlabel(_tell_time_axis(solution), fontsize=9)
+    axes.set_xlabel(time_axis(solution), fontsize=9)
     axes.set_ylabel("relative\nchange", fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
-    columns = -(-len(solution.conserved) // 4)
-    size = 7 if columns == 1 else 6
-    axes.legend(fontsize=size, ncols=columns, frameon=False, **AT_RIGHT)
+    names = len(solution.conserved)
+    if names > SHORT_LEGEND and not beside:  # at the right it would take half of the width
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.6)}
+        axes.legend(fontsize=7, ncols=SHORT_LEGEND, frameon=False, **below)
+        return
+    columns = -(-names // SHORT_LEGEND)
+    axes.legend(fontsize=7 if columns == 1 else 6, ncols=columns, frameon=False, **AT_RIGHT)
 
 
 def _find_change(solution: Solution, name: str) -> tuple[Array, Array]:

@@ -15,7 +15,7 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.curves import Curves, draw_curves, find_curves
-from coadjoint.solve.labels import symbol_label, unit_label
+from coadjoint.solve.labels import symbol_label, time_axis, unit_label
 from coadjoint.solve.maps import is_globe
 from coadjoint.solve.panels import AT_RIGHT, COLOURS, draw_panels, list_panels
 from coadjoint.solve.rolling_bodies import RollingBody, box_of, draw_rolling, find_rolling
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 #: Heights in inches: of the strip of drift below a scene, and of curves above panels.
 STRIP, CURVES = 0.9, 3.5
+#: Of a body that is drawn at several times, which a film does not.
+PALE = ", pale before its end"
 
 
 def plot(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
@@ -265,7 +267,7 @@ def _draw_rolling(figure: Any, place: Any, solution: Solution, body: RollingBody
     axes.zaxis.get_major_locator().set_params(nbins=2)
     axes.set_title(
         "trace: the contact, coloured by time; gray line: the centre of mass\n"
-        "blue sectors: the body, pale before its end"
+        f"blue sectors: the body{PALE}"
         + ("" if body.is_flat else "; orange cap: where its third axis leaves it"),
         fontsize=9,
         color="#5b6570",
@@ -299,7 +301,7 @@ def _limit_space(axes: Any, paths: Paths) -> None:
 def _time_bar(figure: Any, axes: Any, lines: Any, solution: Solution) -> None:
     """What the colours mean."""
     bar = figure.colorbar(lines, ax=axes, shrink=0.6, pad=0.06, aspect=32)
-    bar.set_label(f"time {unit_label(solution.unit('time'))}", fontsize=9)
+    bar.set_label(time_axis(solution), fontsize=9)
     bar.ax.tick_params(labelsize=8)
 
 

@@ -194,7 +194,7 @@ class Solution:
             )
 
     def __getitem__(self, name: str) -> Array:
-        if name in ("t", "time"):
+        if name in self.system.names_of_time:
             return self.time
         # A name of the state first: observables may repeat it, never contradict it.
         for quantities, values in self._tables:
@@ -210,8 +210,8 @@ class Solution:
         left = [x for table in tables for x in table] if self.reconstructed is None else []
         hint = f" Simulate with reconstruct=True for {', '.join(left)}." if left else ""
         raise KernelArgumentError(
-            f"{name!r} is not in this solution; expected one of {', '.join(names)} or 'time'."
-            f"{hint}",
+            f"{name!r} is not in this solution; expected one of {', '.join(names)} or "
+            f"{self.system.column_of_time!r}.{hint}",
             found=name,
             expected=names,
         )
@@ -219,7 +219,7 @@ class Solution:
     def __contains__(self, name: str) -> bool:
         """Whether ``solution[name]`` is there."""
         return (
-            name in ("t", "time")
+            name in self.system.names_of_time
             or any(quantities.has(name) for quantities, _ in self._tables)
             or name in self.system.find_coordinates(self.parameters)
         )
@@ -229,7 +229,7 @@ class Solution:
 
         ``"1"`` if it is dimensionless, ``""`` if the spec does not tell.
         """
-        if name in ("t", "time"):
+        if name in self.system.names_of_time:
             return self.system.unit_of_time
         if name in self.system.lengths:
             return str(self.system.PARAMETERS[self.system.lengths[name]].unit)
@@ -525,19 +525,24 @@ class Solution:
     def __repr__(self) -> str:
         from coadjoint.solve.drift import describe_drift
 
+        first, *others = self.describe()
+        lines = [f"<Solution of {first}>", *(f"  {each}" for each in others)]
+        return "\n".join([*lines, *describe_drift(self)])
+
+    def describe(self) -> list[str]:
+        """What it is of and how it ended, and what is to be said of how it was computed."""
         last = f" .. {self.time[-1]:g}" if len(self) > 1 else ""
         count = f"{len(self)} samples" if last else "1 sample"
-        span = f"{count}, t = {self.time[0]:g}{last}>"
+        span = f"{count}, {self.system.clock[0]} = {self.time[0]:g}{last}"
         if self.batch:
             whole = "x".join(map(str, self.batch))
-            lines = [f"<Solution of {self.system.name}: {whole} trajectories, {span}"]
-            lines += [f"  {self.message}"] if self.message else []
+            lines = [f"{self.system.name}: {whole} trajectories, {span}"]
+            lines += [self.message] if self.message else []
         else:
-            lines = [f"<Solution of {self.system.name}: {self.status}, {span}"]
+            lines = [f"{self.system.name}: {self.status}, {span}"]
         course = self.course
         told = (course.tell_stepwise(), course.tell_chosen(), course.tell_keeps())
-        lines += [f"  {each}" for each in told if each]
-        return "\n".join([*lines, *describe_drift(self)])
+        return [*lines, *filter(None, told)]
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""

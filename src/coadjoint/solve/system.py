@@ -17,7 +17,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from coadjoint.declared import Bound, Quantity
+from coadjoint.declared import CLOCK, Bound, Quantity
 from coadjoint.errors import KernelArgumentError
 from coadjoint.files import read_certificate
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
@@ -63,6 +63,7 @@ class System(Functions):
         INPUTS: Quantities of the inputs, in order; empty where the system has none.
         TIME: The time, if the system depends on it.
         unit_of_time: The unit of the time, also where the system does not depend on it.
+        clock: Symbol and name of the independent variable: the time, or what is in its place.
         written: The index of members that are all written out, and their number; else None.
         METHODS: Methods that keep structure, with what each keeps of this system.
         levels: How much compilers optimise, by stem and build, where that is less than they can;
@@ -93,6 +94,7 @@ class System(Functions):
         inputs: Quantities | None = None,
         time: Quantities | None = None,
         unit_of_time: str = "s",
+        clock: tuple[str, str] = CLOCK,
         written: tuple[str, int] | None = None,
         methods: Sequence[JudgedMethod] = (),
         reconstructed_observables: Quantities | None = None,
@@ -111,7 +113,7 @@ class System(Functions):
         self.RECONSTRUCTED_OBSERVABLES = reconstructed_observables or Quantities()
         self.INPUTS = Quantities() if inputs is None else inputs
         self.TIME = Quantities() if time is None else time
-        self.unit_of_time = unit_of_time
+        self.unit_of_time, self.clock = unit_of_time, clock
 
     def resize(self, sizes: Mapping[str, int]) -> System:
         """The system with another number of members, by the name of their index.
@@ -131,6 +133,17 @@ class System(Functions):
             f"sizes of {self.name} are {dict(sizes)!r}, and {problem}; expected {expected}. {way}",
             found=list(sizes),
         )
+
+    @property
+    def column_of_time(self) -> str:
+        """The name of the independent variable in tables: ``time``, or the symbol of another."""
+        symbol, label = self.clock
+        return label if label == CLOCK[1] else symbol
+
+    @property
+    def names_of_time(self) -> tuple[str, ...]:
+        """The names by which solutions know the independent variable."""
+        return tuple(dict.fromkeys((*CLOCK, self.column_of_time)))
 
     @property
     def lengths(self) -> dict[str, str]:

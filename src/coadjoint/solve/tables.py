@@ -44,11 +44,11 @@ def to_pandas(solution: Solution) -> Any:
     columns = {name: solution[name].ravel() for name in units}
     time = solution.time
     axes = [*map(range, batch), time]
-    names = [*name_axes(batch, units), "time"]
+    names = [*name_axes(batch, units), solution.system.column_of_time]
     index = (
         pandas.MultiIndex.from_product(axes, names=names)
         if batch
-        else pandas.Index(time, name="time")
+        else pandas.Index(time, name=names[0])
     )
     frame = pandas.DataFrame(columns, index=index)
     frame.attrs = _describe(solution)
@@ -69,7 +69,7 @@ def write_table(solution: Solution, file: IO[str]) -> None:
         file.write(f"# {name}: {json.dumps(value, default=as_json)}\n")
     units, batch = list_components(solution), list_batch(solution)
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow([*name_axes(batch, units), "time", *units])
+    writer.writerow([*name_axes(batch, units), solution.system.column_of_time, *units])
     values = {name: solution[name] for name in units}
     for member in np.ndindex(batch):
         columns = (values[name][member].tolist() for name in units)
@@ -95,7 +95,7 @@ def read_csv(system: System, path: Path) -> Solution:
                 path, f"of {name}, {found} values were found in place of {batch} times {samples}"
             ) from error
 
-    time = rows("time").reshape(-1, samples)[0]
+    time = rows(system.column_of_time).reshape(-1, samples)[0]
     form = said["form"] | {"time": time, "parameters": list(said["parameters"].values())}
     described = {name: value for name, value in said.items() if name not in _TABLE_ONLY}
     return rebuild(system, path, described, rows, form)
@@ -107,10 +107,10 @@ _TABLE_ONLY = ("parameters", "units", "batch", "samples", "form")
 
 def _describe(solution: Solution) -> dict[str, Any]:
     """What stands above a table."""
-    names = solution.system.PARAMETERS.components
+    names, time = solution.system.PARAMETERS.components, solution.system.column_of_time
     return describe_run(solution) | {
         "parameters": dict(zip(names, solution.parameters.tolist(), strict=True)),
-        "units": {"time": solution.unit("time"), **list_components(solution)},
+        "units": {time: solution.unit("time"), **list_components(solution)},
         "batch": list(list_batch(solution)),
         "samples": len(solution.time),
         "form": describe_form(solution),

@@ -7,7 +7,7 @@ missing and how to write it. Read next: `coadjoint.spec.reader`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from coadjoint.algebra.lie_algebra import LieAlgebra
@@ -24,7 +24,7 @@ from coadjoint.spec.kinds import (
     is_variational,
     kinds_of,
 )
-from coadjoint.spec.model import Spec
+from coadjoint.spec.model import Spec, Time
 from coadjoint.spec.routes import ROUTES, Route, energies_of
 from coadjoint.spec.sections.algebras import ALGEBRA
 from coadjoint.spec.sections.noise import check_noise
@@ -272,22 +272,36 @@ def _check_use(source: Source, file: Any) -> None:
 
 
 def check_used(source: Source, spec: Spec) -> None:
-    """Every input, and the time if it is declared, occurs in some formula.
+    """Every input, and the time if it is declared as such, occurs in some formula.
 
     Raises:
         SpecError: One does not.
     """
-    trees = [formula.tree for formula in list_formulas(spec)]
-    named = {n.name for tree in trees for n in walk(tree) if isinstance(n, Name | Index)}
-    named |= {each.rate for each in spec.inputs}
+    named = _list_named(spec)
     for each in spec.driving:
-        if not named & {each.name, *each.components}:
+        is_other = each is spec.time and spec.time.label != Time.label
+        if not is_other and not named & {each.name, *each.components}:
             key: KeyPath = ("time",) if each is spec.time else ("inputs", each.name)
             rest = "remove [time]" if each is spec.time else "remove it from [inputs]"
             problem = f"{each.name!r} occurs in no formula"
             expected = f"a formula that names {list_names(each.components)}"
             hint = f"Use it in the energy or a force, or {rest}."
             raise source.at_key(key, problem, each.name, expected, hint)
+
+
+def set_clock(spec: Spec) -> Spec:
+    """The spec with its independent variable, which drives what has formulas that name it."""
+    if spec.time is None:
+        return spec
+    time = spec.time if spec.time.name in _list_named(spec) else None
+    return replace(spec, clock=spec.time, time=time)
+
+
+def _list_named(spec: Spec) -> set[str]:
+    """The names in all formulas, and rates of inputs."""
+    trees = [formula.tree for formula in list_formulas(spec)]
+    named = {n.name for tree in trees for n in walk(tree) if isinstance(n, Name | Index)}
+    return named | {each.rate for each in spec.inputs}
 
 
 _PLURALS = {"momentum": "momenta", "velocity": "velocities"}

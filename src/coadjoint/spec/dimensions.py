@@ -121,7 +121,7 @@ class Units:
 
     def _find_time(self, texts: Sequence[str]) -> Unit:
         """The unit of time: declared, or the only one in which other units have it."""
-        declared = self.spec.time.unit if self.spec.time is not None else ""
+        declared = self.spec.clock.unit
         if declared:
             return self._read(("time", "unit"), declared, 0)
         symbols = {symbol for text in texts for symbol in re.findall("[A-Za-z]+", text)}
@@ -304,10 +304,9 @@ class Units:
             name: Measured(each.shape, tuple(e and balance.reduce(e) for e in each.entries))
             for name, each in self.names.items()
         }
-        known = KnownUnits(names, self.own)
-        if not self.asked:
+        known, declared = KnownUnits(names, self.own), self.spec.clock.unit
+        if not declared and not self.asked:
             return known
-        declared = "" if self.spec.time is None else self.spec.time.unit
         return replace(known, time=declared or known.label([balance.reduce(self.time)]))
 
 
@@ -342,7 +341,8 @@ def infer_units(source: Source, spec: Spec, demand_laws: Callable[[Units], None]
             return each.unit or known.time
         return each.unit or known.label(known.names[name].entries[0] for name in each.components)
 
-    return replace(_fill(spec, say), units=known)
+    clock = replace(spec.clock, unit=say(spec.clock))
+    return replace(_fill(spec, say), clock=clock, units=known)
 
 
 def _fill(spec: Spec, unit_of: Callable[[Any], str]) -> Spec:

@@ -228,6 +228,7 @@ class Spec:
             ``("claims", "conserved", 0)``; brackets by their places.
         inputs: What drives the system from outside, in declared order.
         time: The time, if formulas name it.
+        clock: The independent variable, also where no formula names it.
         records: What tables gave that have no attribute here, by their keys.
         index: The index that counts equal members, in a spec with one.
         space: The coordinate along which variables are fields, or None.
@@ -278,6 +279,7 @@ class Spec:
     accepted: frozenset[tuple[str | int, ...]] = frozenset()
     inputs: tuple[Input, ...] = ()
     time: Time | None = None
+    clock: Time = field(default=Time("t"))
     records: Mapping[str, Any] = field(default_factory=dict)
     index: tuple[Index, ...] = ()
     space: Space | None = None

@@ -29,6 +29,7 @@ from coadjoint.spec.consistency import (
     check_routes,
     check_tables,
     check_used,
+    set_clock,
 )
 from coadjoint.spec.copies import QUANTITIES
 from coadjoint.spec.core.faults import did_you_mean
@@ -188,6 +189,7 @@ def _read(source: Source, file: Any, *, path: Path, sha256: str) -> Spec:
     for owner, momentum, components in following:
         reading.declare(Naming(key=("variables", owner), name=momentum, components=components))
     check_used(source, spec)
+    spec = set_clock(spec)
     submanifold = REDUCTION.of(reading)
     spec = infer_units(source, spec, partial(demand_laws, submanifold=submanifold))
     return spec if submanifold is None else spec.restricted_to(submanifold)

@@ -1,4 +1,4 @@
-"""Time: the table [time], which gives the time a name in formulas.
+"""Time: the table [time], which gives the time a name in formulas, or says what is in its place.
 
 Comes in: its keys. Goes out: a `Time`, or None where no formula may name it.
 Read next: `coadjoint.spec.sections.inputs`.
@@ -18,20 +18,26 @@ from coadjoint.spec.core.values import Prose, Unit
 
 
 class TimePart(Part):
-    """The time, for formulas that name it."""
+    """The independent variable, for formulas that name it, or where it is not the time."""
 
     name: str = Field("t", description="its name in formulas")
     unit: Unit = ""
+    label: Prose = Field(
+        "",
+        description="what it is where it is not the time, such as an arc length; no formula has to "
+        "name it then",
+    )
     doc: Prose = Field("", description="what it is, for documents")
 
 
 @dataclass(frozen=True)
 class Time:
-    """The time, where formulas name it: a scalar argument of every kernel.
+    """The independent variable: where formulas name it, a scalar argument of every kernel.
 
     Attributes:
         name: As declared, e.g. ``t``.
         unit: Unit text.
+        label: What it is, for axes of pictures and documents.
         doc: Free text for documents.
     """
 
@@ -42,6 +48,7 @@ class Time:
 
     name: str
     unit: str = ""
+    label: str = "time"
     doc: str = ""
 
     @property
@@ -52,7 +59,7 @@ class Time:
 
 def read_time(reading: Reading, part: TimePart) -> Time:
     """The time."""
-    return Time(part.name, part.unit, part.doc)
+    return Time(part.name, part.unit, part.label or Time.label, part.doc)
 
 
 def _name_time(table: str, time: Time | None) -> list[Naming]:
@@ -63,7 +70,7 @@ def _name_time(table: str, time: Time | None) -> list[Naming]:
 TIME = Table[Time | None](
     "time",
     TimePart,
-    "the time, where formulas name it",
+    "the time, where formulas name it, or what is in its place",
     read_time,
     quantities=True,
     names=_name_time,
