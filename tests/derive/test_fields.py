@@ -239,6 +239,14 @@ def test_an_energy_of_strains_with_the_wrong_sign_is_ill_posed():
     assert "Change the sign" in str(e.value)
 
 
+def test_waves_that_grow_about_all_fields_are_said_to():
+    """Without parameters and fields in the symbol there is no place to name."""
+    text = STRAND.replace("- dot(Xi, diag(K)*Xi)/2", "+ dot(Xi, Xi)/2")
+    text = text.replace("dot(Omega, diag(I)*Omega)/2", "dot(Omega, Omega)/2")
+    with pytest.raises(DerivationError, match=r"like exp\(10\*t\), about any fields; expected"):
+        derive(spec_of(text))
+
+
 def test_a_magnet_has_waves_of_imaginary_eigenvalues():
     """Landau and Lifshitz's equation is posed; with a gradient flow backwards it is not."""
     jets, setting = jets_of(emitted("landau_lifshitz").setting), emitted("landau_lifshitz").setting

@@ -47,11 +47,11 @@ DERIVED = (
         tests=(f"{FIELDS_OF} -k degree_zero",),
     ),
     *changes_of(
-        "fields/generic",
-        "is_kept: rewrite lattice.still(rate) -> lattice.field.zero",
-        "is_kept: rewrite lattice.vary(rate).values() -> ()",
-        "is_kept: rewrite False -> True",
-        tests=(f"{CLAIMS} -k equal_fields",),
+        "fields/sums",
+        "explain_change: rewrite lattice.still(rate) -> lattice.field.zero",
+        "explain_change: rewrite lattice.vary(rate).values() -> ()",
+        "explain_change: rewrite '' if is_kept else _1 -> ''",
+        tests=(f"{CLAIMS} -k 'equal_fields or examined'",),
     ),
     *changes_of(
         "fields/symbol",
@@ -131,8 +131,20 @@ DERIVED = (
         tests=(f"{FIELDS_OF} -k 'posed or refused or book or compatibility or simo'",),
     ),
     *changes_of(
+        "fields/emission",
+        "_list_observables: rewrite close_jets(setting, x) -> x",
+        "read_density: rewrite close_jets(setting, x) -> x",
+        "close_jets: rewrite jets.total(value, *_1) -> value",
+        tests=("tests/derive/test_field_velocities.py",),
+    ),
+    *changes_of(
+        "routes/lax",
+        "equations_of_pair: rewrite close_jets(setting, x) -> x",
+        tests=("tests/derive/test_field_velocities.py -k pair",),
+    ),
+    *changes_of(
         "fields/grid",
-        "make_grid: rewrite value is Kept.ALWAYS and not point.is_kept(name) -> False",
+        "make_grid: rewrite dict.fromkeys(changes, Kept.UNKNOWN) -> {}",
         "make_grid: skip check_profiles",
         "make_grid: skip check_least",
         "make_grid: rewrite (size, size + 1) -> (size, size)",
