@@ -396,6 +396,29 @@ def test_a_symbol_with_a_jordan_block_is_told_apart():
     assert not seen.is_diagonalizable
 
 
+@pytest.mark.parametrize(
+    ("sign", "slopes", "growth"),
+    [("+", "Xi", ""), ("-", "Xi", r"exp\(1\*k\^2\*t\)"), ("-", "Pi", r"exp\(1\*k\^2\*t\)")],
+)
+def test_orders_that_differ_by_rows_are_weighed(sign, slopes, growth):
+    """With h = (Pi^2 + Xi^2 - Xi_s^2)/2 w^2 = k^2 - k^4, though the symbol of order 3 is nilpotent.
+
+    With the derivatives of Pi it is the same; with the other sign all frequencies are real.
+    """
+    text = STRAND[: STRAND.index("[lagrangian]")].replace('"euler-poincare", ', "")
+    text = text.replace(', "hamilton-pontryagin"', "").replace(
+        "order = 4", "order = 4, derivatives = 1"
+    )
+    text += (
+        f'[hamiltonian]\nh = "dot(Pi, Pi)/2 + dot(Xi, Xi)/2 {sign} dot({slopes}_s, {slopes}_s)/2"\n'
+    )
+    if not growth:
+        assert derive(spec_of(text)).exact.rates
+        return
+    with pytest.raises(DerivationError, match=f"terms of all orders, are complex.*{growth}"):
+        derive(spec_of(text))
+
+
 def test_a_travelling_rotation_solves_the_chain_of_any_bodies():
     """Omega = W(t - s/c), Xi = -W/c with J dW/dt = J W x W, J = I - K/c^2, for any I, K, W and c.
 

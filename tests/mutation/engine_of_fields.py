@@ -69,6 +69,19 @@ DERIVED = (
         tests=(f"{FIELDS_OF} -k 'posed or magnet or jordan or heat'",),
     ),
     *changes_of(
+        "fields/symbol",
+        "_look_at_all_orders: rewrite range(order + 1) -> range(order, order + 1)",
+        "_look_at_all_orders: rewrite tower[n] -> tower[order]",
+        "_look_at_all_orders: rewrite power >= 1 -> True",
+        "_find_growth: rewrite mpmath.mpc(0, k) -> mpmath.mpc(k, 0)",
+        tests=(f"{FIELDS_OF} {CLAIMS} -k 'orders_that_differ or with_a_block or symbol'",),
+    ),
+    *changes_of(
+        "prove/fields",
+        "_about_posedness: never not seen.is_diagonalizable",
+        tests=(f"{CLAIMS} -k of_a_symbol_with_a_block",),
+    ),
+    *changes_of(
         "fields/operators",
         "Term.adjoint: drop across",
         "Term.adjoint: rewrite Term(self.right * sign, _1, self.left, _2)"

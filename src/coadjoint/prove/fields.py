@@ -203,7 +203,11 @@ def _about_posedness(first: Equations) -> Iterator[Examined]:
         lambda: decision,
     )
     if not seen.is_diagonalizable:
-        method, scope = "a Jordan block of the principal symbol", "about some of these fields"
+        method = (
+            "a Jordan block of the principal symbol; about fields that are the same all along no "
+            "wave grows like exp(k*t)"
+        )
+        scope = "about some of these fields"
         yield (
             "short waves may grow faster the shorter they are, by terms of lower order",
             "posed",

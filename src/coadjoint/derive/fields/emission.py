@@ -111,8 +111,8 @@ def _check_posed(setting: Setting, rates: Sequence[Element]) -> None:
     where = ", ".join(f"{name} = {value}" for name, value in growth.point.items())
     where = f"at {where}" if where else "about any fields"
     message = (
-        f"the equations of the fields are ill posed: {growth.told}, {where}; expected a "
-        "principal symbol with real roots. Change the sign of the energy of the strains or "
+        f"the equations of the fields are ill posed: {growth.told}, {where}; expected "
+        "real frequencies of short waves. Change the sign of the energy of the strains or "
         "derivatives."
     )
     if formula is None:  # a Lax pair alone

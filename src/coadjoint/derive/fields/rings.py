@@ -183,4 +183,5 @@ def write_point(of: Variable, place: int) -> Variable:
         unit=of.unit,
         doc=of.doc,
         form=of.form,
+        default=of.default,
     )
