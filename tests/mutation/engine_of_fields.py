@@ -78,7 +78,7 @@ DERIVED = (
     ),
     *changes_of(
         "prove/fields",
-        "_about_posedness: never not seen.is_diagonalizable",
+        "_about_posedness: rewrite not seen.is_diagonalizable -> False",
         tests=(f"{CLAIMS} -k of_a_symbol_with_a_block",),
     ),
     *changes_of(

@@ -11,7 +11,7 @@ from scipy.linalg import solve_circulant
 from coadjoint.cli.simulate import default_state
 from coadjoint.errors import CoadjointError, KernelArgumentError, ResourceError, ShockWarning
 from coadjoint.families import Profiles
-from coadjoint.pipeline import render
+from coadjoint.pipeline import render, verify
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.quantities import Quantities
 from coadjoint.solve.request import check_state
@@ -114,6 +114,46 @@ def test_a_field_of_which_nothing_is_said_begins_at_zero():
     old._declared = (told, *others)
     start = np.reshape(check_state(old._copy(old.index, profiles=None), None), (6, 32))
     np.testing.assert_array_equal(start[3:], np.outer([0.5, 0, 1], np.ones(32)))
+
+
+#: Waves of the group of diffeomorphisms with four derivatives in the energy.
+FOURTH = """
+title  = "Waves with four derivatives"
+routes = ["lie-poisson", "euler-poincare"]
+[space]
+s = { length = "L", size = 64, order = 4, derivatives = 2 }
+[diffeomorphisms]
+[variables]
+u = { role = "velocity" }
+m = { role = "momentum" }
+[parameters]
+L = { positive = true, default = 10 }
+[lagrangian]
+l = "u^2/2 + u_s^2 + u_ss^2/2"
+[claims]
+conserved = ["energy", "m"]
+"""
+
+
+def test_an_operator_of_four_derivatives_is_solved():
+    """The wave u = cos k s has m = (1 + k^2)^2 u and the rate 3 k m sin k s, by each target."""
+    k = 2 * np.pi / 10
+    errors = []
+    rendered = render(read_spec_text(FOURTH, "fourth.toml"))
+    assert verify(rendered).lines["rhs"] > 0  # of rings that are as wide as the operator
+    with load_texts(rendered.texts) as system:
+        for count in (64, 128):
+            own = system.resize({"s": count})
+            s = np.arange(count) * 10 / count
+            m = (1 + k**2) ** 2 * np.cos(k * s)
+            rate = 3 * k * m * np.sin(k * s)
+            for target in ("numpy", "c", "c-fast"):
+                errors.append(np.abs(own.rhs(m, target=target) - rate).max() / np.abs(rate).max())
+            waves = own.with_derivatives("fourier")
+            np.testing.assert_allclose(waves.rhs(m), rate, atol=1e-12)
+    assert errors[0] == errors[1] < 2e-4
+    assert errors[2] == pytest.approx(errors[0], rel=1e-3)
+    assert errors[0] / errors[3] == pytest.approx(16, rel=0.05)
 
 
 #: A strand in a field that is the same all along it, declared by its default.

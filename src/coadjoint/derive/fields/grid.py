@@ -102,7 +102,8 @@ def make_grid(equations: Equations) -> Grid:
     always = [name for name, value in kept.items() if value is Kept.ALWAYS]
     changes = {name: why for name in always if (why := explain_change(point, name))}
     kept |= dict.fromkeys(changes, Kept.UNKNOWN)
-    size = point.least if point.space.has_ends else 2 * point.reach + 1
+    # where A u = m the operator may be wider than the rates
+    size = max(point.least, 0 if point.space.has_ends else 2 * point.reach + 1)
     windows = tuple(rings.make(n, kept) for n in (size, size + 1))
     rates, _ = point.exact_point
     return Grid(
