@@ -239,6 +239,14 @@ def test_an_energy_of_strains_with_the_wrong_sign_is_ill_posed():
     assert "Change the sign" in str(e.value)
 
 
+def test_waves_that_grow_about_all_fields_are_said_to():
+    """Without parameters and fields in the symbol there is no place to name."""
+    text = STRAND.replace("- dot(Xi, diag(K)*Xi)/2", "+ dot(Xi, Xi)/2")
+    text = text.replace("dot(Omega, diag(I)*Omega)/2", "dot(Omega, Omega)/2")
+    with pytest.raises(DerivationError, match=r"like exp\(10\*t\), about any fields; expected"):
+        derive(spec_of(text))
+
+
 def test_a_magnet_has_waves_of_imaginary_eigenvalues():
     """Landau and Lifshitz's equation is posed; with a gradient flow backwards it is not."""
     jets, setting = jets_of(emitted("landau_lifshitz").setting), emitted("landau_lifshitz").setting
@@ -386,6 +394,29 @@ def test_a_symbol_with_a_jordan_block_is_told_apart():
     seen = look_at_symbol(setting, jets, rates)
     assert seen.growth is None
     assert not seen.is_diagonalizable
+
+
+@pytest.mark.parametrize(
+    ("sign", "slopes", "growth"),
+    [("+", "Xi", ""), ("-", "Xi", r"exp\(1\*k\^2\*t\)"), ("-", "Pi", r"exp\(1\*k\^2\*t\)")],
+)
+def test_orders_that_differ_by_rows_are_weighed(sign, slopes, growth):
+    """With h = (Pi^2 + Xi^2 - Xi_s^2)/2 w^2 = k^2 - k^4, though the symbol of order 3 is nilpotent.
+
+    With the derivatives of Pi it is the same; with the other sign all frequencies are real.
+    """
+    text = STRAND[: STRAND.index("[lagrangian]")].replace('"euler-poincare", ', "")
+    text = text.replace(', "hamilton-pontryagin"', "").replace(
+        "order = 4", "order = 4, derivatives = 1"
+    )
+    text += (
+        f'[hamiltonian]\nh = "dot(Pi, Pi)/2 + dot(Xi, Xi)/2 {sign} dot({slopes}_s, {slopes}_s)/2"\n'
+    )
+    if not growth:
+        assert derive(spec_of(text)).exact.rates
+        return
+    with pytest.raises(DerivationError, match=f"terms of all orders, are complex.*{growth}"):
+        derive(spec_of(text))
 
 
 def test_a_travelling_rotation_solves_the_chain_of_any_bodies():

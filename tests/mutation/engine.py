@@ -739,6 +739,28 @@ MUTANTS = (
         tests=("tests/solve/test_family_kinks.py -k 'parabolas and rk4'",),
     ),
     *of(
+        "c/methods/family_kinks.c.j2",
+        "anywhere: use > for < in falls later here",
+        "anywhere: use - rise * for + rise * in place fall",
+        "anywhere: use fall < 0.0 for fall > 0.0 in low accepted",
+        "anywhere: use outside[l] == block->took[l] for places[0][l] < outside[l] in low accepted",
+        "anywhere: use gaps[n] * -sides for gaps[n] * sides in gaps sides",
+        "anywhere: use > outside for < outside in open held after",
+        tests=("tests/solve/test_family_kinks.py -k 'comes_back and rk4 and loop'",),
+    ),
+    *of(
+        "c/solver.c.j2",
+        "anywhere: use > for < in falls later here",
+        "anywhere: use ~left for (begin < *outside) in low accepted",
+        tests=("tests/solve/test_family_kinks.py -k 'comes_back and rk4 and written'",),
+    ),
+    *of(
+        "solve/limits",
+        "Step.find_dips: rewrite begin < outside -> outside == took",
+        "Step._search: rewrite np.where(falls, middle, one) -> np.where(falls, one, middle)",
+        tests=("tests/solve/test_family_kinks.py -k 'comes_back and rk4 and loop'",),
+    ),
+    *of(
         "solve/wave_gauss",
         "_step_impl: rewrite self._factors @ stages + self._left_out -> self._factors @ stages",
         "_miss: rewrite scaled @ _1 - stages -> scaled @ _1 + stages",

@@ -47,11 +47,11 @@ DERIVED = (
         tests=(f"{FIELDS_OF} -k degree_zero",),
     ),
     *changes_of(
-        "fields/generic",
-        "is_kept: rewrite lattice.still(rate) -> lattice.field.zero",
-        "is_kept: rewrite lattice.vary(rate).values() -> ()",
-        "is_kept: rewrite False -> True",
-        tests=(f"{CLAIMS} -k equal_fields",),
+        "fields/sums",
+        "explain_change: rewrite lattice.still(rate) -> lattice.field.zero",
+        "explain_change: rewrite lattice.vary(rate).values() -> ()",
+        "explain_change: rewrite '' if is_kept else _1 -> ''",
+        tests=(f"{CLAIMS} -k 'equal_fields or examined'",),
     ),
     *changes_of(
         "fields/symbol",
@@ -67,6 +67,19 @@ DERIVED = (
         "_is_diagonalizable: rewrite _1.sqf_part() -> _1",
         "_split: rewrite value.as_real_imag() -> (value.as_real_imag()[0], sympy.S(0))",
         tests=(f"{FIELDS_OF} -k 'posed or magnet or jordan or heat'",),
+    ),
+    *changes_of(
+        "fields/symbol",
+        "_look_at_all_orders: rewrite range(order + 1) -> range(order, order + 1)",
+        "_look_at_all_orders: rewrite tower[n] -> tower[order]",
+        "_look_at_all_orders: rewrite power >= 1 -> True",
+        "_find_growth: rewrite mpmath.mpc(0, k) -> mpmath.mpc(k, 0)",
+        tests=(f"{FIELDS_OF} {CLAIMS} -k 'orders_that_differ or with_a_block or symbol'",),
+    ),
+    *changes_of(
+        "prove/fields",
+        "_about_posedness: rewrite not seen.is_diagonalizable -> False",
+        tests=(f"{CLAIMS} -k of_a_symbol_with_a_block",),
     ),
     *changes_of(
         "fields/operators",
@@ -131,8 +144,20 @@ DERIVED = (
         tests=(f"{FIELDS_OF} -k 'posed or refused or book or compatibility or simo'",),
     ),
     *changes_of(
+        "fields/emission",
+        "_list_observables: rewrite close_jets(setting, x) -> x",
+        "read_density: rewrite close_jets(setting, x) -> x",
+        "close_jets: rewrite jets.total(value, *_1) -> value",
+        tests=("tests/derive/test_field_velocities.py",),
+    ),
+    *changes_of(
+        "routes/lax",
+        "equations_of_pair: rewrite close_jets(setting, x) -> x",
+        tests=("tests/derive/test_field_velocities.py -k pair",),
+    ),
+    *changes_of(
         "fields/grid",
-        "make_grid: rewrite value is Kept.ALWAYS and not point.is_kept(name) -> False",
+        "make_grid: rewrite dict.fromkeys(changes, Kept.UNKNOWN) -> {}",
         "make_grid: skip check_profiles",
         "make_grid: skip check_least",
         "make_grid: rewrite (size, size + 1) -> (size, size)",

@@ -1,7 +1,9 @@
 """Claims about fields: brackets, conserved densities, what grids keep, and wrong claims."""
 
+import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from coadjoint.derive import derive
@@ -12,7 +14,9 @@ from coadjoint.derive.fields.hamiltonian import field_equations
 from coadjoint.derive.fields.jets import jets_of
 from coadjoint.derive.fields.operators import Term
 from coadjoint.derive.fields.structure import field_operator
+from coadjoint.derive.fields.sums import explain_change, find_bracket_defects, find_sum_defects
 from coadjoint.errors import ClaimError
+from coadjoint.pipeline import render
 from coadjoint.prove import Verdict, prove
 from coadjoint.prove import fields as claims_of_fields
 from coadjoint.prove.fields import (
@@ -23,6 +27,7 @@ from coadjoint.prove.fields import (
 )
 from coadjoint.prove.grids import about_grid
 from coadjoint.prove.zero import Discovery, decide_zero
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec import read_spec_text
 from tests.fields import grid_of
 from tests.specs import emitted, shipped
@@ -323,6 +328,65 @@ def test_an_integral_that_counts_turns_is_not_proved_to_vanish(rate, verdict):
     assert ("wind about" in found.method) is (verdict is Verdict.SUPPORTED)
 
 
+#: What is called by a density: the claim, whether differences keep it, and its term at a point.
+CALLED = {
+    "landau_lifshitz": ("exp(-dot(S, S))", True, lambda S: np.exp(-(S**2).sum(axis=0))),
+    "burgers": ("log(1 + m^2)", False, lambda m: np.log(1 + m[0] ** 2)),
+}
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_densities_may_call_functions(name):
+    """Each point has its own: of lengths of spins kept exactly, of others up to O(h^p)."""
+    formula, kept, term = CALLED[name]
+    text = shipped(name).path.read_text(encoding="utf-8")
+    whole = re.sub(r"(?s)\[observables\].*?\n\n", "", text)
+    whole = re.sub(r"conserved = .*", 'conserved = ["energy", "Q"]', whole)
+    rendered = render(read_spec_text(f'{whole}\n[observables]\nQ = "{formula}"\n', "called.toml"))
+    claims = {c.statement: c.verdict for c in rendered.certificate.claims}
+    assert claims["the integral of Q is conserved"] is Verdict.PROVED
+    assert any(s.startswith("Q is conserved, at N >= ") for s in claims) is kept
+    with load_texts(rendered.texts) as system:
+        own = system.resize({"s": 16})
+        state = np.random.default_rng(4).normal(size=(own.STATE.size // 16, 16))
+        given = {"L": 3.0}
+        for target in ("numpy", "c"):
+            _, found = own.observables(state.ravel(), given, target=target)
+            assert found == pytest.approx(term(state).sum() * 3 / 16, rel=1e-12)
+
+
+def test_what_was_not_examined_of_a_sum_is_said():
+    """Functions of a momentum that all velocities give; a rate without a value at equal fields."""
+    text = shipped("camassa_holm").path.read_text(encoding="utf-8")
+    text = re.sub(r"(?s)\[observables\].*?\n\n", "", text)
+    text = re.sub(r"conserved = .*", 'conserved = ["energy", "Q"]', text)
+    spec = read_spec_text(f'{text}\n[observables]\nQ = "exp(m)"\n', "called.toml")
+    assert "not examined" in explain_change(GenericPoint(derive(spec)), "Q")
+    text = SCALED.replace("c*S1", "c*S1 + S2_s^2")
+    point = GenericPoint(derive(read_spec_text(text, "scaled.toml")))
+    field, (_, densities) = point.lattice.field, point.exact_point
+    here, after, further = (field[f"S2{end}"] for end in ("", "[+1]", "[+2]"))
+    for rate, reason in (
+        (1 / (further - after) - 1 / (after - here), "no value at equal fields"),
+        (field["c"], "not 0 at equal fields"),
+        (here, "variation of its rate over the points is not 0"),
+    ):
+        point.exact_point = [field.zero, here * rate], densities
+        assert reason in explain_change(point, "Q")
+
+
+@pytest.mark.parametrize(("strain", "found"), [("Xi1^2 + Xi2^2 + Xi3^2", 0), ("Xi1^2 + Xi2^2", 1)])
+def test_waves_of_a_symbol_with_a_block_are_told_of(strain, found):
+    """Without stiffness against twist Xi3_t = Omega3_s and Pi3_t has no derivative."""
+    text = shipped("spin_chain").path.read_text(encoding="utf-8")
+    new = text.replace("dot(Xi, diag(K)*Xi)/2", f"K1*({strain})/2")
+    assert new != text
+    said = [f for f in prove(read_spec_text(new, "strand.toml")).findings if f.kind == "posed"]
+    assert [f.statement for f in said] == [
+        "short waves may grow faster the shorter they are, by terms of lower order"
+    ] * found
+
+
 def test_sums_over_points_are_told_from_constants_at_equal_fields():
     """Of log(S2) with the rates g[+1] - g, and what is not 0 or has no value at equal fields."""
     point = GenericPoint(derive(read_spec_text(SCALED.replace("c*S1", "c*S1 + S2_s^2"), "s.toml")))
@@ -336,7 +400,7 @@ def test_sums_over_points_are_told_from_constants_at_equal_fields():
         (1 / (after - here) - 1 / (here - before), False),
     ):
         point.exact_point = [field.zero, here * rate], densities
-        assert point.is_kept("Q") is kept
+        assert (explain_change(point, "Q") == "") is kept
 
 
 def statements(grid):
@@ -414,7 +478,7 @@ def test_fourier_derivatives_keep_the_energy_by_a_bracket_whose_terms_balance():
     point = GenericPoint(emitted("kdv"))
     ((one, *others),) = point.operator[0]
     point.operator = (((Term(2 * one.left, one.order, one.right), *others),),)
-    found = statements(replace(grid_of("kdv"), defects=tuple(point.defects)))
+    found = statements(replace(grid_of("kdv"), defects=tuple(find_bracket_defects(point))))
     assert found[claim].verdict is Verdict.REFUTED
 
 
@@ -431,7 +495,7 @@ def test_sums_that_fourier_derivatives_keep_are_said_where_terms_balance(name, t
     spoiled = one.left * point.setting.field[point.setting.state[0]]
     rows[0][row] = (Term(spoiled, one.order, one.right), *others)
     point.operator = tuple(map(tuple, rows))
-    sums = {total: point.find_sum_defects([total])}
+    sums = {total: find_sum_defects(point, [total])}
     assert claim not in statements(replace(grid_of(name), sums=sums))
 
 

@@ -1,5 +1,6 @@
 """Claims about a field in a plane: its bracket, and what truncated series keep."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -149,6 +150,18 @@ def test_waves_come_back_if_there_are_too_few_points():
     waves = ((2, 0), (1, 1), (-2, 0))
     assert find_defect(waves, most=3) == 0
     assert find_defect(waves, most=2) != 0
+
+
+def test_densities_of_a_plane_may_call_functions():
+    """Each function of the vorticity is a Casimir of the fluid, and is not kept by its waves."""
+    text = shipped("euler_2d").path.read_text(encoding="utf-8")
+    text = re.sub(r"(?s)\[observables\].*?\n\n", '[observables]\nQ = "exp(w)"\n\n', text)
+    certificate = prove(
+        read_spec_text(re.sub("conserved = .*", 'conserved = ["Q"]', text), "w.toml")
+    )
+    (claim,) = (c for c in certificate.claims if c.statement == "the integral of Q is conserved")
+    assert claim.verdict is Verdict.PROVED
+    assert [f for f in certificate.findings if f.statement.startswith("Q may change")]
 
 
 def test_a_sum_of_squares_is_expected():

@@ -50,6 +50,8 @@ h = \"\"\"sum(i, p[i]^2/2 + k[i]*q[i]^2/2) + sum(i, max(q[i+1] - q[i], 0)^2)
 [time]
 name = "t"
 """
+#: Each is pushed away by a force that is larger beyond 0: who gets there comes back at once.
+DIPS = f'{HEAD}h = "sum(i, p[i]^2/2 - 2*q[i] + k[i]*abs(q[i]))"\n'
 PAIRS = f'{HEAD}h = "sum(i, p[i]^2/2 + q[i]^2/2) + sum(i, j, i < j, abs(q[i] - q[j]))"\n'
 METHODS = ("taylor", "dop853", "rk4")
 
@@ -63,6 +65,14 @@ def load(text):
 def free():
     """Particles that move on parabolas."""
     with load(FREE) as system:
+        yield system
+
+
+@pytest.fixture(scope="module", params=["in a loop", "written out"])
+def pushed(request):
+    """Four particles that are pushed back from beyond 0."""
+    size = "size = 4, written_out = true" if request.param == "written out" else "size = 4"
+    with load(DIPS.replace("size = 6", size)) as system:
         yield system
 
 
@@ -105,6 +115,35 @@ def test_trajectories_of_a_batch_meet_kinks_of_their_own(free):
         one = system.simulate(state[:, n].copy(), (0, 9), samples=4, method="dop853")
         assert np.array_equal(one.state, both.state[:, n])
         assert one.kinks.counts == both.kinks.counts[n]
+
+
+def dip(t, met, speed):
+    """The motion of ``x'' = 2 - sign(x)`` that meets 0 when asked to, and back again: parabolas."""
+    low = 2 * speed / 3
+    after = t - met - low
+    below = (after + low) * (1.5 * (after + low) - speed)
+    above = np.where(after < 0, -after - low, after)
+    return np.where((-low < after) & (after < 0), below, above * (speed + above / 2))
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_kink_from_which_a_step_comes_back_ends_it(pushed, method, target):
+    """Brief ways beyond 0 inside steps of length 1, the first of them too, and some just not."""
+    met = np.array([[0.53, 0.13, 0.66], [0.31, 0.93, 0.74], [0.49, 0.27, 2.61]])
+    speed = np.array([[0.06, 0.03, 0.015], [0.03, 0.06, 0.015], [0.06, 0.015, 0.03]])
+    back = np.array([[0.3, 0.4, 0.8]])  # these turn at 1e-4 above 0
+    start = np.concatenate([dip(0, met, speed), 1e-4 + back**2 / 2, -speed - met, -back])
+    times = np.linspace(0, 4, 5)
+    step = {"step": 1.0} if method == "rk4" else {"rtol": 1e-12, "atol": 1e-12}
+    found = pushed.simulate(start, times, method=method, target=target, **step)
+    expected = dip(times, met[..., None], speed[..., None])
+    assert np.abs(found.state[:3] - expected).max() < 1e-9
+    assert np.all(found.kinks.counts == 6)
+    for n in range(3):
+        own = found.kinks.time[found.kinks.member == n]
+        known = np.sort([met[:, n], met[:, n] + 2 * speed[:, n] / 3], axis=None)
+        np.testing.assert_allclose(own, known, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("held", [True, False], ids=["held", "control"])

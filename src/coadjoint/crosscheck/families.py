@@ -276,6 +276,8 @@ def _compare_targets(
             state = source.normal(size=(sized.rows(name).size, *batch))
             for shape in dict.fromkeys(((), batch)):
                 parameters = source.uniform(0.5, 2.0, (sized.PARAMETERS.size, *shape))
+                for row, factor in sized.stretched.items():
+                    parameters[row] *= factor
                 time = source.normal(size=shape) if sized.TIME else None
                 inputs = source.normal(size=(sized.INPUTS.size, *shape)) if sized.INPUTS else None
                 given = (state, parameters, inputs)

@@ -143,8 +143,8 @@ def write_tree(
             case tree.Call(function="by_process"):
                 return write_noise(*below)
             case tree.Call(function="rows", arguments=rows) if all(map(_is_vector, rows)):
-                own = [row.arguments for row in rows if isinstance(row, tree.Call)]
-                return matrix([[write_tree(one, shapes, names) for one in row] for row in own])
+                lines = [row.arguments for row in rows if isinstance(row, tree.Call)]
+                return matrix([[write_tree(one, shapes, names) for one in line] for line in lines])
             case tree.Call(
                 function="inverse",
                 arguments=(tree.Call(function="transpose", arguments=(turned,)),),

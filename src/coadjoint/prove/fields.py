@@ -22,6 +22,7 @@ from dataclasses import replace
 from functools import partial
 
 from coadjoint.derive import Equations
+from coadjoint.derive.fields.emission import read_density
 from coadjoint.derive.fields.grid import make_grid
 from coadjoint.derive.fields.jets import DEGREE, Jets, jets_of, list_rows
 from coadjoint.derive.fields.operators import Operator, apply, order_of, skew_defects
@@ -35,7 +36,7 @@ from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
 from coadjoint.prove.strands import about_strand, decide_holonomy
 from coadjoint.prove.torus import about_torus
-from coadjoint.prove.zero import Decision, Examined, decide_zero, give, mark_accepted
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, give, mark_accepted
 
 _COVECTORS = ("_xi", "_eta", "_zeta")
 
@@ -201,6 +202,17 @@ def _about_posedness(first: Equations) -> Iterator[Examined]:
         "posed",
         lambda: decision,
     )
+    if not seen.is_diagonalizable:
+        method = (
+            "a Jordan block of the principal symbol; about fields that are the same all along no "
+            "wave grows like exp(k*t)"
+        )
+        scope = "about some of these fields"
+        yield (
+            "short waves may grow faster the shorter they are, by terms of lower order",
+            "posed",
+            partial(give, Discovery(method, scope)),
+        )
 
 
 def _about_equality(routes: Sequence[Equations]) -> Iterator[Examined]:
@@ -249,7 +261,7 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
         yield "the integral of the energy is conserved", "conserved", decide
     for place, claim in enumerate(spec.conserved):
         if claim.everywhere != "energy":
-            parts = setting.components(claim.formula, emitted)
+            parts = read_density(setting, claim.formula, emitted)
             decision, where = decide_law(first, parts)
             statement = f"the integral of {claim.formula.in_one_line} is conserved{where}"
             claimed = [(statement, "conserved", partial(give, decision))]

@@ -192,7 +192,7 @@ def _about_sums(grid: Grid, where: str) -> Iterator[Examined]:
         law, along = decide_law(grid.equations, each.values)
         if law.verdict is not Verdict.PROVED:
             continue  # what the field changes has no order
-        found = Discovery("the variation of its rate over the points is not 0", "on the grid")
+        found = Discovery(grid.changes[each.name], "on the grid")
         yield (
             f"{each.name} is conserved up to O(h^{space.order}) by N points, h = L/N"
             f"{',' * bool(along)}{along}",

@@ -227,6 +227,16 @@ class FamilySystem(System):
             return self
         return self.resize({self.index.name: few})
 
+    @property
+    def stretched(self) -> dict[int, float]:
+        """Lengths of fields by their rows, which are as many times longer as there are points.
+
+        Between points that are close to each other differences are large: where A u = m they lose
+        more digits than two builds may differ by.
+        """
+        rows = [*self.PARAMETERS.components]
+        return {rows.index(name): float(self.size) for name in self.lengths.values()}
+
     def find_kernel(self, target: str) -> Kernel:
         """The kernel of a target itself.
 

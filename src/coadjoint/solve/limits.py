@@ -164,7 +164,8 @@ class Step:
         """When the step is found beyond a kink, or outside the domain, before its end.
 
         A step may meet a kink and come back. Where it comes nearer and then goes away, straight
-        lines through both ends tell how near it may come, and halving finds the place.
+        lines through both ends tell how near it may come, and halving finds the place; also before
+        a kink at which it is found already.
 
         Returns:
             The length of the step where it is found nowhere, ``(N,)``.
@@ -181,7 +182,7 @@ class Step:
             place = (gaps[0] - gaps[3] + rise * (0.5 / NEAR)) / (fall + rise)
             near_zero = (fall > 0.0) & (rise > 0.0) & (gaps[0] - fall * place < 0.0)
             for row in np.flatnonzero((near_zero & self.accepted).any(axis=1)).tolist():
-                low = near_zero[row] & self.accepted & (outside == took)
+                low = near_zero[row] & self.accepted & (begin < outside)
                 if low.any():
                     self._search(row, (begin, end), low, outside)
         return outside

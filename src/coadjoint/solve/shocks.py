@@ -84,9 +84,9 @@ def warn_of_shock(system: System, request: Request) -> None:
     )
     if after < end:
         warnings.warn(
-            f"{system.name} has a shock at t = {request.start + after:.6g}, before the end of the "
-            f"run at t = {request.start + end:.6g}: from then on there is no smooth solution, and "
-            "states are no approximations of one. Ask for an earlier end.",
+            f"{system.name} has a shock near t = {request.start + after:.6g}, before the end of "
+            f"the run at t = {request.start + end:.6g}: from then on there is no smooth solution, "
+            "and states are no approximations of one. Ask for an earlier end.",
             ShockWarning,
             stacklevel=4,
         )

@@ -182,6 +182,11 @@ class System(Functions):
         """What fresh objects are compared with: itself, but for loops over many members."""
         return self
 
+    @property
+    def stretched(self) -> dict[int, float]:
+        """By their rows, parameters that are larger there than others: lengths of fields."""
+        return {}
+
     def rows(self, function: str) -> Quantities:
         """What the rows of the first argument of a function are."""
         match KERNEL_FUNCTIONS[function].below:

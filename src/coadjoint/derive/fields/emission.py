@@ -8,17 +8,20 @@ Read next: `coadjoint.derive.fields.grid`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from coadjoint.derive.emitted import declared_observables, emitted_energy
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.fields.jets import jets_of
+from coadjoint.derive.fields.jets import jets_of, list_rows, solved
 from coadjoint.derive.fields.operators import Operator
 from coadjoint.derive.fields.symbol import look_at_symbol
+from coadjoint.derive.interpret import Value
 from coadjoint.derive.mechanics.legendre import legendre
-from coadjoint.derive.records import Exact, Step
+from coadjoint.derive.records import Emitted, Exact, Step
 from coadjoint.derive.setting import Setting, fault, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
+from coadjoint.spec import Formula
 
 
 def emit_fields(
@@ -49,12 +52,49 @@ def emit_fields(
         definitions=(),
         rates=tuple(rates),
         energy=energy,
-        emitted=(*own, *declared_observables(setting)),
+        emitted=(*own, *_list_observables(setting)),
         poisson_tensor=None,
     )
     return Equations(
         setting=setting, route=route, exact=exact, steps=tuple(steps), operator=operator
     )
+
+
+def _list_observables(setting: Setting) -> tuple[Emitted, ...]:
+    """The declared observables, in jets alone."""
+    return tuple(
+        replace(each, values=tuple(close_jets(setting, x) for x in each.values))
+        for each in declared_observables(setting)
+    )
+
+
+def read_density(
+    setting: Setting, formula: Formula, known: Mapping[str, Value]
+) -> tuple[Element, ...]:
+    """The components of what a spec claims, in jets alone; arguments as in `Setting.value`."""
+    return tuple(close_jets(setting, x) for x in setting.components(formula, known))
+
+
+def close_jets(setting: Setting, element: Element) -> Element:
+    """An element in which ``dh/dmu`` stands for velocities, and its derivatives for theirs.
+
+    Without this a velocity is a constant to every derivative, and so would be conserved.
+    """
+    from coadjoint.derive.fields import circle, hamiltonian  # which emit
+
+    spec, field, jets = setting.spec, setting.field, jets_of(setting)
+    reached, space, values = field.reach(element), spec.space, dict[str, Element]()
+    assert space is not None, spec.name
+    pairs = [(xi, mu) for xi, mu, _ in setting.conjugates]
+    if spec.diffeomorphisms is not None:
+        pairs = [(v.name, setting.state[0]) for v in spec.having_role("velocity")]
+    for xi, mu in pairs:
+        rows = list_rows(xi, space.coordinates, space.derivatives)
+        places = {x: (i, j) for j, row in enumerate(rows) for i, x in enumerate(row)}
+        if xi not in solved(spec) and (named := reached & places.keys()):
+            value = circle.vary(setting, hamiltonian.density(setting), mu)
+            values |= {symbol: jets.total(value, *places[symbol]) for symbol in named}
+    return field.substitute(element, values)
 
 
 def _check_posed(setting: Setting, rates: Sequence[Element]) -> None:
@@ -69,9 +109,10 @@ def _check_posed(setting: Setting, rates: Sequence[Element]) -> None:
     spec = setting.spec
     formula = spec.lagrangian or spec.hamiltonian
     where = ", ".join(f"{name} = {value}" for name, value in growth.point.items())
+    where = f"at {where}" if where else "about any fields"
     message = (
-        f"the equations of the fields are ill posed: {growth.told}, at {where}; expected a "
-        "principal symbol with real roots. Change the sign of the energy of the strains or "
+        f"the equations of the fields are ill posed: {growth.told}, {where}; expected "
+        "real frequencies of short waves. Change the sign of the energy of the strains or "
         "derivatives."
     )
     if formula is None:  # a Lax pair alone

@@ -1,16 +1,14 @@
 r"""Generic point: the rates of fields at one point of a grid, as loops are made of them.
 
 Differences are applied to expressions, which are written without being multiplied out, and to
-elements of a field that has symbols for the neighbours, in which it is decided what differences
-keep.
+elements of a field that has symbols for the neighbours.
 Comes in: Equations of fields. Goes out: a `Family`, and brackets, rates and densities of the point.
 Read next: `coadjoint.derive.fields.rings`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -88,9 +86,10 @@ class GenericPoint:
         Where A u = m with a symmetric matrix A, half the sum of m u has the gradient u.
         """
         energy = self.densities["energy"]
-        return [self._find_slopes(energy, name) for name in self.setting.state]
+        return [self.find_slopes(energy, name) for name in self.setting.state]
 
-    def _find_slopes(self, density: Element, name: str) -> list[Element]:
+    def find_slopes(self, density: Element, name: str) -> list[Element]:
+        """Derivatives of a density by a field and its derivatives."""
         if not solved(self.spec):
             return self.jets.slopes(density, name)
         own = self.jets.slopes(density, name) or [self.setting.field.zero]
@@ -243,7 +242,7 @@ class GenericPoint:
         reach = 4 * self.reach
         symbols = [name_at(c, r) for c in self.components for r in range(-reach, reach + 1)]
         rest = [*self.setting.parameters, self.count]
-        slots = len(self.setting.field.adjoined)
+        slots = len(self.setting.field.adjoined) * (2 * reach + 1)
         positive = [*(self.setting.field.positive & {*rest}), self.count]
         return LatticeField(Field([*symbols, *rest], slots, positive), self.components, reach)
 
@@ -261,7 +260,7 @@ class GenericPoint:
 
         return convert
 
-    def _place_exactly(
+    def place_exactly(
         self, number: int | None = None
     ) -> tuple[Calculus, Callable[[Element], Lattice]]:
         """Differences and expressions in the exact field of the lattice."""
@@ -274,7 +273,7 @@ class GenericPoint:
     @cached_property
     def brackets(self) -> dict[tuple[str, str, int], Element]:
         """``h {u_a(i), u_b(i + r)}`` by a, b and r."""
-        calculus, place = self._place_exactly()
+        calculus, place = self.place_exactly()
         found = dict[tuple[str, str, int], list[Element]]()
         for a, entries in zip(self.setting.state, self.operator, strict=True):
             for b, entry in zip(self.setting.state, entries, strict=True):
@@ -286,63 +285,9 @@ class GenericPoint:
         return {key: self.lattice.field.sum(parts) for key, parts in found.items()}
 
     @cached_property
-    def defects(self) -> list[Element]:
-        """What vanishes if the bracket is antisymmetric for all derivatives that sum by parts.
-
-        Of a matrix D_k with the transpose (-1)^k D_k a term ``f D_k g`` is, at the points i and j,
-        f(i) g(j) times its entry there: so is the term that is minus its adjoint.
-        """
-        _, place = self._place_exactly()
-        found: dict[tuple[int, int, int], list[Element]] = {}
-        for i, entries in enumerate(self.operator):
-            for j, entry in enumerate(entries):
-                for term in entry:
-                    left, right = place(term.left), place(term.right)
-                    other, sign = min(term.order, 1), (-1) ** term.order  # D_0 is the identity
-                    found.setdefault((i, j, term.order), []).append(left(0) * right(other))
-                    found.setdefault((j, i, term.order), []).append(left(other) * right(0) * sign)
-        return [self.lattice.field.sum(parts) for parts in found.values()]
-
-    def find_sum_defects(self, components: Iterable[str]) -> list[Element] | None:
-        """What vanishes if sums of densities are kept with all derivatives that sum by parts.
-
-        The rate of such a sum is that of terms ``f(i) D_k[i, j] g(j)``, with a matrix that has the
-        transpose (-1)^k D_k and takes constants to 0. So it is 0 where the sum of ``f(i) g(j)`` and
-        (-1)^k times the same with i and j exchanged is one of functions of i and of j.
-
-        Returns:
-            None where densities or the energy have derivatives, or a velocity is solved for.
-        """
-        values = [self.densities[name] for name in components]
-        state, field, lattice = self.setting.state, self.setting.field, self.lattice.field
-        named = frozenset[str]().union(*map(field.reach, values)) & self.jets.orders.keys()
-        if solved(self.spec) or not named <= {*state} or any(len(own) > 1 for own in self.slopes):
-            return None
-        _, place = self._place_exactly()
-        slopes = [own[0] if own else field.zero for own in self.slopes]
-        defects = list[Element]()
-        for value in values:
-            forms = dict[int, list[Element]]()
-            for a, entries in zip(state, self.operator, strict=True):
-                slope = field.derivative(value, a)
-                for entry, other in zip(entries, slopes, strict=True):
-                    for t in entry:
-                        f, g = place(slope * t.left), place(t.right * other)
-                        near, sign = min(t.order, 1), (-1) ** t.order
-                        both = f(0) * g(near) + f(near) * g(0) * sign
-                        forms.setdefault(t.order, []).append(both)
-            for order, parts in forms.items():
-                whole = lattice.sum(parts)
-                here, there = ([name_at(c, n) for c in state] for n in (0, 1))
-                slopes_here = lattice.gradient(whole, here if order else ())
-                mixed = [x for each in slopes_here for x in lattice.gradient(each, there)]
-                defects += mixed if order else [whole]
-        return defects
-
-    @cached_property
     def exact_point(self) -> tuple[list[Element], dict[str, Element]]:
         """Rates and densities of the generic point in the exact field of the lattice."""
-        calculus, place = self._place_exactly()
+        calculus, place = self.place_exactly()
         rates = [f(0) for f in self.motion(calculus, place)]
         return rates, {name: place(value)(0) for name, value in self.densities.items()}
 
@@ -351,7 +296,7 @@ class GenericPoint:
         """The rates of points near ends, likewise; empty on a circle."""
         found = dict[int, tuple[Element, ...]]()
         for number in self.numbers:
-            found[number] = tuple(f(0) for f in self.motion(*self._place_exactly(number)))
+            found[number] = tuple(f(0) for f in self.motion(*self.place_exactly(number)))
         return found
 
     # -- what is solved for -------------------------------------------------------------------
@@ -474,60 +419,6 @@ class GenericPoint:
             for n in self.numbers
         ]
         return sympy.Add(*parts)
-
-    # -- what differences keep ------------------------------------------------------------------
-
-    def is_kept(self, name: str) -> bool:
-        """Whether the sum of an observable over the points is kept exactly."""
-        if self.space.has_ends:
-            return name == "energy"
-        (each,) = (x for x in self.equations.exact.emitted if x.name == name)
-        lattice = self._lattice_of_rates
-        try:
-            return all(
-                lattice.field.is_zero(x)
-                for rate in map(self._rate_of_sum, each.components)
-                for x in (*lattice.vary(rate).values(), lattice.still(rate))
-            )
-        except ZeroDivisionError:  # at equal fields, which would tell the sum from a constant
-            return False
-
-    @property
-    def _lattice_of_rates(self) -> LatticeField:
-        """In which the rates of sums are: where A u = m, all is a function of the velocities."""
-        return replace(self.lattice, components=solved(self.spec) or self.lattice.components)
-
-    def _rate_of_sum(self, component: str) -> Element:
-        """What has the sum of the rates of a density as its sum over all points."""
-        rates, densities = self.exact_point
-        lattice, field = self.lattice, self.lattice.field
-        if self.momenta:
-            return self._rate_by_velocities(component)
-        density, parts = densities[component], list[Element]()
-        for name, rate in zip(self.setting.state, rates, strict=True):
-            for r in range(-self.reach, self.reach + 1):
-                slope = field.derivative(density, name_at(name, r))
-                if slope:
-                    parts.append(slope * lattice.shift(rate, r))
-        return field.sum(parts)
-
-    def _rate_by_velocities(self, component: str) -> Element:
-        """The same where A u = m."""
-        calculus, place = self._place_exactly()
-        field, parts = self.lattice.field, list[Element]()
-        rates, _ = self.exact_point
-        for name, rate in zip(self.setting.state, rates, strict=True):
-            slopes = self._find_slopes(self.densities[component], name)
-            parts.append(calculus.vary([place(x) for x in slopes])(0) * rate)
-        whole = field.sum(parts)
-        for m, value in self.momenta.items():
-            known = {
-                name_at(m, r): self.lattice.shift(value, r)
-                for r in range(-self.lattice.reach, self.lattice.reach + 1)
-                if name_at(m, r) in field.reach(whole)
-            }
-            whole = field.substitute(whole, known)
-        return whole
 
 
 def rational(value: Fraction) -> sympy.Rational:

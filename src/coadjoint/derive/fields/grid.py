@@ -31,6 +31,7 @@ from coadjoint.derive.fields.lattice import LatticeField
 from coadjoint.derive.fields.profiles import check_profiles
 from coadjoint.derive.fields.rings import Rings
 from coadjoint.derive.fields.spectral import write_spectral
+from coadjoint.derive.fields.sums import explain_change, find_bracket_defects, find_sum_defects
 from coadjoint.derive.records import Kept
 from coadjoint.derive.setting import once
 from coadjoint.exact import Element
@@ -61,6 +62,7 @@ class Grid:
             derivatives that sum by parts, those of Fourier series among them.
         sums: Likewise, of each conserved density by its name what vanishes if these derivatives
             keep its sum; nothing of one of which that is not asked.
+        changes: Why a sum that the fields conserve is not said to be kept by differences, by name.
         brackets: In this field, of two fields and how many points further the second one is, the
             bracket of both times the spacing.
     """
@@ -79,6 +81,7 @@ class Grid:
     spectral: Spectral | None
     defects: tuple[Element, ...]
     sums: Mapping[str, Sequence[Element]]
+    changes: Mapping[str, str]
 
 
 @once
@@ -96,12 +99,11 @@ def make_grid(equations: Equations) -> Grid:
         check_least(spec.name, point.space.name, point.space.size, point.least, where=where)
     rings = Rings(point)
     kept = {each.name: each.kept for each in equations.exact.emitted}
-    kept |= {
-        name: Kept.UNKNOWN
-        for name, value in kept.items()
-        if value is Kept.ALWAYS and not point.is_kept(name)
-    }
-    size = point.least if point.space.has_ends else 2 * point.reach + 1
+    always = [name for name, value in kept.items() if value is Kept.ALWAYS]
+    changes = {name: why for name in always if (why := explain_change(point, name))}
+    kept |= dict.fromkeys(changes, Kept.UNKNOWN)
+    # where A u = m the operator may be wider than the rates
+    size = max(point.least, 0 if point.space.has_ends else 2 * point.reach + 1)
     windows = tuple(rings.make(n, kept) for n in (size, size + 1))
     rates, _ = point.exact_point
     return Grid(
@@ -117,8 +119,9 @@ def make_grid(equations: Equations) -> Grid:
         velocities=rings.velocities,
         ends=point.exact_ends,
         spectral=None if point.space.has_ends else write_spectral(point),
-        defects=tuple(point.defects),
+        defects=tuple(find_bracket_defects(point)),
         sums={} if point.space.has_ends else _list_sums(point),
+        changes=changes,
     )
 
 
@@ -127,6 +130,6 @@ def _list_sums(point: GenericPoint) -> dict[str, Sequence[Element]]:
     found = dict[str, Sequence[Element]]()
     for each in point.equations.exact.emitted:
         if each.kept is Kept.ALWAYS:
-            defects = point.find_sum_defects(each.components)
+            defects = find_sum_defects(point, each.components)
             found |= {} if defects is None else {each.name: defects}
     return found

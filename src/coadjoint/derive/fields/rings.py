@@ -47,7 +47,8 @@ class Rings:
         """The ordinary system of so many points: a tensor, and the gradient of the energy."""
         variables = tuple(write_point(v, k) for v in self.spec.state for k in range(size))
         spec = replace(make_bare(self.spec, variables), family=self.declared)
-        setting = settings.make_setting(spec)
+        room = len(self.point.setting.field.adjoined) * size
+        setting = settings.make_setting(spec, (), room)
         field = setting.field
         inverse = self.point.find_inverse(field.number(size), field[self.space.length])
         calculus = self.point.calculus_in(field, inverse)
@@ -182,4 +183,5 @@ def write_point(of: Variable, place: int) -> Variable:
         unit=of.unit,
         doc=of.doc,
         form=of.form,
+        default=of.default,
     )

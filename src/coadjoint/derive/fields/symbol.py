@@ -8,6 +8,11 @@ imaginary. With other eigenvalues there are waves that grow faster the shorter t
 depends on initial fields continuously (Hadamard). For a strand with :math:`l = \tfrac12 A \Omega^2
 + B \Omega \Xi + \tfrac12 C \Xi^2` they are the roots of :math:`A \tau^2 + 2 B \tau + C`.
 
+Where A is not diagonalizable, derivatives of lower orders decide. About fields that are the same
+all along, waves then have the rates of :math:`\sum_n (i k)^n A_n`. Those of a strand whose energy
+has derivatives of strains grow like :math:`e^{k^2 t}` where its sign is wrong, while A is
+nilpotent.
+
 Roots are counted exactly, at rational points: the defaults of parameters, and a few fields.
 Comes in: Equations of fields. Goes out: what is wrong with them, if anything.
 Read next: `coadjoint.prove.fields`.
@@ -20,6 +25,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
 
+import mpmath
 import sympy
 
 from coadjoint.derive.fields.jets import Jets
@@ -30,6 +36,8 @@ from coadjoint.exact import Element
 POINTS = 5
 #: Wave number at which growth is shown.
 SHOWN = 10
+#: Wave numbers between which the power of a growth is measured, and digits for roots in blocks.
+WAVE_NUMBERS, DIGITS = (10**8, 10**12), 120
 _ROOT = sympy.Symbol("_root")
 
 
@@ -38,22 +46,25 @@ class Growth:
     """A short wave that grows.
 
     Attributes:
-        order: The highest derivative in the rates.
+        order: The power of the wave number k.
         speed: How fast it grows: the amplitude has the factor ``exp(speed * k^order * t)``.
         point: Parameters and fields there, as text.
+        cause: Why, as a clause.
     """
 
-    order: int
+    order: Fraction
     speed: float
     point: dict[str, str]
+    cause: str = "the principal symbol has complex roots"
 
     @property
     def told(self) -> str:
         """What happens, as a clause."""
         rate = f"{self.speed * SHOWN**self.order:.3g}"
-        power = f"k^{self.order}" if self.order > 1 else "k"
+        power = f"k^{self.order}" if self.order != 1 else "k"
+        power = power if self.order.denominator == 1 else f"k^({self.order})"
         return (
-            "the principal symbol has complex roots, so that a wave of wave number k grows like "
+            f"{self.cause}, so that a wave of wave number k grows like "
             f"exp({self.speed:.3g}*{power}*t), with k = {SHOWN} like exp({rate}*t)"
         )
 
@@ -114,10 +125,63 @@ def look_at_symbol(setting: Setting, jets: Jets, rates: Sequence[Element]) -> Se
             speed = max(abs(x.imag if order % 2 else x.real) for x in parts)
             reached = frozenset[str]().union(*(field.reach(x) for row in matrix for x in row))
             point = {name: str(values[name]) for name in field.names if name in reached}
-            return Seen(order, points + 1, Growth(order, speed, point))
+            return Seen(order, points + 1, Growth(Fraction(order), speed, point))
         points += 1
-        diagonalizable = diagonalizable and _is_diagonalizable(numbers, polynomial)
+        if not _is_diagonalizable(numbers, polynomial):
+            diagonalizable = False
+            if (growth := _look_at_all_orders(setting, jets, rates, order)) is not None:
+                return Seen(order, points, growth)
     return Seen(order, points, is_diagonalizable=diagonalizable)
+
+
+def _look_at_all_orders(
+    setting: Setting, jets: Jets, rates: Sequence[Element], order: int
+) -> Growth | None:
+    """A short wave that grows at least like ``exp(k t)`` about fields that are the same all along.
+
+    Fields that change along space change its rate by terms without k, so that slower growth says
+    nothing.
+    """
+    field, towers = setting.field, jets.only(setting.state).towers.values()
+    matrices = [
+        [field.gradient(rate, [tower[n] for tower in towers]) for rate in rates]
+        for n in range(order + 1)
+    ]
+    slopes = {symbol: Fraction(0) for tower in towers for symbol in tower[1:]}
+    flat = [row for matrix in matrices for row in matrix]
+    for values in _list_points(setting, flat):
+        known = {name: slopes.get(name, value) for name, value in values.items()}
+        numbers = [
+            [[field.evaluate(entry, known, Fraction) for entry in row] for row in matrix]
+            for matrix in matrices
+        ]
+        least, most = (_find_growth(numbers, k) for k in WAVE_NUMBERS)
+        if least > 0 and most > 0:
+            ratio = mpmath.log(most / least) / mpmath.log(WAVE_NUMBERS[1] / WAVE_NUMBERS[0])
+            power = Fraction(float(ratio)).limit_denominator(6)
+            if power >= 1:
+                speed = float(most / mpmath.mpf(WAVE_NUMBERS[1]) ** float(power))
+                point = {name: str(value) for name, value in known.items() if name not in slopes}
+                cause = "frequencies of short waves, by terms of all orders, are complex"
+                return Growth(power, speed, point, cause)
+    return None
+
+
+def _find_growth(matrices: Sequence[Sequence[Sequence[Fraction]]], k: int) -> mpmath.mpf:
+    """How fast the wave of a wave number grows that does so fastest; 0 but for roundings."""
+    with mpmath.workdps(DIGITS):
+        whole = mpmath.matrix(len(matrices[0]))
+        for n, matrix in enumerate(matrices):
+            for i, row in enumerate(matrix):
+                for j, x in enumerate(row):
+                    whole[i, j] += mpmath.mpc(0, k) ** n * x.numerator / x.denominator
+        rates = mpmath.eig(whole, left=False, right=False)
+        most = max(mpmath.re(rate) for rate in rates)
+        return (
+            most
+            if most > max(map(abs, rates)) * mpmath.mpf(10) ** (-DIGITS // 4)
+            else mpmath.mpf(0)
+        )
 
 
 def _order(jets: Jets, rate: Element) -> int:

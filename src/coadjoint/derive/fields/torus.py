@@ -203,7 +203,8 @@ class _Making:
         variables = tuple(write_point(v, k) for v in self.spec.state for k in range(size))
         bare = make_bare(self.spec, variables)
         spec = replace(bare, parameters=(*self.spec.parameters, *own), family=self.declared)
-        setting = settings.make_setting(spec)
+        room = len(self.setting.field.adjoined) * size
+        setting = settings.make_setting(spec, (), room)
         field, source = setting.field, self.setting.field
 
         def place(element: Element, k: int) -> Element:

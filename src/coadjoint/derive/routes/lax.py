@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from coadjoint.derive.equations import Equations
-from coadjoint.derive.fields.emission import emit_fields
+from coadjoint.derive.fields.emission import close_jets, emit_fields
 from coadjoint.derive.fields.hamiltonian import density
 from coadjoint.derive.integrals import lax_integrals
 from coadjoint.derive.mechanics.emission import emit
@@ -54,9 +54,11 @@ def equations_of_pair(
     """
     h, solves = hamiltonian(setting) if setting.has_energy else (None, ())
     definitions = () if h is None else velocities_of(setting, h, solves)
-    rates = rates_of(setting, pair, route)
     if setting.spec.space is not None:
-        return _derive_fields(setting, route, pair, rates)
+        M = tuple(tuple(close_jets(setting, x) for x in row) for row in pair.M)
+        pair = replace(pair, M=M)
+        return _derive_fields(setting, route, pair, rates_of(setting, pair, route))
+    rates = rates_of(setting, pair, route)
     steps = (*search, *_steps(setting, pair, definitions, rates))
     return replace(emit(setting, route, rates, steps, h, definitions, solves), pair=pair)
 

@@ -44,6 +44,11 @@ class Generated(Protocol):
         """What fresh objects are compared with; of few members where texts are those of any."""
         ...
 
+    @property
+    def stretched(self) -> Mapping[int, float]:
+        """By the rows of parameters, what they are multiplied by where fresh objects are probed."""
+        ...
+
     def list_called(self, function: str) -> Sequence[str]:
         """What a function calls beyond ``+ - * / sqrt``, or what others do."""
         ...

@@ -166,6 +166,8 @@ def _probes(system: Generated, functions: Sequence[str]) -> Iterator[tuple[str, 
         sizes = system.sizes(function).items()
         for members in PROBES:
             own = {name: source.uniform(0.5, 2.0, (size, members)) for name, size in sizes}
+            for row, factor in system.stretched.items():
+                own["parameters"][row] *= factor
             state = own.pop("state")
             for given in (own, {name: array[:, 0].copy() for name, array in own.items()}):
                 block, (parameters, *_) = _unaligned((*shape, members)), given.values()
