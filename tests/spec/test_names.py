@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from coadjoint.resources import templates_folder
 from coadjoint.spec.core.names import (
     NAME,
     derived_names,
@@ -40,6 +41,17 @@ def test_letters_of_the_books_are_free():
     """Greek letters, capitals and I (no macro without <complex.h>) may be declared."""
     free = "Omega Pi Gamma Xi chi mu alpha I J M D P Q R v x1 I1 A12 A1_2 m_l k_b x_0 E e"
     assert [name for name in free.split() if refusal(name) is not None] == []
+
+
+def test_macros_and_the_type_of_generated_c_are_refused():
+    """A preprocessor would put something else in their place; V is what vectors of lanes are."""
+    templates = "\n".join(
+        path.read_text(encoding="utf-8") for path in templates_folder().glob("c/**/*.j2")
+    )
+    macros = {*re.findall(r"#\s*define ([A-Za-z]\w*)", templates)}
+    assert {"LANES", "STAGES"} < macros
+    assert "typedef double V " in templates
+    assert [name for name in (*macros, "V") if NAME.fullmatch(name) and not refusal(name)] == []
 
 
 @pytest.mark.parametrize(
