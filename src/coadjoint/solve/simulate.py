@@ -19,7 +19,7 @@ from coadjoint.solve.arrays import find_slopes, pack_parameters
 from coadjoint.solve.checkpoints import check_checkpoint
 from coadjoint.solve.choices import GENERATED
 from coadjoint.solve.constraints import Constraints, describe_projection
-from coadjoint.solve.costs import SHARE
+from coadjoint.solve.costs import LEAST, SHARE
 from coadjoint.solve.course import Course, Start
 from coadjoint.solve.dense_output import Trail
 from coadjoint.solve.domain import Domain, Exit
@@ -153,6 +153,11 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
+        elif (
+            name == "dop853" and step is None and is_auto(method) and without == generated.NO_SERIES
+        ):
+            share = max(SHARE, min(1.0, LEAST / rtol))
+            rtol, atol = rtol * share, atol * share
     if check_newton(newton, name) and system.obstacle:
         raise KernelArgumentError(
             f"newton is True, and {system.obstacle}; expected newton=False.",
