@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from coadjoint.errors import SpecError
 from coadjoint.resources import templates_folder
 from coadjoint.spec.core.names import (
     NAME,
@@ -17,6 +18,7 @@ from coadjoint.spec.core.names import (
     system_refusal,
 )
 from coadjoint.spec.core.shapes import FUNCTIONS
+from coadjoint.spec.reader import read_spec_text
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 needs_compiler = pytest.mark.skipif(not COMPILERS, reason="no gcc and no clang on this machine")
@@ -210,3 +212,24 @@ def test_accepted_names_are_python_variables():
     exec(compile(code, "kernel", "exec"), scope)  # our own list of names
     assert scope["f"]() == list(range(len(accepted)))
     assert sys.version_info >= (3, 11)
+
+
+def test_a_matrix_or_a_definition_may_have_the_name_of_a_type_of_generated_c():
+    """Their names stand in no kernel; a number of that name does, and is refused."""
+    text = """title = "N"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[parameters]
+V = { shape = [2, 2], default = [[1, 0], [0, 1]] }
+[definitions]
+"STATE(r)" = "V[1, 1]*r^2"
+[hamiltonian]
+h = "p^2/2 + STATE(q)"
+"""
+    assert read_spec_text(text, "sample.toml").parameters[0].components[0] == "V11"
+    with pytest.raises(SpecError, match="'V' is a type or a macro of generated C"):
+        read_spec_text(
+            text.replace("V = { shape = [2, 2], default = [[1, 0], [0, 1]] }", "V = {}"), "s.toml"
+        )
