@@ -219,6 +219,27 @@ P = "sum(i, p[i])"
 [claims]
 conserved = ["energy"]
 """
+#: Campa and others, Physica A 365 (2006) 177: each pair attracts by 1/N, neighbours in addition.
+MEAN = """
+title = "Rotators with a mean field and neighbours"
+routes = ["canonical"]
+[index]
+i = { size = 6, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[parameters]
+J = { default = 1 }
+K = { default = 0.5 }
+[hamiltonian]
+h = '''sum(i, p[i]^2/2) + J/n*sum(i, j, i < j, 1 - cos(q[i] - q[j]))
+    - K*sum(i, cos(q[i+1] - q[i])) + q[0]^2/(2*n^2)'''
+[observables]
+M = "sqrt(sum(i, cos(q[i]))^2 + sum(i, sin(q[i]))^2)/n"
+P = "sum(i, p[i])/n"
+[claims]
+conserved = ["energy"]
+"""
 #: No Hamiltonian: masses that depend on places, walls, and velocities as the state.
 BY_VELOCITIES = """
 title = "Masses on a bent wire"
@@ -289,6 +310,13 @@ generators = { q = "vector(b[1], 0)", p = "vector(b[2], 0)" }
 [claims]
 conserved = ["energy", "L", "P"]
 """
+
+
+def write_mean(n):
+    """So many rotators."""
+    terms = [f"J/{n}*(1 - cos(q_{a} - q_{b}))" for a, b in combinations(range(n), 2)]
+    terms += [f"-K*cos(q_{k + 1} - q_{k})" for k in range(n - 1)]
+    return write_masses(n, [*terms, f"q_0^2/{2 * n * n}"], ["J", "K"])
 
 
 def write_velocities(n):
@@ -687,6 +715,7 @@ def _place(family, tree, k, n):
     """A rate of the generic member as that of member k."""
     own = {each: member(each, k) for each in (*family.states, *family.indexed)}
     own |= {s: member(c, (k + d) % n) for (c, d), s in family.neighbours.items()}
+    own |= dict.fromkeys(family.count, sympy.Integer(n))
     for pairs in family.pair_sums:
         others = [j for j in range(n) if j != k]
         total = sum(
@@ -710,12 +739,14 @@ def value_of(family, total, n):
         for k, j in places:
             own = {one: member(one, k) for one in (*family.states, *family.indexed)}
             own |= {s: member(c, (k + d) % n) for (c, d), s in family.neighbours.items()}
+            own |= dict.fromkeys(family.count, sympy.Integer(n))
             if j is not None:
                 own |= {s: member(c, j) for c, s in family.partners.items()}
             parts.append(each.term.xreplace(own))
         values[each.symbol] = sum(parts)
     for (c, number), symbol in family.singles.items():
         values[symbol] = member(c, number % n)
+    values |= dict.fromkeys(family.count, sympy.Integer(n))
     return total.formula.xreplace(values)
 
 

@@ -273,7 +273,6 @@ def document_record(argument: Mapping[str, Any]) -> dict[str, Any]:
 def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     """The certificate of a spec as JSON values, times included; runs in a bounded child."""
     from coadjoint.prove import prove
-    from coadjoint.prove.certificate import failure_text
     from coadjoint.spec import read_spec
 
     report_progress("prove", 0, 1)
@@ -285,7 +284,7 @@ def certificate_record(argument: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "system": certificate.system,
         "holds": certificate.holds,
-        "failures": [failure_text(claim) for claim in certificate.failures],
+        "failures": [*certificate.explain_failures()],
         **entries,
     }
 

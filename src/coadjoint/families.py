@@ -43,6 +43,7 @@ class Index:
         first: The number of the first member in formulas, and in names where all are written out.
         count: What formulas call N; "" for nothing.
         from_zero: Whether names count from 0 all the same, as where members are looped over.
+        is_value: Whether N is a value in formulas by that name, as a parameter is.
         surface: Of an index that counts the rows of square matrices, whose entries are the members,
             on what these stand for functions: ``sphere`` or ``torus``; else "".
     """
@@ -53,6 +54,7 @@ class Index:
     first: int = 0
     count: str = ""
     from_zero: bool = False
+    is_value: bool = False
     surface: str = ""
 
     @property

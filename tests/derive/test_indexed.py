@@ -21,6 +21,7 @@ from tests.families import (
     DRAG,
     DRIVEN,
     HELD,
+    MEAN,
     NECKLACE,
     PLANAR,
     RING,
@@ -42,6 +43,7 @@ from tests.families import (
     write_drag,
     write_driven,
     write_held,
+    write_mean,
     write_necklace,
     write_ring,
     write_springs,
@@ -65,6 +67,7 @@ SYSTEMS = {
     "walls": (WALLS, write_walls, (3, 4, 7)),
     "closed": (CLOSED, write_closed, (2, 3, 6)),
     "held": (HELD, write_held, (2, 3, 5)),
+    "mean": (MEAN, write_mean, (2, 3, 5)),
     "velocities": (BY_VELOCITIES, write_velocities, (2, 3, 5)),
     "charges": (CHARGES, write_charges, (2, 3)),
 }
@@ -113,6 +116,13 @@ def spoil_drag(family):
     return replace(family, rates=tuple(rate.subs(c, 0) for rate in family.rates))
 
 
+def spoil_count(family):
+    """Three members are taken for all."""
+    (n,) = family.count
+    sums = tuple(replace(each, term=each.term.subs(n, 3)) for each in family.pair_sums)
+    return replace(family, pair_sums=sums)
+
+
 def spoil_pairs(family):
     """A partner pushes instead of pulling."""
     sums = tuple(replace(each, term=-each.term) for each in family.pair_sums)
@@ -135,6 +145,8 @@ def spoil_pairs(family):
         ("walls", 4, spoil_sides),
         ("closed", 4, spoil_sides),
         ("held", 4, spoil_sides),
+        ("mean", 4, spoil_count),
+        ("mean", 4, spoil_sides),
         ("velocities", 3, spoil_sides),
         ("charges", 3, spoil_pairs),
     ],
@@ -157,6 +169,7 @@ def test_a_wrong_rate_is_seen(families, name, n, spoil):
         ("walls", 5),
         ("closed", 4),
         ("held", 3),
+        ("mean", 4),
         ("velocities", 4),
         ("charges", 3),
     ],

@@ -7,8 +7,10 @@ import pytest
 
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import ROOM, Ensemble, Inputs, Record, Status
+from coadjoint.solve.limits import Limits
 from coadjoint.solve.march import march
 from coadjoint.solve.solvers import load
+from coadjoint.solve.steps import Attempt
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import rigid_body
 from tests.kernels import COMPILER
@@ -139,6 +141,33 @@ def test_a_member_stops_within_a_step(target):
         assert (run.time[member], run.next[member]) == (when, 13)
         assert run.steps[member] == end.steps[member] < free.steps[member]
         assert np.abs(run.state[:, member] - end.state[:, member]).max() < 1e-13
+
+
+class Broken:
+    """A step whose end is known, and whose path is not a number."""
+
+    tries_again = halves = False
+
+    def try_step(self, lanes):
+        """The end of the step."""
+        h = lanes.end - lanes.time
+        return Attempt(
+            took=h,
+            state=lanes.state,
+            accepted=np.ones(h.shape, bool),
+            path=lambda after: np.full(lanes.state.shape, np.nan),
+            coefficients=lambda: np.zeros((3, 1, h.size)),
+        )
+
+
+@pytest.mark.parametrize("has_domain", [True, False])
+def test_a_sample_at_the_end_that_is_outside_ends_a_run_there(has_domain):
+    """As in C: the path tells whether a state is inside, though the end itself would be."""
+    run = begin(CHOICES[1], np.array([0.0, 3.0]))
+    inside = Limits(domain=lambda lanes, after, state: 1 + 0 * state[:1], strict=(True,))
+    run.advance(Broken(), 1, limits=inside if has_domain else Limits())
+    assert set(run.status) == {Status.DOMAIN if has_domain else Status.OK}
+    assert (run.time == (0.0 if has_domain else 3.0)).all()
 
 
 def begin_at_end(choice, end):

@@ -830,7 +830,7 @@ ADVICE = [
 
 #: Of formulas: what is wrong, what the message says, and the formula that it leads to.
 FORMULAS = [
-    ("e = m*c", "Write only the right-hand side.", "m*c"),
+    ("e = m*c", "Write only the right-hand side; of what is 0 somewhere", "m*c"),
     ("transpose(A)'*a", "a transposed matrix is transpose(A).", "transpose(A)*a"),
     ("|a|", "The length of a vector is norm(a).", "norm(a)"),
     ("A@a", "Write * for products of matrices.", "A*a"),

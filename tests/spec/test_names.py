@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from coadjoint.errors import SpecError
+from coadjoint.resources import templates_folder
 from coadjoint.spec.core.names import (
     NAME,
     derived_names,
@@ -16,6 +18,7 @@ from coadjoint.spec.core.names import (
     system_refusal,
 )
 from coadjoint.spec.core.shapes import FUNCTIONS
+from coadjoint.spec.reader import read_spec_text
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 needs_compiler = pytest.mark.skipif(not COMPILERS, reason="no gcc and no clang on this machine")
@@ -40,6 +43,17 @@ def test_letters_of_the_books_are_free():
     """Greek letters, capitals and I (no macro without <complex.h>) may be declared."""
     free = "Omega Pi Gamma Xi chi mu alpha I J M D P Q R v x1 I1 A12 A1_2 m_l k_b x_0 E e"
     assert [name for name in free.split() if refusal(name) is not None] == []
+
+
+def test_macros_and_the_type_of_generated_c_are_refused():
+    """A preprocessor would put something else in their place; V is what vectors of lanes are."""
+    templates = "\n".join(
+        path.read_text(encoding="utf-8") for path in templates_folder().glob("c/**/*.j2")
+    )
+    macros = {*re.findall(r"#\s*define ([A-Za-z]\w*)", templates)}
+    assert {"LANES", "STAGES"} < macros
+    assert "typedef double V " in templates
+    assert [name for name in (*macros, "V") if NAME.fullmatch(name) and not refusal(name)] == []
 
 
 @pytest.mark.parametrize(
@@ -198,3 +212,24 @@ def test_accepted_names_are_python_variables():
     exec(compile(code, "kernel", "exec"), scope)  # our own list of names
     assert scope["f"]() == list(range(len(accepted)))
     assert sys.version_info >= (3, 11)
+
+
+def test_a_matrix_or_a_definition_may_have_the_name_of_a_type_of_generated_c():
+    """Their names stand in no kernel; a number of that name does, and is refused."""
+    text = """title = "N"
+routes = ["canonical"]
+[variables]
+q = { role = "coordinate" }
+p = { role = "momentum", of = "q" }
+[parameters]
+V = { shape = [2, 2], default = [[1, 0], [0, 1]] }
+[definitions]
+"STATE(r)" = "V[1, 1]*r^2"
+[hamiltonian]
+h = "p^2/2 + STATE(q)"
+"""
+    assert read_spec_text(text, "sample.toml").parameters[0].components[0] == "V11"
+    with pytest.raises(SpecError, match="'V' is a type or a macro of generated C"):
+        read_spec_text(
+            text.replace("V = { shape = [2, 2], default = [[1, 0], [0, 1]] }", "V = {}"), "s.toml"
+        )

@@ -17,6 +17,7 @@ from tests.families import (
     CHAIN,
     CLOSED,
     HELD,
+    MEAN,
     NECKLACE,
     PLANAR,
     RING,
@@ -247,6 +248,17 @@ def test_without_a_hamiltonian_velocities_are_solved_for_member_by_member(kineti
     text = SPRINGS.replace(HAMILTONIAN, "").replace("m[i]*v[i]^2/2", kinetic, 1)
     misfit = "" if loops else "the Lagrangian is not quadratic in the velocities"
     assert read_file_misfit(text) == misfit
+
+
+def test_the_number_of_members_is_a_value_and_an_index_is_none():
+    """The value keeps its name in what is written out; other indices are numbers of members."""
+    spec = read(MEAN)
+    assert spec.family.index.is_value
+    assert spec.family.shared == ("J", "K")
+    assert all(each.parameters[-1].name == "n" for each in spec.family.windows)
+    assert not read(WALLS).family.index.is_value
+    counted = MEAN.replace("p[i]^2/2)", "i*p[i]^2/2)")
+    assert read(counted).written == "a formula has i as a number"
 
 
 def read_file_misfit(text):

@@ -119,7 +119,8 @@ def crosscheck_family(
         names = (window.state, window.parameters, window.inputs, window.time)
         made = {"c", "numpy"} & set(chosen)
         if made and steps and loops["rhs"].has_series:
-            check_series(window.reference, names, sized, sorted(made))
+            counted = dict.fromkeys(window.count, float(window.size))
+            check_series(window.reference, names, sized, sorted(made), counted)
     for each in loops.values():
         if each.partners is not None and "numpy" in chosen:
             check_blocks(system, each)

@@ -225,6 +225,7 @@ def check_series(
     names: tuple[tuple[str, ...], ...],
     system: Any,
     targets: Iterable[str],
+    counted: Mapping[str, float],
 ) -> int:
     """Rung 4: coefficients of every target are those of the power series of the equations.
 
@@ -234,6 +235,7 @@ def check_series(
             a family.
         system: The system of so many members.
         targets: ``c`` or ``numpy``, or both.
+        counted: Their number by its name, if formulas name it.
 
     Returns:
         How many coefficients were compared.
@@ -260,7 +262,7 @@ def check_series(
         lines[len(inputs) :, 1] = 1.0  # the rate of the time
         driven = zip((*inputs, *time), map(tuple, lines.tolist()), strict=True)
         known = {name: (value,) for name, value in zip(parameters, given.tolist(), strict=True)}
-        known |= dict(driven)
+        known |= {**dict(driven), **{name: (value,) for name, value in counted.items()}}
         ordered = {name: values[name] for name in reference.state}
         try:
             series = solve(partial(reference.evaluate, "rhs"), ordered, known, ORDER)

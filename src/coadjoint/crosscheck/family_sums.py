@@ -47,6 +47,7 @@ def check_blocks(system: Any, loops: Loops) -> float:
     time = source.normal(size=1) if sized.TIME else None
     inputs = source.normal(size=sized.INPUTS.size) if sized.INPUTS else None
     arrays = {"state": state, "parameters": parameters, "inputs": inputs, "time": time}
+    arrays["sizes"] = np.array([float(MEMBERS)])
     now = None if time is None else time[0]
     values = sized.evaluate(loops.name, state, parameters, inputs, time=now, target="numpy")
     found = np.reshape(values, (-1, MEMBERS))

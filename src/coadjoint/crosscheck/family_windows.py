@@ -65,6 +65,7 @@ class Window:
         totals: Names of the rows of the function ``observables``.
         residuals: Those of the function ``constraint_residual``.
         time: Of the time, if there is one.
+        count: Of the number of members, if formulas name it.
         inputs: Names of the rows of the inputs.
         noise: Names of the Wiener processes; those that no member has in a window are missing in
             its equations.
@@ -79,6 +80,7 @@ class Window:
     totals: tuple[str, ...]
     residuals: tuple[str, ...]
     time: tuple[str, ...]
+    count: tuple[str, ...]
     inputs: tuple[str, ...]
     noise: tuple[str, ...]
     splitting: Splitting | None
@@ -131,6 +133,7 @@ class Window:
                 for name in same
             ),
             time=tuple(map(str, family.time)),
+            count=(declared.index.count,) if declared.index.is_value else (),
             noise=(
                 *declared.shared_noise,
                 *(member_name(each, k) for each in declared.indexed_noise for k in range(size)),
@@ -164,6 +167,7 @@ class Window:
         inputs |= zip(self.state, point.state.tolist(), strict=False)
         inputs |= zip(self.inputs, point.inputs.tolist(), strict=True)
         inputs |= dict.fromkeys(self.time, point.time)
+        inputs |= dict.fromkeys(self.count, float(self.size))
         if KERNEL_FUNCTIONS[function].below == "vector":
             place = {name: n for n, name in enumerate(self.reference.state, 1)}
             vector = point.state[len(self.state) :].tolist()

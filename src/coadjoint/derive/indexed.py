@@ -87,6 +87,7 @@ def derive_family(equations: Equations) -> Family:
         indexed_noise=reader.increments,
         singles=reader.singles_of(totals),
         wraps=declared.index.periodic or reader.is_closed,
+        count=reader.count,
     )
     return family if reader.brackets is None else add_action(family, *reader.brackets)
 
@@ -138,7 +139,8 @@ class _Reader(TotalsReader):
         equations = self.equations
         if equations.exact.poisson_tensor is None or equations.distribution is not None:
             return False
-        own, reach = {*names, *self.shared}, equations.setting.field.reach
+        named = {*names, *self.shared, *map(str, self.count)}
+        own, reach = named, equations.setting.field.reach
         rows = self.tensor_of(self.middle)
         return all({c} | reach(x) <= own for row in rows for c, x in row.items())
 

@@ -60,7 +60,14 @@ class Window:
             first=declared.index.first,
             number=declared.index.count,
             from_zero=True,
+            keeps_number=declared.index.is_value,
         )
+
+    @property
+    def count(self) -> tuple[sympy.Symbol, ...]:
+        """The symbol of N, if formulas name it."""
+        index = self.declared.index
+        return (sympy.Symbol(index.count),) if index.is_value else ()
 
     @cached_property
     def shared(self) -> tuple[str, ...]:
@@ -233,7 +240,7 @@ class Window:
         """An expression in generic symbols."""
         shared = (*self.shared, *self.declared.shared_noise)
         left = value.free_symbols - {*new, *map(sympy.Symbol, shared)}
-        left -= {*self.shared_inputs, *self.time}
+        left -= {*self.shared_inputs, *self.time, *self.count}
         if left:
             spec, names = self.equations.spec, ", ".join(sorted(each.name for each in left))
             raise DerivationError(

@@ -8,7 +8,7 @@ programs; times are shown and never stored, since generated files are the same b
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from coadjoint.errors import ClaimError
 
 if TYPE_CHECKING:
-    from coadjoint.spec import Spec
+    from coadjoint.spec import Formula, Spec
 
 
 class Verdict(StrEnum):
@@ -183,11 +183,18 @@ class Certificate:
         """
         if not self.holds:
             raise ClaimError(
-                "\n".join(f"{self.system}: {failure_text(each)}" for each in self.failures),
+                "\n".join(self.explain_failures()),
                 system=self.system,
                 claims=[claim.as_record() for claim in self.failures],
             )
         return self
+
+    def explain_failures(self) -> Iterator[str]:
+        """Why claims do not hold, each with its place in the spec, or with the system's name."""
+        spec = self.spec
+        for claim in self.failures:
+            text, made = failure_text(claim), spec and find_formula(spec, claim)
+            yield made.locate(spec.path, text) if spec and made else f"{self.system}: {text}"
 
     def as_record(self) -> dict[str, Any]:
         """The certificate as JSON values, without times."""
@@ -240,6 +247,26 @@ _OWN_FIXES = MappingProxyType(
 
 #: What the method adds where not the claimed function but the relations of its set have a rate.
 LEAVES = ": the motion leaves this set"
+
+
+def find_formula(spec: Spec, claim: Claim) -> Formula | None:
+    """The formula of a spec that makes a claim, or the arm of a body that does not roll.
+
+    None of most claims of the engine, which stand nowhere in the spec.
+    """
+    made: list[tuple[str, Formula]] = []
+    if claim.kind == "casimir":
+        made = [(f"{each.in_one_line} is ", each) for each in spec.casimirs]
+    if claim.kind == "conserved":
+        made = [(f"{each.formula.in_one_line} is ", each.formula) for each in spec.conserved]
+    if claim.kind == "bracket":
+        pairs = ((each, each.left.in_one_line, each.right.in_one_line) for each in spec.brackets)
+        made = [(f"{{{left}, {right}}} = ", each.value) for each, left, right in pairs]
+    if claim.kind == "rolling" and spec.rolling is not None:
+        made = [("", spec.rolling.arm)]
+    made = [(begin, formula) for begin, formula in made if begin in claim.statement]
+    made.sort(key=lambda each: len(each[0]))  # "g*Pi3 is" has "Pi3 is" in it
+    return made[-1][1] if made else None
 
 
 def failure_text(claim: Claim) -> str:

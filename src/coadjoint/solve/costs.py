@@ -21,6 +21,8 @@ SHARE: Final = 2.0**-12
 #: Tolerances between which the methods are compared. At looser ones both change alike; at tighter
 #: ones that part of them is below the roundings.
 LOOSEST, TIGHTEST = 1e-6, 1e-11
+#: The least relative tolerance that is taken for another one: at less, steps are all roundings.
+LEAST: Final = TIGHTEST * SHARE
 #: Rates in a step of ``dop853``, and operations for each component besides them.
 RATES, SUMS = 12, 70
 

@@ -314,8 +314,7 @@ class Ensemble:
             lanes.step = np.where(far, shorter, lanes.step)
             accepted &= ~far
             outside = np.where(far, took, outside)
-        inside, outside = self._store_samples(going, step, time, outside)
-        left = outside < took
+        inside, outside, left = self._store_samples(going, step, time, outside)
         left |= accepted & ~step.are_held(took, state)
         beyond = accepted & ~left & limits.find_beyond(lanes, took, state)
         met = beyond.any(axis=0)
@@ -471,7 +470,7 @@ class Ensemble:
 
     def _store_samples(
         self, going: NDArray[np.intp], step: Step, time: Array, outside: Array
-    ) -> tuple[Array, Array]:
+    ) -> tuple[Array, Array, Mask]:
         """Store states at the samples that a step passes, as far as it is not outside.
 
         Args:
@@ -482,7 +481,7 @@ class Ensemble:
 
         Returns:
             A time after its start at which a member is in the domain, and a later one: at which it
-            is outside, or the end of the step.
+            is outside, or the end of the step; and where it is outside, if only by its path.
         """
         took, out = step.attempt.took, self.out
         until = np.where(outside < took, step.lanes.time + outside, time)
@@ -506,4 +505,4 @@ class Ensemble:
             members = going[wanted]
             out[:, members, place[wanted]] = state[:, wanted]
             self.next[members] += np.uint64(1)
-        return inside, outside
+        return inside, outside, (outside < took) | (step.accepted & ~open_)

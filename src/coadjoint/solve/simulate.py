@@ -16,7 +16,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import MAPPED, STRUCTURED
 from coadjoint.solve import generated
 from coadjoint.solve.checkpoints import check_checkpoint
-from coadjoint.solve.costs import SHARE
+from coadjoint.solve.costs import LEAST, SHARE
 from coadjoint.solve.events import read_events
 from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.kernels import check_target
@@ -118,6 +118,11 @@ def simulate(
         within = within or stepwise
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
+        elif (
+            name == "dop853" and step is None and is_auto(method) and without == generated.NO_SERIES
+        ):
+            share = max(SHARE, min(1.0, LEAST / rtol))
+            rtol, atol = rtol * share, atol * share
     if check_newton(newton, name) and system.obstacle:
         raise KernelArgumentError(
             f"newton is True, and {system.obstacle}; expected newton=False.",

@@ -320,9 +320,9 @@ class System(Functions):
                 is ``"taylor"``, with ``step`` ``"dop853"``. Where its operations say that it is
                 faster, as for a free body on so(8), it is ``"dop853"`` with 1/4096 of the
                 tolerances, as far as rounding lets it, for the same errors; not with ``events`` or
-                ``dense``. Where inputs are a function it is ``"dop853"`` with steps in Python, and
-                with the target ``"python"`` it is ``"scipy:DOP853"``. `Solution.settings` says what
-                it was.
+                ``dense``. So it is where rates have roots at kinks, and there no series. Where
+                inputs are a function it is ``"dop853"`` with steps in Python, and with the target
+                ``"python"`` it is ``"scipy:DOP853"``. `Solution.settings` says what it was.
             rtol: Relative tolerance of a step; 1e-10 if none is given.
             atol: Absolute tolerance of a step; 1e-12 if none is given.
             step: A fixed step for a generated method, in the place of tolerances; the order of

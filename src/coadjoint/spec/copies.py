@@ -59,6 +59,7 @@ def make_members(
         first=index.first,
         from_zero=index.from_zero,
         number=index.count,
+        keeps_number=index.is_value,
         taken=frozenset({*parts, *defined, *filter(None, [index.count])}),
         scalars=frozenset(
             name for name, part in parts.items() if part.index is None and _is_plain(file, part)

@@ -282,12 +282,12 @@ def find_ends(file: Any, index: Index) -> tuple[set[int], set[int]]:
 
 def _examine(tree: Node, members: Members) -> Iterator[str]:
     """What stands in a formula that no generic member has."""
-    i, counted = members.index, {members.index, *filter(None, [members.number])}
+    i = members.index
     for node in _walk_terms(tree):
         match node:
             case Entry(name=name):
                 yield f"subscripts of {name} are worked out"
-            case Name(name=name) if name in counted:
+            case Name(name=name) if name == i:
                 yield f"a formula has {name} as a number"
             case Member(name=name) if name not in (*members.names, *members.scalars):
                 yield f"{i} counts components of {name}"
@@ -302,6 +302,17 @@ def _examine(tree: Node, members: Members) -> Iterator[str]:
             case Sum(term=term, indices=indices):
                 names = {n.name for n in walk(term) if isinstance(n, Name)} & {*indices}
                 yield from (f"a formula has {name} as a number" for name in sorted(names))
+
+
+def names_number(file: Any, index: Index) -> bool:
+    """Whether a formula has the number of members as a value, as ``J/n``."""
+    tables = (file.hamiltonian, file.lagrangian, file.poisson, file.lax, file.forces, file.noise)
+    actions = [(each.generators, each.map) for each in file.symmetries.values()]
+    observables = [each.expression for each in file.observables.values()]
+    texts = list_texts([*tables, file.dissipation, file.claims, actions, observables])
+    trees = _read_all(texts, _read_definitions(file))
+    named = (node.name for tree in trees for node in walk(tree) if isinstance(node, Name))
+    return bool(index.count) and index.count in named
 
 
 def _walk_terms(tree: Node) -> Iterator[Node]:

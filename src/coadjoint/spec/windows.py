@@ -41,10 +41,11 @@ from coadjoint.spec.core.tree import Index as Subscript
 from coadjoint.spec.core.tree import Name, Node, walk
 from coadjoint.spec.core.values import read_default
 from coadjoint.spec.counted import count_out, find_counted
-from coadjoint.spec.looped import find_ends, find_misfit, list_texts
+from coadjoint.spec.looped import find_ends, find_misfit, list_texts, names_number
 from coadjoint.spec.model import Spec, Windows
 from coadjoint.spec.sections.indices import make_index
 from coadjoint.spec.sections.lax import Lax
+from coadjoint.spec.sections.parameters import ParameterPart
 from coadjoint.spec.sections.turning import TURNING, read_rotation
 
 _PAIRS = re.compile(r"\bsum\s*\(\s*\w+\s*,\s*\w+\s*,\s*\w+\s*<")
@@ -103,7 +104,14 @@ def read_windows(
         if pairs:
             few = f"with pairs and neighbours claims are proved for all from {least} members on"
         return _write_all(source, file, read, index, few)
-    index = replace(index, from_zero=True)
+    index, whole = replace(index, from_zero=True, is_value=names_number(file, index)), file
+    if index.is_value:
+        told = {"positive": True, "unit": "1", "doc": "number of members"}
+        file = file.model_copy(
+            update={
+                "parameters": {**file.parameters, index.count: ParameterPart.model_validate(told)}
+            }
+        )
     bare = file.model_copy(update={"lax": None})
     count = 3 if pairs and (reach or width or ends) else 2
     windows = tuple(read(*write_out_file(source, bare, index, first + n)) for n in range(count))
@@ -121,7 +129,7 @@ def read_windows(
     family = Windows(
         index=index,
         variables=tuple(name for name in file.variables if member_name(name, 0) in state),
-        shared=_select_names(file.parameters, indexed=False),
+        shared=_select_names(whole.parameters, indexed=False),
         indexed=_select_names(file.parameters, indexed=True),
         shared_inputs=_select_names(file.inputs, indexed=False),
         indexed_inputs=_select_names(file.inputs, indexed=True),
@@ -142,7 +150,7 @@ def read_windows(
         windows=windows,
         lax=lax,
     )
-    return _with_family(source, bare, read, family)
+    return _with_family(source, whole.model_copy(update={"lax": None}), read, family)
 
 
 def _select_names(parts: Mapping[str, Any], *, indexed: bool) -> tuple[str, ...]:
@@ -293,7 +301,7 @@ def _read_loaded(
         raise source.fault(key, problem, "", expected, "Give the index a size.")
     if size > limits.PROVED_MEMBERS:
         raise source.too_many(key, f"{problem}, and there are {size}", size, "PROVED_MEMBERS")
-    return read(*write_out_file(source, file, family.index, size))
+    return read(*write_out_file(source, file, replace(family.index, is_value=False), size))
 
 
 def _first_window(index: Index, reach: int, width: int, ends: int, *, pairs: bool) -> int:

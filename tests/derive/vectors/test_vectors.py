@@ -31,6 +31,7 @@ from coadjoint.notation.trees import write_tree
 from coadjoint.notation.written import add
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import Call, Name
+from coadjoint.spec.reader import read_spec_text
 from tests.specs import shipped
 
 #: Lines as they are printed. Those up to the first comment stand in the sources letter by letter:
@@ -240,6 +241,24 @@ def test_no_commutator_stands_where_traces_do_not_see_the_algebra():
     (momentum,) = equations.spec.having_role("momentum")
     assert commutator_lines(equations, momentum) == []
     assert weigh_commutators([{(0, 0): 1}, {(0, 1): 1}]) == []
+
+
+def test_no_commutator_stands_for_the_momentum_of_a_coordinate():
+    """Which no matrices turn: there is no algebra."""
+    text = """title = "C"
+routes = ["canonical"]
+[variables]
+x = { role = "coordinate", shape = [2] }
+v = { role = "velocity", of = "x" }
+p = { role = "momentum", of = "x" }
+[parameters]
+b = { positive = true }
+[lagrangian]
+l = "dot(v, v)/2 + exp(-x1^2 - x2^2/b^2)"
+"""
+    equations = derive(read_spec_text(text, "sample.toml"))
+    (momentum,) = equations.spec.having_role("momentum")
+    assert commutator_lines(equations, momentum) == []
 
 
 def test_a_jacobian_is_printed_only_if_it_is_the_rate():

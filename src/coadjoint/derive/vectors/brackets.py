@@ -31,6 +31,8 @@ BASIS = "E"
 def commutator_lines(equations: Equations, momentum: Variable) -> list[VectorLine]:
     """The equation of a momentum as a commutator of matrices; none where it is not one."""
     setting, spec = equations.setting, equations.spec
+    if spec.algebra is None or momentum.of:  # of a coordinate, which no matrices turn
+        return []
     field, matrices, names = setting.field, setting.algebra.matrices, momentum.components
     velocities = [v for v in spec.having_role("velocity") if v.block == momentum.block]
     if len(velocities) != 1 or momentum.elements or len(names) != len(matrices):

@@ -83,6 +83,7 @@ class Members:
         scalars: What has neither an index nor components.
         singles: What has an index and one component of each member.
         from_zero: Whether names count from 0 all the same: these are a few of N members.
+        keeps_number: Whether formulas keep their name of the number, which is that of all members.
     """
 
     index: str
@@ -96,6 +97,7 @@ class Members:
     scalars: frozenset[str] = frozenset()
     singles: frozenset[str] = frozenset()
     from_zero: bool = False
+    keeps_number: bool = False
 
     def place(self, member: int) -> int | None:
         """The member at a place from 0; None beyond the end of an open chain."""
@@ -274,7 +276,7 @@ def _place_name(node: Name, members_of: Mapping[str, int], members: Members) -> 
         raise _without_index(node, members)
     if node.name in members_of:
         return Number(Fraction(members.first + members_of[node.name]), **where)
-    if members.number and node.name == members.number:
+    if members.number and node.name == members.number and not members.keeps_number:
         return Number(Fraction(members.count), **where)
     return node
 

@@ -62,6 +62,17 @@ def refusal(name: str) -> tuple[str, str, str] | None:
     return None
 
 
+def is_taken_in_c(name: str) -> bool:
+    """Whether only a number of that name cannot be told from what generated C calls so.
+
+    A matrix V has the entries V11, V12 and so on, and no kernel names V.
+
+    >>> is_taken_in_c("V"), is_taken_in_c("double")
+    (True, False)
+    """
+    return _TARGETS.get(name) == "a type or a macro of generated C"
+
+
 def suggest_name(name: str) -> str:
     """A free name close to a reserved one.
 

@@ -27,7 +27,7 @@ from coadjoint.spec.core.formulas import (
     make_scope,
     read_formula,
 )
-from coadjoint.spec.core.names import refusal
+from coadjoint.spec.core.names import is_taken_in_c, refusal
 from coadjoint.spec.core.parts import name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.source import Source
@@ -192,7 +192,8 @@ class Reading:
             SpecError: One is reserved or taken, with a suggestion.
         """
         for derived in dict.fromkeys((naming.name, *naming.components)):
-            refused = refusal(derived)
+            named = derived in naming.components or not is_taken_in_c(derived)
+            refused = refusal(derived) if named else None
             if refused is not None and derived != naming.allowed:
                 problem, expected, hint = refused
                 if derived != naming.name:

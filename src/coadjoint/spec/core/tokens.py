@@ -29,7 +29,7 @@ _SCIENTIFIC = re.compile(r"\d+(?:\.\d+)?[eE][-+]?\d{1,3}(?![\w.])", re.ASCII)
 RELATIONS = ("<", "<=", ">", ">=", "==", "!=")
 #: What people mean by characters that the language does not have.
 _MEANT = {
-    "=": "Write only the right-hand side.",
+    "=": "Write only the right-hand side; of what is 0 somewhere the difference of both sides.",
     ".": "A name has no attributes; a number has digits on both sides of its point, as 0.5.",
     "'": "There is no text in an expression; a transposed matrix is transpose(A).",
     '"': "There is no text in an expression.",
