@@ -22,6 +22,7 @@ from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.kernels import check_target
 from coadjoint.solve.noisy import check_no_noise, check_samples, choose_noisy, has_noise
 from coadjoint.solve.obstacles import (
+    NO_SERIES,
     check_newton_applies,
     find_noisy_obstacle,
     find_obstacle,
@@ -43,6 +44,7 @@ from coadjoint.solve.request import (
     check_steps,
     choose_method,
     find_kind,
+    is_auto,
     list_times,
     prefers_dop853,
     take_ends_of_steps,
@@ -119,7 +121,10 @@ def simulate(
         if prefers_dop853(system, find_kind(reconstruct), method, step, float(rtol), within):
             name, rtol, atol = "dop853", rtol * SHARE, atol * SHARE
         elif (
-            name == "dop853" and step is None and is_auto(method) and without == generated.NO_SERIES
+            name == "dop853"
+            and step is None
+            and is_auto(method)
+            and obstacles.get("taylor") == NO_SERIES
         ):
             share = max(SHARE, min(1.0, LEAST / rtol))
             rtol, atol = rtol * share, atol * share
