@@ -24,7 +24,7 @@ from coadjoint.prove.examination import examine
 from coadjoint.prove.record import motion_record
 from coadjoint.spec import read_spec
 from coadjoint.systems import chaplygin_sleigh, heavy_top, rigid_body
-from tests.specs import shipped
+from tests.specs import emitted, shipped
 
 
 @pytest.fixture(scope="module")
@@ -153,7 +153,7 @@ def test_equations_have_latex_with_dots_over_letters(shown):
 
 def test_a_heavy_top_is_shown_by_its_vectors():
     """Holm II (2011), 8.1.4: dPi/dt = Pi x Omega + m g Gamma x chi, dGamma/dt = Gamma x Omega."""
-    shown = derive(shipped("heavy_top"))._repr_latex_()
+    shown = emitted("heavy_top")._repr_latex_()
     momentum, vertical = r"\boldsymbol{\Pi}", r"\boldsymbol{\Gamma}"
     turn, centre = r"\boldsymbol{\Omega}", r"\boldsymbol{\chi}"
     torque = rf"m\,g\,{vertical} \times {centre}"
@@ -175,7 +175,7 @@ def test_without_all_vectors_components_are_shown(shown, monkeypatch):
 
 def test_a_system_shows_its_motion_as_its_equations_do():
     """Of the package alone: by vectors, as LaTeX and as a page; by components without vectors."""
-    assert heavy_top.system._repr_latex_() == derive(shipped("heavy_top"))._repr_latex_()
+    assert heavy_top.system._repr_latex_() == emitted("heavy_top")._repr_latex_()
     page = heavy_top.system._repr_html_()
     assert page.count('<div class="lead">') == 1
     assert page.index("Equations of motion") < page.index("State")
@@ -185,7 +185,7 @@ def test_a_system_shows_its_motion_as_its_equations_do():
 
 def test_long_sums_of_a_motion_are_shown(tmp_path):
     """Those in several lines, whose cells have a style, are MathML that a certificate may hold."""
-    (part,) = map(motion_record, motion_sections(derive(shipped("so5_body"))))
+    (part,) = map(motion_record, motion_sections(emitted("so5_body")))
     assert any("<mtable" in line["mathml"] for line in part["lines"])
     path = tmp_path / "certificate.json"
     path.write_text(json.dumps({"motion": [part]}))

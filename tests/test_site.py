@@ -11,11 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.render.document import render_document
 from tests.conftest import FAMILIES, FIELDS, SYSTEMS
-from tests.specs import shipped
+from tests.specs import emitted
 from tests.test_notebook import Tags
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -67,7 +66,7 @@ def test_a_page_shows_what_could_be_made(site):
 )
 def test_a_page_shows_the_equations_of_its_document(site, name, titles, mark):
     """By vectors as MathML: the lines of the motion alone, in one block of HTML that is whole."""
-    page = render_document(asdict(document(derive(shipped(name)))), "html")
+    page = render_document(asdict(document(emitted(name))), "html")
     equations = site["find_equations"](page)
     assert list(equations) == titles
     body = equations["Equations of motion"]
@@ -85,9 +84,7 @@ def test_equations_have_the_style_of_documents(site):
     style = site["FORMULAS"].read_text(encoding="utf-8")
     assert ".lines { display: grid" in style
     assert not re.search(r"\{[{%#]", style)
-    assert style.splitlines()[0] in render_document(
-        asdict(document(derive(shipped("rigid_body")))), "html"
-    )
+    assert style.splitlines()[0] in render_document(asdict(document(emitted("rigid_body"))), "html")
 
 
 def test_a_page_of_parts_has_one_title(site):

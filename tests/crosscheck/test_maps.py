@@ -21,7 +21,7 @@ TURN = tuple(f"_rows[1] = _flow1_t4 {sign} _flow1_t5 * _flow1_tan1;" for sign in
 @cache
 def rendered():
     """The free body."""
-    return specs.render_claims(specs.shipped("rigid_body"))
+    return specs.rendered("rigid_body")
 
 
 def spoil(file, good, bad):

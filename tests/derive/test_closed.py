@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 import sympy
 
-from coadjoint.derive import derive
 from coadjoint.derive.closed import LARGEST
 from coadjoint.derive.reference import Reference
 from coadjoint.systems import chaplygin_ball
 from tests.constrained import PARTICLE, SLEIGH, derived
-from tests.specs import shipped
+from tests.specs import emitted
 
 
 def point_of(equations, seed=7):
@@ -62,7 +61,7 @@ def test_rates_of_the_sleigh_are_those_on_paper():
 @pytest.mark.parametrize("name", ["chaplygin_ball", "suslov", "veselova", "chaplygin_sleigh"])
 def test_closed_rates_are_what_kernels_compute(name):
     """At a rational point, to the last digit, where up to four unknowns are solved for."""
-    equations = derive(shipped(name))
+    equations = emitted(name)
     assert not equations.unsolved
     check_closed(equations)
     point = point_of(equations)
@@ -77,7 +76,7 @@ def test_closed_rates_are_what_kernels_compute(name):
 
 def test_closed_rates_are_those_of_the_emitted_kernel():
     """The NumPy kernel of the generated package, at doubles."""
-    equations = derive(shipped("chaplygin_ball"))
+    equations = emitted("chaplygin_ball")
     state, parameters = np.linspace(0.3, 1.1, 6), np.linspace(1.2, 2.5, 9)
     names = (*equations.setting.state, *equations.setting.parameters)
     point = dict(zip(names, map(Fraction, (*state, *parameters)), strict=True))
@@ -90,7 +89,7 @@ def test_closed_rates_are_those_of_the_emitted_kernel():
 @pytest.mark.parametrize("name", ["coupled_bodies", "snakeboard"])
 def test_rates_of_a_large_solve_come_with_its_equations(name):
     """Six unknowns: the rates name them, and matrix and right side give what kernels compute."""
-    equations = derive(shipped(name))
+    equations = emitted(name)
     (system,) = equations.unsolved
     assert len(system.unknowns) > LARGEST
     assert system.matrix == system.matrix.T
@@ -125,7 +124,7 @@ def numbers(values):
 def test_free_motion_is_closed():
     """Velocities put in, on every route of a top."""
     for route in ("euler-poincare", "lie-poisson", "newton-euler"):
-        equations = derive(shipped("heavy_top"), route)
+        equations = emitted("heavy_top", route)
         check_closed(equations)
         assert not equations.unsolved
 

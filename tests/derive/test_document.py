@@ -14,7 +14,7 @@ from coadjoint.derive.document import document
 from coadjoint.derive.lines import formula_line
 from coadjoint.notation.names import name
 from coadjoint.resources import systems_folder
-from tests.specs import shipped
+from tests.specs import emitted, shipped
 
 
 def sections(system):
@@ -177,6 +177,6 @@ def test_the_last_step_of_a_chain_refers_to_its_solve():
     lefts = [line.text.split(" = ")[0] for line in step.lines]
     assert lefts == [f"dtheta_{n}/dt" for n in range(1, 5)]
     assert step.words == (("the other rates", "as the kernel solves for them"),)
-    field = derive(shipped("n_link_chain")).setting.field
+    field = emitted("n_link_chain").setting.field
     idle = formula_line(field, name("omega_1", dot=True), field["domega_1_dt"])
     assert list_idle(replace(step, lines=(*step.lines, idle)))  # as it was printed

@@ -6,7 +6,7 @@ from coadjoint.derive import derive
 from coadjoint.derive.symbols import choose_names
 from coadjoint.errors import AlgebraError, DerivationError, SpecError
 from coadjoint.spec.spatial import spatial_momenta
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, emitted, prove_claims, shipped, spec
 
 KLEIN = RIGID_BODY.replace('"lie-poisson"', '"cayley-klein"').replace(
     'casimirs = ["dot(Pi, Pi)"]', ""
@@ -24,7 +24,7 @@ def test_names_that_a_spec_has_taken_are_left_to_it():
 
 def test_clebsch_takes_small_letters_beside_a_momentum_p():
     """Kirchhoff's P1 is a momentum: the pair is q, p."""
-    equations = derive(shipped("kirchhoff"), "clebsch")
+    equations = emitted("kirchhoff", "clebsch")
     assert equations.variables[:2] == ("q1", "q2")
     assert equations.chart.through == "(Pi, P) = p <> q"
 

@@ -8,12 +8,12 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.derive.motion import LONGEST_SOLVE, motion_sections
-from tests.specs import shipped
+from tests.specs import emitted, shipped
 
 
 def test_rates_that_are_solved_for_are_shown_as_what_is_solved():
     """Bloch (2003), 1.7: (I + m a^2) omega' = -m a omega v, v' = a omega^2."""
-    (motion,) = motion_sections(derive(shipped("chaplygin_sleigh")))
+    (motion,) = motion_sections(emitted("chaplygin_sleigh"))
     assert [line.text for line in motion.lines] == [
         "(m*a^2 + I) domega_dt = -v*omega*m*a",
         "m dv_dt = omega^2*m*a",
@@ -24,7 +24,7 @@ def test_rates_that_are_solved_for_are_shown_as_what_is_solved():
 @pytest.mark.parametrize("name", ["tippe_top", "snakeboard", "chaplygin_sleigh", "appell_machine"])
 def test_a_law_names_what_follows(name):
     """Where lines are announced, there are some; what is left to the steps has none."""
-    (motion,) = motion_sections(derive(shipped(name)))
+    (motion,) = motion_sections(emitted(name))
     assert motion.lines
     assert "the linear equations that the kernel solves" in motion.law
     assert all("follow" not in part.law for part in (motion,))
@@ -32,7 +32,7 @@ def test_a_law_names_what_follows(name):
 
 def test_no_line_of_a_motion_stands_twice():
     """What a solve rests on tells what velocities are as well."""
-    (motion,) = motion_sections(derive(shipped("ball_in_sphere")))
+    (motion,) = motion_sections(emitted("ball_in_sphere"))
     texts = [line.text for line in motion.lines]
     assert "_b1 = n3*r/a" in texts
     assert len(texts) == len(set(texts))
@@ -53,7 +53,7 @@ def test_long_linear_equations_are_left_to_the_steps(monkeypatch):
 )
 def test_the_number_of_members_stands_where_the_steps_are(name, steps):
     """With the principle, and not with the motion, which pages show without steps."""
-    sections = document(derive(shipped(name))).sections
+    sections = document(emitted(name)).sections
     assert not any("follow" in part.law for part in sections if part.kind in ("motion", "members"))
     principle = next(part for part in sections if part.kind == "principle")
     assert steps in dict(principle.words)["steps"]
@@ -103,7 +103,7 @@ def is_rate(line):
 )
 def test_the_first_box_says_what_its_names_are(name):
     """By vectors and in components: velocities and intermediates stand in a line of their own."""
-    equations = derive(shipped(name))
+    equations = emitted(name)
     (motion,) = motion_sections(equations)
     assert motion.vectors
     for lines in (motion.vectors, motion.lines):
@@ -115,7 +115,7 @@ def test_the_first_box_says_what_its_names_are(name):
 
 def test_velocities_that_an_iteration_finds_are_told_by_their_momenta():
     """Landau and Lifshitz (65.7): p1 = m1 v1 + m1 v1^3/(2 c^2) + k v2/(c^2 r), x1 - x2 = r."""
-    equations = derive(shipped("darwin_charges"))
+    equations = emitted("darwin_charges")
     (motion,) = motion_sections(equations)
     told = [line.text for line in motion.lines if not is_rate(line)]
     assert told[0] == "p1 = 1/2*v1^3*m1/c^2 + v1*m1 + v2*k/(c^2*(x1 - x2))"
@@ -124,7 +124,7 @@ def test_velocities_that_an_iteration_finds_are_told_by_their_momenta():
 
 def test_a_velocity_that_fills_a_page_is_told_by_the_bracket():
     """V = {X, h} where it is one; of another energy it is not."""
-    equations = derive(shipped("guiding_centre"))
+    equations = emitted("guiding_centre")
     (motion,) = motion_sections(equations)
     assert [line.text for line in motion.vectors][2:] == ["V = {X, h}", "a = {u, h}"]
     other = replace(equations.exact, energy=2 * equations.exact.energy)
@@ -134,7 +134,7 @@ def test_a_velocity_that_fills_a_page_is_told_by_the_bracket():
 
 def test_slopes_of_energies_are_found_exactly():
     """Omega = dh/dm of a moment; of another energy the line is not there."""
-    equations = derive(shipped("landau_lifshitz_gilbert"))
+    equations = emitted("landau_lifshitz_gilbert")
     (motion,) = motion_sections(equations)
     assert "omega = dh/dm" in [line.text for line in motion.vectors]
     other = replace(equations.exact, energy=2 * equations.exact.energy)
@@ -144,7 +144,7 @@ def test_slopes_of_energies_are_found_exactly():
 
 def test_linear_equations_stand_with_vectors_where_they_are_announced():
     """Plain text has no components below equations by vectors."""
-    (motion,) = motion_sections(derive(shipped("double_spherical_pendulum")))
+    (motion,) = motion_sections(emitted("double_spherical_pendulum"))
     texts = [line.text for line in motion.vectors]
     assert "those of v1, v2 in components, as the linear equations" in motion.law
     assert "minus the multipliers" in motion.law
@@ -154,7 +154,7 @@ def test_linear_equations_stand_with_vectors_where_they_are_announced():
 
 def test_scalars_stand_with_vectors_and_before_them():
     """Holm (2011), section 6.6, on Bargmann's group: mass times velocity, and tau = E/c."""
-    (motion,) = motion_sections(derive(shipped("bargmann")))
+    (motion,) = motion_sections(emitted("bargmann"))
     assert [line.text for line in motion.vectors][1:] == [
         "dK/dt = -E P/c - M diag(B)^(-1) P + K x (diag(I)^(-1) J)",
         "dP/dt = M diag(A)^(-1) K + P x (diag(I)^(-1) J)",

@@ -9,11 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.errors import DerivationError, LimitError
 from tests.constrained import BALL, PARTICLE, PENDULUM, SLEIGH, SUSLOV, derived, motion
-from tests.specs import shipped
+from tests.specs import emitted
 
 PRINCIPLE = "nonholonomic-hamilton-pontryagin"
 ROUTES = ("nonholonomic", "hamel", PRINCIPLE)
@@ -382,7 +381,7 @@ def check_printed_solve(equations):
 )
 def test_printed_equations_have_the_multipliers(system, route):
     """Of constraints that are kept; without ``A^T lambda`` no line would be true."""
-    equations = derive(shipped(system), route)
+    equations = emitted(system, route)
     assert check_printed_solve(equations) > 0
     titles = [step.title for step in equations.steps]
     assert "Constraints, differentiated" in titles
@@ -397,7 +396,7 @@ def test_printed_equations_have_the_multipliers(system, route):
 
 def test_suslovs_equations_are_those_of_the_book():
     """I Omega' = I Omega x Omega + lambda a and a . Omega' = 0, solved here by hand."""
-    equations = derive(shipped("suslov"))
+    equations = emitted("suslov")
     step = next(s for s in equations.steps if "for the accelerations in the kernel" in s.title)
     inertia = np.array([[3.0, 0.2, -0.4], [0.2, 2.0, 0.3], [-0.4, 0.3, 1.5]])
     axis, omega = np.array([0.6, -0.8, 0.5]), np.array([0.3, 0.7, 0.76])

@@ -5,7 +5,7 @@ import sympy
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.exact import Element
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, emitted, prove_claims, shipped, spec
 
 #: [e1, e2] = k e3, [e2, e3] = c1 e1, [e3, e1] = c2 e2, an algebra for all k and c.
 SCALED = """
@@ -75,7 +75,7 @@ def test_parameters_in_brackets_reach_the_equations(route):
     expected = [c2 * w3 * p2 - k * w2 * p3, k * w1 * p3 - c1 * w3 * p1, c1 * w2 * p1 - c2 * w1 * p2]
     assert zeros(equations.rates, expected) == [0] * 3
     ones = {c1: 1, c2: 1, k: 1}
-    body = derive(shipped("rigid_body"), route).rates
+    body = emitted("rigid_body", route).rates
     assert zeros([rate.subs(ones) for rate in equations.rates], body) == [0] * 3
 
 
@@ -120,7 +120,7 @@ def test_velocities_and_momenta_stand_along_the_basis():
     assert setting.momenta == ("Pi1", "Pi2", "Pi3", "P1", "P2", "P3")
     assert setting.state == ("P1", "P2", "P3", "Pi1", "Pi2", "Pi3")
     moved = derive(spec(exchanged)).rates
-    assert list(moved[3:]) + list(moved[:3]) == list(derive(shipped("kirchhoff")).rates)
+    assert list(moved[3:]) + list(moved[:3]) == list(emitted("kirchhoff").rates)
 
 
 def test_the_sign_is_that_of_the_invariance():

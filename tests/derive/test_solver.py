@@ -16,7 +16,7 @@ from coadjoint.lower.check import check_inverse
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.program import Multiply, Number
 from coadjoint.prove.certificate import Verdict
-from tests.specs import prove_claims, shipped, spec
+from tests.specs import emitted, prove_claims, shipped, spec
 
 BLOCK = (0, 1, 2, 3)
 NAMES = ("x1", "x2", "x3", "x4")
@@ -130,7 +130,7 @@ def test_only_coupled_velocities_are_solved_for():
     assert dict(equations.exact.definitions)["W34"] == (
         equations.setting.field["M34"] / equations.setting.field["a6"]
     )
-    assert not derive(shipped("so8_body")).kept
+    assert not emitted("so8_body").kept
     assert not any(name.startswith("_d") for name in make_setting(shipped("so8_body")).field.names)
 
 
@@ -152,7 +152,7 @@ def test_everything_is_proved_and_lowered_without_closed_forms():
 @pytest.mark.parametrize("function", ["rhs", "jacobian", "energy"])
 def test_a_spoiled_statement_is_seen(function):
     """Doubling a statement of a solve changes values modulo a prime."""
-    equations = derive(shipped("coupled_bodies"))
+    equations = emitted("coupled_bodies")
     program = lower(equations)[function]
     check_inverse(equations, program)
     place = next(n for n, s in enumerate(program.statements) if s.name == "_d5")
@@ -165,7 +165,7 @@ def test_a_spoiled_statement_is_seen(function):
 
 def test_a_spoiled_definition_is_refuted():
     """A pivot with a wrong sign contradicts the claim on L D L^T."""
-    equations = derive(shipped("coupled_bodies"))
+    equations = emitted("coupled_bodies")
     wrong = tuple((n, -v if n == "_d4" else v) for n, v in equations.exact.definitions)
     exact = dataclasses.replace(equations.exact, definitions=wrong)
     certificate = prove_claims(equations.spec, [dataclasses.replace(equations, exact=exact)])
@@ -175,7 +175,7 @@ def test_a_spoiled_definition_is_refuted():
 
 def test_the_oracle_reaches_through_many_levels():
     """The envelope of a solve stays near its value, so that ordinary points have one."""
-    reference = Reference(derive(shipped("coupled_bodies")))
+    reference = Reference(emitted("coupled_bodies"))
     names = (*reference.state, *reference.parameters)
     point = {name: 1.0 + n % 7 / 8 for n, name in enumerate(names)}
     assert all(b.envelope < 2**40 for b in oracle(reference, "rhs", point))

@@ -11,13 +11,12 @@ from pathlib import Path
 import pytest
 
 import coadjoint.derive
-from coadjoint.derive import derive
 from coadjoint.derive.document import document
 from coadjoint.derive.records import write_step
 from coadjoint.derive.theorems import _OF_ROUTES, THEOREMS, find_theorem
 from coadjoint.render.document import FORMATS, render_document
 from coadjoint.spec.routes import ROUTES
-from tests.specs import shipped
+from tests.specs import emitted
 
 #: Keys that are computed: of the route at hand, and of what a spec adds to the rates.
 COMPUTED = {"route": {"poisson", "lie-poisson"}, "relaxation": {"double-bracket", "metriplectic"}}
@@ -84,7 +83,7 @@ def test_the_table_and_the_module_of_a_route_cite_the_same(route):
 @pytest.mark.parametrize("route", ["euler-poincare", "clebsch"])
 def test_documents_show_the_theorem_of_each_step(form, route):
     """In every format; the record of JSON has it as a field."""
-    found = derive(shipped("heavy_top"), route)
+    found = emitted("heavy_top", route)
     record = asdict(document(found))
     steps = [each for each in record["sections"] if each["kind"] == "step"]
     assert len(steps) == len(found.steps) > 3

@@ -26,7 +26,7 @@ from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS
 from coadjoint.solve.folders import load_folder
 from coadjoint.spec import read_spec, read_spec_text
-from tests.specs import shipped
+from tests.specs import emitted
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "so9_body.toml"
 SPEC = """
@@ -142,7 +142,7 @@ def test_an_observable_of_another_form_is_written_out():
 @pytest.mark.parametrize("name", ["heavy_top", "so8_body", "kirchhoff", "n_particles"])
 def test_other_rates_are_written_out(name):
     """Terms with other factors, and few products, stay formulas."""
-    assert lowering._loop(derive(shipped(name))) is None
+    assert lowering._loop(emitted(name)) is None
 
 
 def test_a_velocity_of_another_form_is_written_out():

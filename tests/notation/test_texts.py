@@ -5,10 +5,9 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from coadjoint.derive import derive
 from coadjoint.derive.motion import motion_sections
 from coadjoint.notation.texts import write_text
-from tests.specs import shipped
+from tests.specs import emitted
 
 
 @pytest.mark.parametrize(
@@ -33,7 +32,7 @@ def test_a_text_is_set_as_a_formula(text, latex):
 @pytest.mark.parametrize("name", ["zeitlin_su_n", "zeitlin_torus"])
 def test_no_formula_of_matrices_is_plain_text(name):
     """No letter of MathML holds a whole formula."""
-    (motion,) = motion_sections(derive(shipped(name)))
+    (motion,) = motion_sections(emitted(name))
     letters = [each for line in motion.lines for each in re.findall("<mi>(.*?)</mi>", line.mathml)]
     assert len(letters) > 20
     assert all(re.fullmatch("[^*^/\\[ ]+", each) for each in letters), letters

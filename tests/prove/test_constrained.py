@@ -28,7 +28,7 @@ from tests.constrained import (
     derived,
     motion,
 )
-from tests.specs import prove_claims, shipped, spec, verdicts_of
+from tests.specs import emitted, prove_claims, spec, verdicts_of
 
 AFFINE = ('"w == y*u"', '"w == y*u + k*y"')
 JELLETT = ("[constraints]", '[momenta]\nJ = { section = { Omega = "s" } }\n[constraints]')
@@ -207,7 +207,7 @@ def test_the_energy_is_said_to_be_conserved_once():
 )
 def test_where_the_rank_drops_is_said(name, where):
     """A blade has a direction at every angle, a normal of length 0 is none."""
-    statement, *_ = next(about_constraints(ConstrainedRates(derive(shipped(name)))))
+    statement, *_ = next(about_constraints(ConstrainedRates(emitted(name))))
     assert statement == f"the constraint is independent: rank 1 {where}"
 
 
@@ -321,7 +321,7 @@ def test_motions_without_acceleration_are_proved(text):
 @pytest.mark.parametrize("name", ["chaplygin_ball_centred", "snakeboard"])
 def test_every_spoiled_line_of_a_shipped_solve_is_seen(name):
     """Reciprocals, columns and what is left out as zero: double any line, and a defect is left."""
-    first = derive(shipped(name))
+    first = emitted(name)
     definitions, (solve, *_) = dict(first.exact.definitions), first.exact.solves
     own = [line for line in solver_names(solve.block) if line in definitions]
     assert len(own) > 8

@@ -4,12 +4,11 @@ import dataclasses
 
 import pytest
 
-from coadjoint.derive import derive
 from coadjoint.prove import Verdict
 from coadjoint.prove.projection import about_projection
 from coadjoint.prove.zero import Decision, decide_zero
 from tests.constrained import PARTICLE, PENDULUM, derived
-from tests.specs import shipped
+from tests.specs import emitted
 
 ARRIVES, LEAST, STAYS = (
     "the projection moves every state onto rod, where its equations are regular",
@@ -44,7 +43,7 @@ def test_the_three_claims_are_proved(route, changes):
 @pytest.mark.parametrize("name", ["suslov", "veselova", "snakeboard", "knife_edge_cvt"])
 def test_shipped_projections_are_proved(name):
     """Coefficients of parameters, of positions and with functions; and two constraints at once."""
-    assert set(verdicts(derive(shipped(name))).values()) == {Verdict.PROVED}
+    assert set(verdicts(emitted(name)).values()) == {Verdict.PROVED}
 
 
 def test_nothing_is_claimed_where_nothing_is_kept():

@@ -33,7 +33,7 @@ from coadjoint.render.prose import escape_latex, escape_typst, set_prose
 from coadjoint.resources import systems_folder
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES
-from tests.specs import RIGID_BODY, shipped, spec
+from tests.specs import RIGID_BODY, emitted, spec
 
 ESCAPED = {"text": str, "latex": escape_latex, "html": escape, "typst": escape_typst}
 HOSTILE = (
@@ -48,7 +48,7 @@ HOSTILE = (
 @pytest.fixture(scope="module", params=["euler-poincare", "lie-poisson"])
 def derivation(request):
     """The heavy top's derivation by each route, as JSON values."""
-    return asdict(document(derive(shipped("heavy_top"), request.param)))
+    return asdict(document(emitted("heavy_top", request.param)))
 
 
 def hostile(text):
@@ -473,7 +473,7 @@ def test_components_that_steps_have_are_not_printed_twice():
 @pytest.mark.parametrize("width", [72, 80])
 def test_text_fits_a_width(width):
     """Prose, formulas, tables and what is said of names; nothing is left out."""
-    record = asdict(document(derive(shipped("heavy_top"))))
+    record = asdict(document(emitted("heavy_top")))
     text, whole = render_document(record, "text", width), render_document(record)
     bracket = [x for x in text.splitlines() if re.match(" +(Pi|Gamma|-|[|])[-+0-9]* *[|+]", x)]
     lines = [each for each in text.splitlines() if each not in bracket]

@@ -8,7 +8,7 @@ import sympy
 from coadjoint.derive import derive
 from coadjoint.derive.routes import complexification
 from tests.sources.components import cross, dot, plus, times
-from tests.specs import prove_claims, shipped, spec
+from tests.specs import emitted, prove_claims, shipped, spec
 
 X, Y, K = (sympy.symbols(f"{name}1:4") for name in "xyK")
 BOOK = dict(zip(K, (-1, 0, 1), strict=True))
@@ -30,7 +30,7 @@ def by(K, z):
 @pytest.mark.parametrize("route", ["lie-poisson", "complexification"])
 def test_C_1_2_complex_rigid_body(route):
     """dL/dt = L x KL by real and imaginary parts; with the conjugate of KL it is another motion."""
-    rates = derive(shipped("complex_rigid_body"), route).rates
+    rates = emitted("complex_rigid_body", route).rates
     L = [x + sympy.I * y for x, y in zip(X, Y, strict=True)]
     moved = [sympy.expand(z) for z in cross(L, by(K, L))]
     found = [a + sympy.I * b for a, b in zip(rates[:3], rates[3:], strict=True)]
@@ -85,7 +85,7 @@ def book_rates(sign=1):
 @pytest.mark.parametrize("route", ["lie-poisson", "complexification"])
 def test_C_1_2_pt_symmetric_body(route):
     """The reduced flow of the book for its K, and dx/dt = x x Kx - (N/D) w x Kw for every K."""
-    rates = derive(shipped("pt_rigid_body"), route).rates
+    rates = emitted("pt_rigid_body", route).rates
     assert same([rate.subs(BOOK) for rate in rates], book_rates())
     assert not same([rate.subs(BOOK) for rate in rates], book_rates(-1))
     w = cross(X, by(K, X))

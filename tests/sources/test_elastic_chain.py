@@ -7,13 +7,12 @@ a s . C s/2 and, with the axes d_c of the two pieces, (K_a + K_b - K_c) (1 - d_c
 import numpy as np
 import pytest
 
-from coadjoint.derive import derive
 from coadjoint.derive.indexed import derive_family
 from coadjoint.lower.families import lower_family
 from coadjoint.prove.declaration import family_context
 from coadjoint.render.families import render_family
 from coadjoint.solve.folders import load_texts
-from tests.specs import shipped
+from tests.specs import emitted
 
 #: Parameters in which no two numbers are equal.
 NUMBERS = {
@@ -34,7 +33,7 @@ NUMBERS = {
 @pytest.fixture(scope="module")
 def chain():
     """The kernels in NumPy, from the texts that are rendered; claims are proved elsewhere."""
-    equations = derive(shipped("elastic_chain"))
+    equations = emitted("elastic_chain")
     family = derive_family(equations)
     texts = render_family(family_context(equations, family, lower_family(family)))
     with load_texts(texts) as system:

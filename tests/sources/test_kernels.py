@@ -14,7 +14,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.render.targets import BUILDS
 from coadjoint.solve.folders import load_folder
 from tests.sources import textbook
-from tests.specs import render_claims, shipped
+from tests.specs import rendered
 from tests.trees_of_files import ROOT, folder_until_exit
 
 #: Inputs lie in [1/8, 8], so that sums stay below 2^13 and their rounding errors below 2^-37.
@@ -41,7 +41,7 @@ def build(system):
         return load_folder(ROOT / "generated" / system)
     folder = folder_until_exit() / system
     folder.mkdir()
-    for name, text in render_claims(shipped(system)).texts.items():
+    for name, text in rendered(system).texts.items():
         (folder / name).write_text(text)
     return load_folder(folder)
 

@@ -12,7 +12,7 @@ from sympy import Matrix, Rational, symbols
 
 from coadjoint.derive import derive, make_setting
 from coadjoint.spec.spatial import spatial_momenta
-from tests.specs import RIGID_BODY, prove_claims, shipped, spec
+from tests.specs import RIGID_BODY, emitted, prove_claims, shipped, spec
 
 I1, I2, I3 = inertia = symbols("I1:4")
 Pi, Omega, Gamma, chi = (Matrix(symbols(f"{name}1:4")) for name in ("Pi", "Omega", "Gamma", "chi"))
@@ -95,7 +95,7 @@ def test_2_1_1_free_rigid_rotation():
 
 def test_2_4_1_hamilton_pontryagin_steps():
     """The variations give Legendre relation, reconstruction dg/dt = g xi and momentum equation."""
-    equations = derive(shipped("rigid_body"), "hamilton-pontryagin")
+    equations = emitted("rigid_body", "hamilton-pontryagin")
     titles = [step.title for step in equations.steps]
     assert "Variation of mu: the reconstruction dg/dt = g xi" in titles
     legendre = dict(zip(titles, equations.steps, strict=True))[
@@ -128,7 +128,7 @@ def test_2_4_1_exponential_coordinates():
 
 def test_2_5_5_clebsch_rigid_body():
     """dQ/dt = Q x Omega, dP/dt = P x Omega, Pi = P x Q."""
-    equations = derive(shipped("rigid_body"), "clebsch")
+    equations = emitted("rigid_body", "clebsch")
     Q, P = Matrix(symbols("Q1:4")), Matrix(symbols("P1:4"))
     omega = INERTIA.inv() * P.cross(Q)
     field = equations.setting.field
@@ -184,7 +184,7 @@ def star(q):
 
 def test_4_1_cayley_klein_rigid_body():
     """dq/dt = q [0, Omega]/2, dPi/dt = Pi x Omega, and q Pi q* is conserved."""
-    equations = derive(shipped("rigid_body"), "cayley-klein")
+    equations = emitted("rigid_body", "cayley-klein")
     q = list(symbols("q0:4"))
     expected = [*(x / 2 for x in times(q, [0, *IN_BODY])), *Pi.cross(IN_BODY)]
     assert same(equations.rates, expected)
@@ -229,7 +229,7 @@ def test_4_1_cayley_klein_heavy_top():
     expected = ((INERTIA * Omega).cross(Omega) + torque).subs(gamma)
     assert same(found, expected)
     assert not same(found, ((INERTIA * Omega).cross(Omega) - torque).subs(gamma))
-    equations = derive(shipped("heavy_top"), "cayley-klein")
+    equations = emitted("heavy_top", "cayley-klein")
     chart = dict(zip(equations.variables, equations.rates, strict=True))
     image = dict(zip(equations.setting.state, equations.chart.state, strict=True))
     vertical = [equations.setting.field.to_sympy(image[f"Gamma{n}"]) for n in (1, 2, 3)]
@@ -416,7 +416,7 @@ def test_9_3_diamond_and_9_3_1_lie_derivative():
 
 def test_D_poincare_1901():
     """X_s U of the heavy top is its torque m g Gamma x chi; d/dt dT/deta has the constants."""
-    equations = derive(shipped("heavy_top"), "poincare")
+    equations = emitted("heavy_top", "poincare")
     steps = {step.title: step.lines for step in equations.steps}
     field = equations.setting.field
     torque = m * g * Gamma.cross(chi)

@@ -7,10 +7,9 @@ import pytest
 import sympy
 from scipy.special import ellipj
 
-from coadjoint.derive import derive
 from tests.sources.rods import rod_rates
 from tests.sources.test_fields import system
-from tests.specs import emitted, shipped
+from tests.specs import emitted
 
 SYMBOLS = {x: sympy.symbols(f"{x}1:4") for x in "mnKA"}
 
@@ -74,7 +73,7 @@ def test_the_heavy_top_is_the_rod_on_every_route():
     new = {sympy.Symbol(name): value for name, value in (new | {"m": 1, "g": 1}).items()}
     rod = rates_of("kirchhoff_rod", {})
     for route in ("lie-poisson", "hamilton-pontryagin", "newton-euler"):
-        top = derive(shipped("heavy_top"), route).rates
+        top = emitted("heavy_top", route).rates
         assert [sympy.expand(rate.xreplace(new)) for rate in top] == rod
 
 

@@ -32,7 +32,7 @@ from coadjoint.notation.written import add
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.tree import Call, Name
 from coadjoint.spec.reader import read_spec_text
-from tests.specs import shipped
+from tests.specs import emitted
 
 #: Lines as they are printed. Those up to the first comment stand in the sources letter by letter:
 #: Holm (2011), Geometric Mechanics II, 2nd ed., 2.4 (rigid body), 2.4.3 (so(n)), 7.2, 8.2, 10.1,
@@ -166,13 +166,13 @@ def lines(form):
 @pytest.mark.parametrize("system", BOOKS)
 def test_vector_equations_are_those_of_the_books(system):
     """Each line that its source prints is found."""
-    found = lines(vector_form(derive(shipped(system))))
+    found = lines(vector_form(emitted(system)))
     assert [line for line in BOOKS[system] if line not in found] == []
 
 
 def test_the_latex_of_the_heavy_top_is_the_books():
     """Bold letters, a dot over the letter alone, and no braces too many."""
-    form = vector_form(derive(shipped("heavy_top")))
+    form = vector_form(emitted("heavy_top"))
     first = form.lines[0]
     left, right = (write_tree(node, form.shapes).latex for node in (first.left, first.right))
     assert left == r"\dot{\boldsymbol{\Pi}}"
@@ -193,7 +193,7 @@ def spoil(equations, place):
 @pytest.mark.parametrize("place", [0, -1])
 def test_no_line_is_printed_for_a_spoiled_component(system, place):
     """One wrong sign, and the equation of its vector is not there."""
-    equations = derive(shipped(system))
+    equations = emitted(system)
     spoiled = vector_form(spoil(equations, place))
     name = vector_form(equations).lines[0 if place == 0 else len(spoiled.missing) - 1].left
     assert len(spoiled.missing) == 1
@@ -204,7 +204,7 @@ def test_no_line_is_printed_for_a_spoiled_component(system, place):
 
 def test_a_part_is_printed_only_if_its_own_components_are_right():
     """With the strain's fifth rate spoiled the rod keeps its turns and loses its steps."""
-    equations = derive(shipped("se3_strand"))
+    equations = emitted("se3_strand")
     place = equations.variables.index("X5")
     spoiled = vector_form(spoil(equations, place))
     found = [line.split(" = ")[0] for line in lines(spoiled)]
@@ -217,7 +217,7 @@ def test_a_part_is_printed_only_if_its_own_components_are_right():
 
 def test_a_derivative_along_space_is_that_of_the_matrix_that_is_printed():
     """Off the diagonal the strain of Sp(2) is half of its component, and so is its slope."""
-    equations = derive(shipped("sp2_strand"))
+    equations = emitted("sp2_strand")
     field, values = equations.setting.field, make_vocabulary(equations).values
     assert values["S"][0][1] == field["S12"] / 2
     assert values["S_s"][0][1] == field["S12_s"] / 2
@@ -225,7 +225,7 @@ def test_a_derivative_along_space_is_that_of_the_matrix_that_is_printed():
 
 def test_a_commutator_is_printed_only_if_every_component_is_one():
     """Each of the 15 rates decides alone."""
-    equations = derive(shipped("zeitlin_su_4"))
+    equations = emitted("zeitlin_su_4")
     (momentum,) = equations.spec.having_role("momentum")
     assert len(commutator_lines(equations, momentum)) == 3
     own = equations.setting.field["w4"]  # the first three rates are 0 once velocities are put in
@@ -237,7 +237,7 @@ def test_a_commutator_is_printed_only_if_every_component_is_one():
 
 def test_no_commutator_stands_where_traces_do_not_see_the_algebra():
     """The affine group's nilpotent matrix has the trace 0 with every other."""
-    equations = derive(shipped("affine_line"))
+    equations = emitted("affine_line")
     (momentum,) = equations.spec.having_role("momentum")
     assert commutator_lines(equations, momentum) == []
     assert weigh_commutators([{(0, 0): 1}, {(0, 1): 1}]) == []
@@ -263,7 +263,7 @@ l = "dot(v, v)/2 + exp(-x1^2 - x2^2/b^2)"
 
 def test_a_jacobian_is_printed_only_if_it_is_the_rate():
     """With the other sign there is none."""
-    equations = derive(shipped("euler_2d"))
+    equations = emitted("euler_2d")
     assert len(plane_lines(equations)) == 3
     assert plane_lines(spoil(equations, 0)) == []
 
@@ -271,7 +271,7 @@ def test_a_jacobian_is_printed_only_if_it_is_the_rate():
 @pytest.mark.parametrize("process", [0, 1, 2])
 def test_no_line_is_printed_for_spoiled_noise(process, monkeypatch):
     """One wrong sign in what a process does, and the equation is not there."""
-    equations = derive(shipped("stochastic_rigid_body"))
+    equations = emitted("stochastic_rigid_body")
     assert not vector_form(equations).missing
     fields = list(noise_fields(equations.setting))
     own = fields[process]
@@ -285,7 +285,7 @@ def test_no_line_is_printed_for_spoiled_noise(process, monkeypatch):
 
 def test_components_of_a_motion_with_noise_have_it():
     """As Pi x sigma_k e_k gives by hand."""
-    motion = document(derive(shipped("stochastic_rigid_body"))).sections[0]
+    motion = document(emitted("stochastic_rigid_body")).sections[0]
     assert "Stratonovich" in motion.law
     assert [line.text for line in motion.lines] == [
         "dPi1 = (Pi2*Omega3 - Pi3*Omega2) dt - sigma2 Pi3 o dW2 + sigma3 Pi2 o dW3",
@@ -299,7 +299,7 @@ def test_components_of_a_motion_with_noise_have_it():
 
 def test_short_names_are_shown_by_short_names():
     """Definitions of the tippe top name one another, as in the spec, and so does what is seen."""
-    sections = {each.title: each for each in document(derive(shipped("tippe_top"))).sections}
+    sections = {each.title: each for each in document(emitted("tippe_top")).sections}
     found = [line.text for line in sections["Definitions"].lines]
     assert found[2:] == [
         "drag = viscous + coulomb/sqrt(v . v + slow^2)",
@@ -312,7 +312,7 @@ def test_short_names_are_shown_by_short_names():
 
 def test_what_is_printed_is_evaluated_once_more():
     """A vocabulary whose words have wrong values prints nothing, though a search succeeds."""
-    vocabulary = make_vocabulary(derive(shipped("rigid_body")))
+    vocabulary = make_vocabulary(emitted("rigid_body"))
     (target,) = vocabulary.targets
     assert recognise(vocabulary, target.value)
     vocabulary.values = {**vocabulary.values, "Omega": vocabulary.values["Pi"]}
@@ -321,7 +321,7 @@ def test_what_is_printed_is_evaluated_once_more():
 
 def test_a_balance_is_shown_only_if_it_is_what_the_kernel_solves():
     """Lagrange and d'Alembert's law passes; with one component's sign turned it does not."""
-    equations = derive(shipped("chaplygin_ball"))
+    equations = emitted("chaplygin_ball")
     left, right = momentum_balance(equations)
     assert is_derived(equations, left, right)
     for place in range(len(right)):
@@ -332,7 +332,7 @@ def test_a_balance_is_shown_only_if_it_is_what_the_kernel_solves():
 @pytest.mark.parametrize("system", ["ball_in_sphere", "double_spherical_pendulum", "suslov_so5"])
 def test_balances_of_coordinates_are_those_that_the_kernel_solves(system):
     """Next to an algebra, without one, and with velocities at rest; a turned sign is seen."""
-    equations = derive(shipped(system))
+    equations = emitted(system)
     left, right = momentum_balance(equations)
     assert is_derived(equations, left, right)
     for place in (place for place, side in enumerate(right) if side):
@@ -343,14 +343,14 @@ def test_balances_of_coordinates_are_those_that_the_kernel_solves(system):
 @pytest.mark.parametrize("place", range(5))
 def test_affine_motion_is_printed_only_if_every_component_is_right(place):
     """Those of the matrix mu, and those of the vector p."""
-    equations = derive(shipped("sl2_r2"))
+    equations = emitted("sl2_r2")
     assert len(affine_lines(equations)[0]) == 4
     assert affine_lines(spoil(equations, place)) == ([], frozenset())
 
 
 def test_no_affine_motion_is_found_where_the_linear_part_is_not_all_of_it():
     """The rotations are a part of the matrices without a trace."""
-    assert affine_lines(derive(shipped("kirchhoff"))) == ([], frozenset())
+    assert affine_lines(emitted("kirchhoff")) == ([], frozenset())
 
 
 @pytest.mark.parametrize(
@@ -367,7 +367,7 @@ def test_no_affine_motion_is_found_where_the_linear_part_is_not_all_of_it():
 )
 def test_the_line_of_a_spoiled_component_is_lost(system, component, lost):
     """With one rate's sign turned its row, part or vector has no line, and others stay."""
-    equations = derive(shipped(system))
+    equations = emitted(system)
     whole = {line.split(" = ")[0] for line in lines(vector_form(equations))}
     spoiled = vector_form(spoil(equations, equations.variables.index(component)))
     found = {line.split(" = ")[0] for line in lines(spoiled)}
@@ -378,7 +378,7 @@ def test_the_line_of_a_spoiled_component_is_lost(system, component, lost):
 
 def test_vee_undoes_hat():
     """The vector of the skew matrix of a x."""
-    field = make_vocabulary(derive(shipped("rigid_body"))).field
+    field = make_vocabulary(emitted("rigid_body")).field
     names = ("Pi1", "Pi2", "Pi3")
     node = read_expression("hat(a)")
     value = evaluate(
@@ -400,7 +400,7 @@ def test_rotations_cancel_in_what_is_printed():
 
 def test_velocities_that_a_route_replaces_have_no_balance():
     """Hamel's equations have no rates of some velocities: none of their lines is printed."""
-    equations = derive(shipped("chaplygin_ball"), "hamel")
+    equations = emitted("chaplygin_ball", "hamel")
     assert not speeds_of(equations).keys() >= set(equations.setting.velocities)
     assert balance_lines(equations) is None
     assert document(equations).sections

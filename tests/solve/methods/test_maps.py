@@ -19,7 +19,7 @@ def load(tmp_path_factory):
     def make(name):
         folder = tmp_path_factory.mktemp("maps") / name
         folder.mkdir()
-        for file, text in specs.render_claims(specs.shipped(name)).texts.items():
+        for file, text in specs.rendered(name).texts.items():
             (folder / file).write_text(text)
         return load_folder(folder)
 
