@@ -627,7 +627,7 @@ def test_newtons_method_is_compared(good, bad, tmp_path, monkeypatch):
     batch = points(made)
     if good == bad:
         assert check_steps(made, batch, 0.125)["midpoint_newton"]["c"].k < 1
-        assert min(check_bits(made, batch, 0.125).values()) > 400
+        assert min(check_bits(made, batch, 0.125).values()) > 350
     else:
         with pytest.raises(CrossCheckError, match="rung 5"):
             check_bits(made, batch, 0.125)
@@ -730,7 +730,7 @@ def test_newtons_method_of_other_steps_is_compared(method, is_wrong, tmp_path, m
             check_bits(made, batch, 0.125)
         return
     assert 0 < check_steps(made, batch, 0.125)[method]["c"].k < 1
-    assert check_bits(made, batch, 0.125) == {method: 105}  # rows, samples and members
+    assert check_bits(made, batch, 0.125) == {method: 3 * 6 * 5}  # rows, samples and members
 
 
 @pytest.mark.parametrize("method", WRONG_STEPS)

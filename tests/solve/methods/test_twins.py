@@ -77,7 +77,7 @@ def test_bits_are_those_of_numpy(macro: str, name: str, tmp_path: Path) -> None:
             "choose(stays, scale * rest, scale",
         ),
         ("SPHERICAL_MIDPOINT", "so(3)", "arc->low[i] + half", "half"),
-        ("SPHERICAL_MIDPOINT", "so(3)", "first - kept[STATE + i]", "first"),
+        ("SPHERICAL_MIDPOINT", "so(3)", "3.0 * (last[i]", "2.0 * (last[i]"),
         ("COADJOINT_MEAN", "se(3)", "[r] == search->middle", "[r] == following"),
         ("COADJOINT_MEAN", "se(3)", "(int)FEW_ROWS ? 1 : 2", "(int)FEW_ROWS ? 1 : 1"),
         ("ISOSPECTRAL_MIDPOINT", "so(4)", "= search->done & confirm", "= confirm"),
