@@ -98,8 +98,8 @@ def _write_multipliers(spec: Spec, lines: Sequence[VectorLine]) -> tuple[dict[st
     pairs = [(each, label) for each, label in zip(shown, labels, strict=True)]
     written = {each.reaction: name(label, bold=bool(each.shape)) for each, label in pairs}
     for each, label in pairs if len(pairs) == 1 else ():
-        labels = (f"{label}{n}" for n in range(1, len(each.reactions) + 1))
-        written |= zip(each.reactions, map(name, labels), strict=True) if each.shape else ()
+        entries_of = [name(f"{label}{n}") for n in range(1, len(each.reactions) + 1)]
+        written |= zip(each.reactions, entries_of, strict=True) if each.shape else ()
     told = ", ".join(f"{label} is the force of the constraint {each.name}" for each, label in pairs)
     return written, told
 
