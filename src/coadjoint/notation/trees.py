@@ -78,9 +78,9 @@ def write_tree(
                 return write_name(text)
             case tree.Index(name=text, indices=indices):
                 row = len(shapes.get(text, ())) == 2 and len(indices) == 1
-                own = _number(text, indices, shapes.get(text, ()))
-                if own in known:
-                    return known[own]
+                component = _number(text, indices, shapes.get(text, ()))
+                if component in known:
+                    return known[component]
                 base = known[text] if text in known else name(text, bold=row)
                 whole = attach(base, below=[number(i) for i in indices])
                 return replace(whole, text=_number(base.text, indices, shapes.get(text, ())))

@@ -59,15 +59,19 @@ class Point:
         at = {Symbol(n): Rational(random.randint(2, 30), 17) for n in names}
         at |= {Symbol(n): value for n, value in (given(at) if given else {}).items()}
         for linear in equations.unsolved:
-            matrix, right = linear.matrix.subs(at), linear.right.subs(at)
+            matrix, right = linear.matrix.xreplace(at), linear.right.xreplace(at)
             at |= zip(linear.unknowns, matrix.LUsolve(right), strict=True)
         for name, value in equations.velocities.items():
-            number = value.subs(at)
+            if name.startswith("_"):  # of a solve, whose solution stands in the rates
+                continue
+            number = value.xreplace(at)
             if Symbol(name) not in at and not number.free_symbols:
                 at[Symbol(name)] = number
-        at |= {Symbol(n): value.subs(at) for n, value in equations.observables.items()}
+        at |= {Symbol(n): value.xreplace(at) for n, value in equations.observables.items()}
         self.at = at
-        rates = dict(zip(equations.variables, (r.subs(at) for r in equations.rates), strict=True))
+        rates = dict(
+            zip(equations.variables, (r.xreplace(at) for r in equations.rates), strict=True)
+        )
         quantities = (*spec.variables, *spec.parameters, *spec.inputs, *spec.jets)
         own = {n: at[Symbol(n)] for each in quantities for n in each.components if Symbol(n) in at}
         self.q = SimpleNamespace(**{v.name: _put(v, own) for v in quantities if _has(v, own)})
@@ -279,7 +283,7 @@ def _orbit(q):
         + 3 * q.mu * place.dot(inertia * place) / (2 * r**5)
     )
     at = dict(zip(place, q.g[:, 3], strict=True))
-    force = -Matrix([V.diff(each) for each in place]).subs(at)
+    force = -Matrix([V.diff(each).xreplace(at) for each in place])
     y = R.T * q.g[:, 3]
     return {
         "Pi": x(q.Pi, q.Omega) + 3 * q.mu * x(y, by(q.I, y)) / sqrt(y.dot(y)) ** 5,

@@ -145,7 +145,7 @@ BOOKS = {
     ],
     "sl2_r2": ["dmu/dt = [A^T, mu] - p (x) v + 1/2 (p . v) Id", "dp/dt = A^T p"],
     "se2_pendulum": ["db/dt = -m J b", "J = rows((0, -1), (1, 0))"],
-    "sp2_momentum": ["dX/dt = 2 (X2, X1, -2 X3) x (k/2 + 1/2 b X1, 1/(2 m), 0)"],
+    "sp2_momentum": ["dX/dt = (X2, X1, -2 X3) x (k + b X1, 1/m, 0)"],
     "maxwell_bloch": ["dx/dt = (0, x2, x3) x (x1, 0, 1)"],
     "c3_oscillators": ["dq/dt = (w1 p1, w2 p2, w3 p3) + (c p2, c p1, 0) + k (q x p) x q"],
     "veselova_so4": [

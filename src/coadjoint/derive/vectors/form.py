@@ -33,7 +33,11 @@ def vector_form(equations: Equations) -> VectorForm:
         return member_form(equations)
     vocabulary = make_vocabulary(equations)
     lines, missing, told = plane_lines(equations), list[str](), ""
+    balance = balance_lines(equations) if equations.spec.constraints else None
     for target in vocabulary.targets:
+        if balance is not None and _is_solved(equations, target):
+            missing.append(owner_name(target.node))
+            continue
         found, left = _find_lines(equations, vocabulary, target)
         lines += found
         missing += left
@@ -46,14 +50,12 @@ def vector_form(equations: Equations) -> VectorForm:
         told = "Id is the identity" if found else told
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
-    if missing and equations.spec.constraints:
-        balance = balance_lines(equations)
-        if balance is not None:
-            lines = [*balance.lines, *_by_velocity(equations, lines)]
-            missing = []
-            shapes |= balance.shapes
-            written |= balance.written
-            told = balance.told
+    if missing and balance is not None:
+        lines = [*balance.lines, *_by_velocity(equations, lines)]
+        missing = []
+        shapes |= balance.shapes
+        written |= balance.written
+        told = balance.told
     lines += _momentum_lines(equations, vocabulary)
     lines += _short_names(equations.spec, vocabulary, lines)
     if _names_basis(lines):
@@ -67,6 +69,14 @@ def vector_form(equations: Equations) -> VectorForm:
         told=told,
         within=within,
     )
+
+
+def _is_solved(equations: Equations, target: Candidate) -> bool:
+    """Whether the kernel solves for the rates of a velocity, which its balance tells without."""
+    variable = next(v for v in equations.spec.state if v.name == owner_name(target.node))
+    unknown = {name for each in equations.exact.solves for name in each.names}
+    rates = dict(zip(equations.variables, equations.exact.rates, strict=True))
+    return any(unknown & equations.setting.field.reach(rates[n]) for n in variable.components)
 
 
 def _by_velocity(equations: Equations, lines: Sequence[VectorLine]) -> Iterator[VectorLine]:
