@@ -7,8 +7,12 @@ import pytest
 import sympy
 
 from coadjoint.errors import KernelArgumentError, ResourceError
+from coadjoint.pipeline import render
+from coadjoint.solve.folders import load_texts
+from coadjoint.spec import read_spec_text
 from coadjoint.systems import zeitlin_su_4, zeitlin_su_n
 from tests.kernels import COMPILER
+from tests.specs import shipped
 from tests.truncated import (
     POLYNOMIALS,
     find_stream,
@@ -54,6 +58,19 @@ def turn(W, angle):
     """The vorticity turned about the axis z."""
     levels = np.diag(spins(len(W))[2])
     return np.exp(-1j * angle * levels)[:, None] * W * np.exp(1j * angle * levels)
+
+
+def test_an_inertia_may_be_a_number_for_each_degree():
+    """With 3 l (l + 1) the motion is that with hbar l (l + 1), hbar/3 times as fast."""
+    text = shipped("zeitlin_su_n").path.read_text(encoding="utf-8")
+    new = text.replace("2*l*(l + 1)/sqrt(N^2 - 1)", "3*l*(l + 1)")
+    assert new != text
+    state, slower = random_state(5), 2 / np.sqrt(24) / 3
+    expected = slower * FLUID.resize({"N": 5}).rhs(state)
+    with load_texts(render(read_spec_text(new, "fluid.toml")).texts) as system:
+        for target in dict.fromkeys(("numpy", TARGET)):
+            found = system.resize({"N": 5}).rhs(state, target=target)
+            np.testing.assert_allclose(found, expected, atol=1e-13)
 
 
 @pytest.mark.parametrize(("n", "name"), [(4, "C2_1"), (9, "S3_2"), (16, "C3_3"), (33, "S2_2")])
