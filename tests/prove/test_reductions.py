@@ -222,3 +222,75 @@ def test_friction_by_rayleighs_function_leads_to_forces():
     rayleigh = ("[forces]", '[dissipation]\nR = "p1^2"\n[forces]')
     with pytest.raises(SpecError, match=r"names no velocity.*along a momentum in \[forces\]"):
         spec(IN_STEP, rayleigh)
+
+
+#: A heavy top that swings in a plane, of which three components are left.
+SWING = """
+title = "A swing"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(3)"
+[variables]
+Pi = { role = "momentum" }
+Gamma = { role = "advected", representation = "vector" }
+[parameters]
+I = { shape = [3], positive = true }
+w = {}
+[hamiltonian]
+h = "dot(Pi, inverse(diag(I))*Pi)/2 + w*Gamma3"
+[reduction]
+section = { Pi1 = "0", Pi3 = "0", Gamma2 = "0" }
+[claims]
+casimirs = ["dot(Gamma, Gamma)"]
+conserved = ["energy"]
+"""
+
+
+def test_components_of_a_section_are_given_one_by_one():
+    """What is left moves as a pendulum: Pi2' = -w Gamma1, Gamma' = Gamma x (0, Pi2/I2, 0)."""
+    motion = derive(spec(SWING))
+    Pi2, G1, G3, I2, w = sympy.symbols("Pi2 Gamma1 Gamma3 I2 w")
+    assert motion.variables == ("Pi2", "Gamma1", "Gamma3")
+    expected = [-w * G1, -G3 * Pi2 / I2, G1 * Pi2 / I2]
+    assert [sympy.simplify(a - b) for a, b in zip(motion.rates, expected, strict=True)] == [0] * 3
+    assert prove_claims(spec(SWING)).holds
+
+
+def test_entries_of_a_matrix_may_be_given_one_by_one():
+    """A body in four dimensions with a fixed axis is Euler's body."""
+    text = (
+        """
+title = "Three planes"
+routes = ["lie-poisson"]
+[algebra]
+name = "so(4)"
+[variables]
+M = { role = "momentum", form = "antisymmetric" }
+[parameters]
+c = { shape = [6], positive = true }
+[hamiltonian]
+h = """
+        + '"c1*M12^2 + c2*M13^2 + c3*M14^2 + c4*M23^2 + c5*M24^2 + c6*M34^2"'
+        + """
+[reduction]
+section = { M14 = "0", M24 = "0", M34 = "0" }
+[claims]
+casimirs = ["trace(M*M)"]
+"""
+    )
+    motion = derive(spec(text))
+    assert motion.variables == ("M12", "M13", "M23")
+    assert prove_claims(spec(text)).holds
+
+
+@pytest.mark.parametrize("change", [('Pi1 = "0"', 'Pi1 = "Pi2"'), (', Gamma2 = "0"', "")])
+def test_components_that_the_motion_does_not_keep_are_refuted(change):
+    """At the line of the section."""
+    with pytest.raises(ClaimError, match=r"section\.Pi1: refuted: the motion keeps Pi1 ="):
+        prove_claims(spec(SWING, change)).require()
+
+
+def test_a_component_is_given_once():
+    """Alone or with the vector."""
+    with pytest.raises(SpecError, match="'Pi1' is given twice"):
+        spec(SWING, ('Pi3 = "0"', 'Pi = "vector(0, Gamma1, 0)"'))

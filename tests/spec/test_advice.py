@@ -141,15 +141,13 @@ RESTRICTED = """
 title = "A top"
 routes = ["lie-poisson"]
 [algebra]
-name = "so(3)"
+name = "so(4)"
 [variables]
-Pi = { role = "momentum" }
-Gamma = { role = "advected", representation = "vector" }
+M = { role = "momentum", form = "antisymmetric" }
 [hamiltonian]
-h = "dot(Pi, Pi)/2 + Gamma3"
+h = "-trace(M*M)/4"
 [reduction]
-section = { Pi1 = "Gamma1" }
-where = ["Pi1 - Gamma1"]
+section = { M = "0" }
 """
 
 #: Of each advice: a spec, what is wrong with it, what the message says, and what it says to do.
@@ -158,8 +156,8 @@ ADVICE = [
     (
         RESTRICTED,
         [],
-        "A section gives whole variables: write all components as one vector.",
-        [('Pi1 = "Gamma1"', 'Pi = "vector(Gamma1, Gamma2, Gamma3)"')],
+        "Write its entries one by one, as M12.",
+        [('M = "0"', 'M12 = "0"')],
     ),
     (
         PUSHED,

@@ -262,6 +262,8 @@ def find_formula(spec: Spec, claim: Claim) -> Formula | None:
     if claim.kind == "bracket":
         pairs = ((each, each.left.in_one_line, each.right.in_one_line) for each in spec.brackets)
         made = [(f"{{{left}, {right}}} = ", each.value) for each, left, right in pairs]
+    if claim.kind == "reduction" and spec.reduction is not None:
+        made = [("the motion keeps ", next(iter(spec.reduction.section.values())))]
     if claim.kind == "rolling" and spec.rolling is not None:
         made = [("", spec.rolling.arm)]
     made = [(begin, formula) for begin, formula in made if begin in claim.statement]

@@ -98,8 +98,10 @@ def demand_maps(units: Units) -> None:
 
 def demand_section(units: Units, submanifold: Submanifold) -> None:
     """What is given on a submanifold has its own unit."""
+    parts = {part.name: part for each in units.spec.variables for part in each.parts}
     for name, formula in submanifold.section.items():
-        units.equate(formula, units.names[name].entries, f"It takes the place of {name}.")
+        entries = units.names[name].entries if name in units.names else units.of(parts[name])
+        units.equate(formula, entries, f"It takes the place of {name}.")
     for formula in submanifold.where:
         units.value(formula)
 

@@ -399,8 +399,12 @@ class Spec:
                 representation=None,
                 of="",
                 turning="",
+                given=given,
             )
             for variable in self.variables
+            for given in [
+                tuple(c for c in variable.components if c in {*section} - {variable.name})
+            ]
         )
         records = {key: each for key, each in self.records.items() if key != "charts"}
         whole = replace(

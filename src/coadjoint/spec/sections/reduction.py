@@ -7,7 +7,7 @@ That the motion keeps it is proved later. Read next: `coadjoint.derive.reduction
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from pydantic import Field
@@ -24,7 +24,8 @@ class ReductionPart(Part):
     """A submanifold that the motion keeps, on which some variables follow from the others."""
 
     section: Annotated[dict[str, str], Field(min_length=1)] = Field(
-        description="what variables are there, as y = 'cross(x, K*x)'; the state is without them",
+        description="what variables, or components of them, are there, as y = 'cross(x, K*x)' or "
+        "x3 = '0'; the state is without them",
         json_schema_extra=name_pattern(),
     )
     where: list[str] = Field([], description="functions of all variables that vanish there")
@@ -35,7 +36,7 @@ class Submanifold:
     """A submanifold, on which some variables follow from the others.
 
     Attributes:
-        section: What these variables are, by name.
+        section: What these variables, or components of variables, are, by name.
         where: Functions of all variables that vanish on the submanifold.
     """
 
@@ -53,16 +54,21 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
     _check_alone(reading)
     variables = state_of(VARIABLES.of(reading))
     known = {variable.name: variable for variable in variables}
+    parts = {c: variable for variable in variables for c in variable.components}
     for name in part.section:
-        _check_eliminated(reading, name, known)
-    if len(part.section) == len(known):
+        _check_eliminated(reading, name, known, part.section)
+    followed = {c for c, each in parts.items() if {c, each.name} & part.section.keys()}
+    if parts.keys() <= followed:
         problem, expected = (
             "no variable of the state is left",
             "a section over at least one variable",
         )
         raise reading.fault(("reduction", "section"), problem, list_names(part.section), expected)
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
-    left: list[Declared] = [q for q in reading.quantities if q.name not in part.section]
+    split = [replace(v, given=tuple(parts)) for v in known.values() if _is_split(v, part.section)]
+    pieces = {each.name: each.parts for each in split}
+    named = (p for q in reading.quantities for p in pieces.get(q.name, (q,)))
+    left: list[Declared] = [each for each in named if each.name not in part.section]
     of_left = make_scope("a section", roles, left)
     scope = reading.scope("a function that vanishes", roles, driven=())
     return Submanifold(
@@ -72,7 +78,7 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
                 ("reduction", "section", name),
                 text,
                 of_left,
-                known[name].value_shape,
+                known[name].value_shape if name in known else (),
                 name,
             )
             for name, text in part.section.items()
@@ -98,15 +104,27 @@ def _check_alone(reading: Reading) -> None:
         raise reading.fault(("reduction",), problem, "hamiltonian", expected)
 
 
-def _check_eliminated(reading: Reading, name: str, known: Mapping[str, Variable]) -> None:
-    """What the section gives is a variable, and no matrix kept as a list."""
-    if name not in known or known[name].form:
+def _is_split(variable: Variable, section: Mapping[str, str]) -> bool:
+    """Whether a section gives some components of a variable, one by one."""
+    return bool({*variable.components} & section.keys() - {variable.name})
+
+
+def _check_eliminated(
+    reading: Reading, name: str, known: Mapping[str, Variable], section: Mapping[str, str]
+) -> None:
+    """What the section gives is a variable, a component of one, or an entry of a matrix."""
+    parts = {c: variable for variable in known.values() for c in variable.components}
+    if name in parts and name not in known and parts[name].name in section:
+        problem = f"{name!r} is given twice, alone and as a component of {parts[name].name!r}"
+        expected = "each component once"
+        raise reading.at_key(("reduction", "section", name), problem, name, expected)
+    if (name not in known or known[name].form) and name not in parts:
         kind = "is a matrix kept as a list" if name in known else "is not a variable"
         problem = f"{name!r} {kind}"
         expected = f"one of {list_names(n for n, v in known.items() if not v.form)}"
-        hint = did_you_mean(name, known)
-        if any(name in variable.components for variable in known.values()):
-            hint = "A section gives whole variables: write all components as one vector."
+        hint = did_you_mean(name, (*known, *parts))
+        if name in known:
+            hint = f"Write its entries one by one, as {known[name].components[0]}."
         raise reading.at_key(("reduction", "section", name), problem, name, expected, hint)
 
 

@@ -35,7 +35,8 @@ class Variable(Components):
         default: Where a simulation begins, one exact value per component; None if nothing is said.
         independent: Under constraints, whether a velocity is part of the state; None without any.
         turning: Of an advected quantity that was declared with a role of `TURNING`, this role.
-        given: The components that constraints give one by one; the others are state by themselves.
+        given: The components that constraints give one by one, or a section those of a coordinate;
+            the others are state by themselves.
         follows: Whether a singular Lagrangian gives it in the state, or those of its components
             that are given: a velocity, or what is declared to follow.
         strain: Whether it is ``g^-1 dg/ds`` of a strand: advected by the adjoint representation,
@@ -65,10 +66,12 @@ class Variable(Components):
         if not self.given:
             return (self,)
         units = split_units(self.unit, len(self.components)) or ()
+        restricted = self.role == "coordinate" and not self.follows
         return tuple(
             replace(
                 self,
                 name=name,
+                role="velocity" if restricted and name in self.given else self.role,
                 shape=(),
                 form="",
                 elements=(),
