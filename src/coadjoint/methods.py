@@ -38,9 +38,16 @@ def list_fitting(judged: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]
     return sorted(fitting, key=lambda each: (not each["rank"], each["rank"]))
 
 
+#: Laws of a step that are no integrals: what forces, friction or a symmetric bracket do.
+BALANCED: Final = "the balance of the energy"
+FALLING: Final = "the energy never grows"
+GROWING: Final = "the entropy never falls"
+
+
 def list_kept(judged: Mapping[str, Any]) -> list[str]:
     """What one of them keeps exactly."""
-    return [*judged["exactly"], *(["Poisson tensor"] if judged["is_poisson"] else [])]
+    tensor = ["Poisson tensor"] if judged["is_poisson"] else []
+    return [*judged["exactly"], *tensor, *judged.get("laws", ())]
 
 
 def list_unfit(judged: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
@@ -189,6 +196,7 @@ class JudgedMethod:
             noise, on each path.
         nearly: The other integrals; a step changes them by an error of its order.
         is_poisson: Whether its step is a Poisson map of this system; with noise, on each path.
+        laws: What else holds in each step, to rounding: `BALANCED`, `FALLING` or `GROWING`.
         decides: The fact that decides: why it keeps these; of one that does not apply, why not.
         cost: What a step costs, in words; "" of one that does not apply.
         rank: Its place in the order in which ``"auto"`` takes methods, from 1; 0 for not at all.
@@ -199,6 +207,7 @@ class JudgedMethod:
     exactly: tuple[str, ...] = ()
     nearly: tuple[str, ...] = ()
     is_poisson: bool = False
+    laws: tuple[str, ...] = ()
     decides: str = ""
     cost: str = ""
     rank: int = 0

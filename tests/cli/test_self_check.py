@@ -10,15 +10,19 @@ import pytest
 
 from coadjoint.cli.self_check import main
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import tell_order
+from coadjoint.methods import BALANCED, FALLING, GROWING, tell_order
 from coadjoint.solve import self_check
+from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
 from coadjoint.systems import (
+    double_bracket_body,
     elastic_chain,
     euler_2d,
     euler_disk,
     heavy_top,
+    heavy_top_damped,
     hunter_saxton,
+    metriplectic_body,
     rigid_body,
     rolling_ellipsoid,
     so8_body,
@@ -181,6 +185,7 @@ def test_longer_steps_than_a_method_allows_accuse_nobody():
     ends = {4.0: 4.2004e-12, 2.0: 2.004e-13, 1.0: 4e-16, 0.5: 0.0}
     runs = SimpleNamespace(is_noisy=False, step=1.0, count=8, states=None)
     runs.run = lambda name, step, count, states: np.array([[1.0], [ends[step]]])
+    runs.find_end = lambda step: np.array([[1.0], [0.0]])
     order, reached = self_check._find_order(runs, SimpleNamespace(name="gauss8", order=8))
     assert reached
     assert order == pytest.approx(np.log2(2e-13 / 4e-16))
@@ -219,3 +224,93 @@ def test_members_that_leave_the_domain_tell_no_order():
     assert np.isfinite(found.state[..., -1]).all()
     assert np.array_equal(np.isnan(runs.run("rk4", runs.step, 8, drawn)).all(axis=0), left)
     np.testing.assert_array_equal(runs.states, drawn[:, ~left])
+
+
+@pytest.mark.parametrize(
+    ("system", "file", "old", "new", "method", "expected"),
+    [
+        # all of a part of the energy, and 1/1000 more: such steps meet, on another motion
+        (
+            rigid_body,
+            "solver.py",
+            '("flow1", 0.5)',
+            '("flow1", 0.501)',
+            "splitting",
+            "its order is 0.0, and 2 is claimed",
+        ),
+        (
+            rigid_body,
+            "kernel.py",
+            "Pi2 * _h3 - Pi3 * _h2",
+            "0.99 * (Pi2 * _h3 - Pi3 * _h2)",
+            "coadjoint_mean",
+            "from a Poisson map",
+        ),
+        (
+            rigid_body,
+            "solver.c",
+            "const V rest = 1.5 - part * both;",
+            "const V rest = 1.5001 - part * both;",
+            "spherical_midpoint",
+            "its C is another method than its NumPy",
+        ),
+        (
+            stochastic_rigid_body,
+            "kernel.py",
+            "out[4] = sigma2",
+            "out[4] = 2.0 * sigma2",
+            "coadjoint_mean",
+            "its paths end",
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:a wrong solver was compiled")
+def test_a_spoiled_text_is_caught(system, file, old, new, method, expected):
+    """A file of a package that somebody changed; the method of the shipped one passes."""
+    texts = {each.name: each.read_text() for each in system.system.folder.glob("*.*")}
+    assert old in texts[file]
+    with load_texts(texts | {file: texts[file].replace(old, new, 1)}) as spoiled:
+        (found,) = check_methods(spoiled, [method])
+    assert [each for each in found.failures if expected in each], found.failures
+    (sound,) = check_methods(system.system, [method])
+    assert not sound.failures
+
+
+@pytest.mark.parametrize(
+    ("system", "law", "name"),
+    [
+        (heavy_top_damped, BALANCED, "discrete_gradient"),
+        (double_bracket_body, FALLING, "discrete_gradient"),
+        (double_bracket_body, FALLING, "average_gradient"),
+    ],
+)
+def test_laws_of_the_energy_are_measured_in_each_step(system, law, name, monkeypatch):
+    """The power of friction and of a double bracket, which the method of Gauss misses."""
+    claimed = tuple(replace(each, exactly=(), laws=(law,)) for each in system.system.METHODS)
+    monkeypatch.setattr(system.system, "METHODS", claimed)
+    sound, failed = check_methods(system.system, [name, "gauss4"])
+    assert not sound.failures
+    assert sound.compared == 2
+    assert 0.0 <= sound.laws[law] < 1e-14
+    assert [each for each in failed.failures if f"{law} is missed by" in each]
+
+
+def test_an_entropy_that_falls_is_seen(monkeypatch):
+    """Minus the entropy does, in each step."""
+    system = metriplectic_body.system
+    judged = tuple(replace(each, laws=(GROWING,)) for each in system.METHODS)
+    monkeypatch.setattr(system, "METHODS", judged)
+    (found,) = check_methods(system, ["metriplectic_gradient"])
+    assert not found.failures
+    assert found.laws[GROWING] < 0.0
+    entropy = system.entropy
+    monkeypatch.setattr(type(system), "entropy", lambda self, x: -entropy(x), raising=False)
+    (found,) = check_methods(system, ["metriplectic_gradient"])
+    assert [each for each in found.failures if f"{GROWING} is missed by" in each]
+
+
+def test_growth_is_counted_from_the_first_step():
+    """A drift that is proportional to the number of steps grows with the power 1."""
+    numbers = np.arange(1.0, 101.0)
+    values = np.ones((1, 100))
+    assert self_check._find_exponent(1e-14 * numbers[np.newaxis], values) == pytest.approx(1.0)

@@ -12,8 +12,9 @@ from coadjoint.exact.linear import PRIME
 from coadjoint.exact.residues import draw, residue
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.mapped import lower_maps
-from coadjoint.methods import MAPPED, STRUCTURED
+from coadjoint.methods import BALANCED, FALLING, GROWING, MAPPED, STRUCTURED
 from coadjoint.prove import Certificate
+from coadjoint.prove.certificate import Claim, Verdict
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.turned import are_linear_symmetries, with_rotations
 from coadjoint.spec.reader import read_spec_text
@@ -58,10 +59,10 @@ def judge_shipped(name):
     return _judge(emitted(name), lowered(name))
 
 
-def _judge(equations, programs):
+def _judge(equations, programs, claims=()):
     maps = lower_maps(equations, programs["rhs"])
-    empty = Certificate(equations.spec.name, ())
-    facts, methods = judge_methods(equations, empty, programs, maps)
+    certificate = Certificate(equations.spec.name, tuple(claims))
+    facts, methods = judge_methods(equations, certificate, programs, maps)
     own = ["heun"] if facts.is_noisy else []
     assert [each.name for each in methods] == [*STRUCTURED, *MAPPED, *own]
     return facts, {each.name: each for each in methods}
@@ -188,6 +189,75 @@ def test_shipped_systems_with_relaxation_refuse_steps_back_in_time():
         assert methods["discrete_gradient"].rank == 1
     _, methods = judge_shipped("quadrotor")
     assert methods["midpoint4"].applies
+
+
+# -- laws of the energy and the entropy, and inputs -----------------------------------------------
+
+
+def test_inputs_in_the_energy_are_said_to_take_it():
+    """The energy stays while they are constant; a Casimir stays for any inputs."""
+    said = "; energy stays only while the inputs are constant"
+    driven = HAMILTONIAN.replace(END, f"{END} + u*Pi[1]").replace(
+        "[hamiltonian]", "[inputs]\nu = { default = 1 }\n[hamiltonian]"
+    )
+    _, methods = judge(spec(driven))
+    fit = [each for each in methods.values() if each.applies]
+    assert {"gauss4", "coadjoint_mean", "discrete_gradient"} <= {each.name for each in fit}
+    assert all(each.decides.endswith(said) for each in fit)
+    assert methods["gauss4"].exactly == ("energy", "casimir1")
+    _, free = judge(spec(HAMILTONIAN))
+    assert not [each.name for each in free.values() if "inputs" in each.decides and each.applies]
+
+
+def test_the_balance_of_the_energy_is_a_law_where_nothing_else_changes_it():
+    """Of friction; not where the energy at one state changes with the time or with an input."""
+    friction = PENDULUM.replace("FORCE", "-c*v")
+    _, methods = judge(spec(friction))
+    laws = {name: each.laws for name, each in methods.items() if each.laws}
+    assert laws == {"discrete_gradient": (BALANCED,)}  # the mean of a cosine's slopes is none
+    assert methods["discrete_gradient"].rank == 1
+    _, methods = judge(spec(PENDULUM.replace("FORCE", "c*q^2")))  # no friction: compositions apply
+    assert methods["discrete_gradient"].laws == (BALANCED,)
+    assert not methods["discrete_gradient4"].laws  # its five steps have middles of their own
+    assert methods["discrete_gradient4"].decides.startswith("each of its 5 steps adds h g.f")
+    for table, term in (
+        ('[time]\nname = "t"', "sin(t)*q"),
+        ("[inputs]\nu = { default = 1 }", "u*q"),
+    ):
+        moved = friction.replace("[hamiltonian]", f"{table}\n[hamiltonian]")
+        _, methods = judge(spec(moved.replace("- cos(q)", f"- cos(q) + {term}")))
+        assert methods["discrete_gradient"].applies
+        assert not methods["discrete_gradient"].laws
+        assert "change the energy at a state" in methods["discrete_gradient"].decides
+        assert methods["discrete_gradient"].rank == 0
+
+
+@pytest.mark.parametrize("casimirs", ['["dot(Pi, Pi)"]', "[]"])
+def test_a_double_bracket_is_followed_by_its_law_whether_casimirs_are_claimed(casimirs):
+    """Its default keeps them; without the proof that G is semidefinite it is a balance alone."""
+    text = HAMILTONIAN.replace("[hamiltonian]", '[double_bracket]\nG = "1/5"\n[hamiltonian]')
+    text = text.replace('casimirs = ["dot(Pi, Pi)"]', f"casimirs = {casimirs}")
+    text = text.replace('conserved = ["energy"]', "conserved = []")
+    declared = spec(text)
+    equations = derive(declared, declared.routes[0])
+    shown = Claim("G is positive semidefinite", "bracket", Verdict.PROVED, "sums of squares")
+    for claims, law in (([shown], FALLING), ([], BALANCED)):
+        _, methods = _judge(equations, lower(equations), claims)
+        assert methods["discrete_gradient"].laws == (law,)
+        assert (methods["discrete_gradient"].rank == 1) == (law == FALLING)
+        assert not methods["gauss4"].laws
+
+
+def test_entropy_grows_where_its_matrix_is_proved_semidefinite():
+    """By the projected gradients, and by methods of Gauss as both functions are quadratic."""
+    equations = emitted("metriplectic_body")
+    shown = Claim("G is positive semidefinite", "bracket", Verdict.PROVED, "sums of squares")
+    _, methods = _judge(equations, lowered("metriplectic_body"), [shown])
+    laws = {name: each.laws for name, each in methods.items() if each.laws}
+    assert {"metriplectic_gradient", "midpoint", "gauss4"} <= laws.keys()
+    assert {*laws.values()} == {(GROWING,)}
+    _, methods = judge_shipped("metriplectic_body")
+    assert not [each.name for each in methods.values() if each.laws]
 
 
 # -- facts that are spoiled -----------------------------------------------------------------------

@@ -68,6 +68,7 @@ def main(system: System, package: str, arguments: Sequence[str] | None = None) -
 def _row(each: Measured) -> tuple[str, ...]:
     """A line of the table."""
     kept = {name: each.drifts[name] for name in each.method.exactly if name in each.drifts}
+    kept |= {name: max(0.0, missed) for name, missed in each.laws.items()}
     rest = {name: x for name, x in each.drifts.items() if name not in kept}
     return (
         each.method.name,

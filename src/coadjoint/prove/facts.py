@@ -32,6 +32,7 @@ from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.prove.certificate import Certificate, Verdict
 from coadjoint.prove.constrained import motion_of
+from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.integrals import is_conserved
 from coadjoint.prove.measures import volume_statement
@@ -249,6 +250,18 @@ class Facts:
         """What the motion conserves of all that kernels emit."""
         emitted = self.equations.exact.emitted
         return tuple(self._describe(x) for x in emitted if is_conserved(self.equations, x))
+
+    @cached_property
+    def held(self) -> frozenset[str]:
+        """Names of those that it conserves only while the inputs are constant."""
+        parts = ((each.name, each.values) for each in self.integrals)
+        return frozenset(name for name, values in parts if while_constant(self.equations, values))
+
+    @property
+    def is_energy_steady(self) -> bool:
+        """Whether neither the time nor inputs change the energy at a state that stays."""
+        driving = self.equations.setting.driving
+        return self.energy is not None and not self.field.reach(self.energy) & {*driving}
 
     def _describe(self, each: Emitted) -> Kept:
         """An integral with its facts."""

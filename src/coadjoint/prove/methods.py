@@ -22,7 +22,10 @@ from coadjoint.lower.mapped import Maps
 from coadjoint.lower.program import Program, run
 from coadjoint.methods import (
     BACKWARD,
+    BALANCED,
     BY_ENERGY,
+    FALLING,
+    GROWING,
     MAPPED,
     NOISY,
     STEPS,
@@ -60,12 +63,14 @@ class Judgement:
         is_poisson: Whether a step is a Poisson map.
         decides: The fact that the theorem asks for.
         cost: Of a step, in words.
+        laws: What else holds in each step.
     """
 
     exactly: tuple[Kept, ...]
     is_poisson: bool
     decides: str
     cost: str
+    laws: tuple[str, ...] = ()
 
 
 #: What a rule takes: the facts, the method, and the maps of the system by name.
@@ -121,8 +126,7 @@ def judge(
         else _judge(every, facts, method, maps)
         for name, method in known.items()
     }
-    balanced = {"discrete_gradient"} if facts.has_balance and not facts.is_moved else set[str]()
-    return _rank(prefer(facts) if preferred is None else preferred, judged, balanced)
+    return _rank(prefer(facts) if preferred is None else preferred, judged)
 
 
 def refuse_backward(facts: Facts, refusals: Mapping[str, str]) -> dict[str, str]:
@@ -171,9 +175,18 @@ def _judge(
         exactly=tuple(names),
         nearly=tuple(each.name for each in facts.integrals if each.name not in names),
         is_poisson=found.is_poisson,
-        decides=found.decides,
+        laws=found.laws,
+        decides=found.decides + _tell_held([x for x in facts.integrals if x.name in facts.held]),
         cost=found.cost,
     )
+
+
+def _tell_held(integrals: Sequence[Kept]) -> str:
+    """Which integrals inputs that vary take, as the end of a clause."""
+    if not integrals:
+        return ""
+    stay = "stays" if len(integrals) == 1 else "stay"
+    return f"; {_list(integrals)} {stay} only while the inputs are constant"
 
 
 # -- one rule for each theorem --------------------------------------------------------------------
@@ -206,11 +219,12 @@ def _judge_runge_kutta(
     said += ["the Poisson tensor is constant"] * is_symplectic
     if facts.grows and any(each.name == "energy" for each in exactly):
         said.append("the entropy, of degree 2, grows by dS.G dS at the stages")
+    laws = (GROWING,) * (facts.grows and not facts.is_moved)
     is_gauss = method.file == "gauss"
     stages = method.order // 2 if is_gauss else STEPS[method.order]
     each = "stage" if is_gauss else "midpoint"
     cost = f"{SWEEPS} of {count(stages, each)}"
-    return Judgement(exactly, is_symplectic, "; ".join(said), cost)
+    return Judgement(exactly, is_symplectic, "; ".join(said), cost, laws)
 
 
 def _on_orbits(facts: Facts) -> tuple[Kept, ...]:
@@ -335,26 +349,38 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
             and facts.is_kept_by_tensor(each.values)
         )
     )
-    if not facts.is_bracket:
-        return Judgement(exactly, False, _tell_balance(facts, is_exact=is_exact), cost)
+    if not (facts.is_bracket or is_moved):
+        number = STEPS[method.order]
+        decides = _tell_balance(
+            facts, "a step" if number == 1 else f"each of its {number} steps", is_exact=is_exact
+        )
+        has_law = is_exact and facts.is_energy_steady and number == 1
+        law = FALLING if facts.relaxes else BALANCED
+        return Judgement(exactly, False, decides, cost, (law,) * has_law)
     decides = "the motion is an antisymmetric tensor times the gradient of its energy"
     if is_mean and not has_mean:
         decides += f", which is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
+    if not facts.is_bracket:
+        decides = "forces, friction or a symmetric bracket change the energy"
     if is_moved:
-        decides += "; after each step the state is moved, so that integrals are not kept"
+        decides += (
+            "; after each step the state is moved, so that neither integrals nor laws are kept"
+        )
     return Judgement(exactly, False, decides, cost)
 
 
-def _tell_balance(facts: Facts, *, is_exact: bool) -> str:
+def _tell_balance(facts: Facts, step: str, *, is_exact: bool) -> str:
     """How the energy changes in a step with the discrete gradient g, by what acts on the motion."""
     if not is_exact:
         return f"the energy is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
+    if not facts.is_energy_steady:
+        return "inputs or the time change the energy at a state that stays"
     if facts.relaxes:
         return (
             "the motion is P + P G P times the gradient of its energy: a step takes "
             "h (P g).G (P g) of the energy, g its discrete gradient, and never adds to it"
         )
-    return "a step adds h g.f to the energy, f what acts at its middle, g the discrete gradient"
+    return f"{step} adds h g.f to the energy, f what acts at its middle, g the discrete gradient"
 
 
 def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -381,7 +407,8 @@ def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Prog
         )
     else:
         decides += "; G is not proved positive semidefinite, and the entropy may fall"
-    return Judgement(exactly, False, decides, f"{SWEEPS}, each with ten gradients")
+    laws = (GROWING,) * (facts.is_semidefinite and not facts.is_moved)
+    return Judgement(exactly, False, decides, f"{SWEEPS}, each with ten gradients", laws)
 
 
 _RULES: Final[Mapping[str, Rule]] = {
@@ -423,15 +450,10 @@ def keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
 # -- the order of preference ----------------------------------------------------------------------
 
 
-def _rank(
-    preferred: Sequence[str], judged: Mapping[str, JudgedMethod], balanced: Collection[str]
-) -> tuple[JudgedMethod, ...]:
-    """The methods with their ranks: those that apply and keep something, as they are preferred.
-
-    What friction and forces do to the energy is kept by the methods that are balanced.
-    """
+def _rank(preferred: Sequence[str], judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
+    """The methods with their ranks: those that apply and keep something, as they are preferred."""
     wanted = [judged[name] for name in preferred if name in judged and judged[name].applies]
-    fit = [x.name for x in wanted if x.exactly or x.is_poisson or x.name in balanced]
+    fit = [x.name for x in wanted if x.exactly or x.is_poisson or x.laws]
     return tuple(
         replace(each, rank=fit.index(name) + 1) if name in fit else each
         for name, each in judged.items()

@@ -58,7 +58,7 @@ def certificate_json(
     if facts:
         record["structure"] = dict(facts)
     if judged := list(methods):
-        record["methods"] = [asdict(each) for each in judged]
+        record["methods"] = [_tell_method(each) for each in judged]
     if spec.definitions:  # the texts of casimirs and claims may hold them
         record["definitions"] = {d.signature: d.in_one_line for d in spec.definitions}
     if spec.observables:  # claims name them
@@ -102,3 +102,8 @@ def _list_rotations(spec: Spec) -> dict[str, str]:
         if each.name in generic
         for name, text in turning_rows(spec, each).items()
     }
+
+
+def _tell_method(judged: JudgedMethod) -> dict[str, object]:
+    """A method as JSON values; laws of a step only where it has some."""
+    return {name: value for name, value in asdict(judged).items() if value or name != "laws"}

@@ -264,7 +264,8 @@ def _list_observed(context: KernelContext, judged: JudgedMethod) -> list[tuple[s
 
 def _tell(method: StructuredMethod, judged: JudgedMethod) -> list[str]:
     """What the head says of a method: its theorem, and what it keeps of this system."""
-    exactly = [*judged.exactly, *(["the Poisson tensor"] if judged.is_poisson else [])]
+    tensor = ["the Poisson tensor"] if judged.is_poisson else []
+    exactly = [*judged.exactly, *tensor, *judged.laws]
     lines = [
         f"The method is {method.theorem}; "
         + ("it is exact." if method.name == EXACT else f"its order is {method.order}."),

@@ -1,25 +1,30 @@
 """Self-check: methods that keep structure, measured on runs of a system.
 
-Comes in: a System. Goes out: a `Measured` for each of its methods: the order by steps that are
-halved, the defect of a step from a Poisson map by differences, and the drift of integrals. What its
-certificate says of a method by theorems is asked of runs here. With noise the order is that of
-paths: runs with longer steps take sums of the increments of shorter ones.
+Comes in: a System. Goes out: a `Measured` for each of its methods: the order of its distance from
+the motion by steps that are halved, the defect of a step from a Poisson map by differences, the
+drift of integrals, and what steps miss of laws of energy and entropy. The motion is that of another
+method with far shorter steps: runs of one method alone may come closer to each other, and to the
+motion of other equations. What its certificate says of a method by theorems is asked of runs here.
+With noise the order is that of paths: runs with longer steps take sums of the increments of shorter
+ones, and those of two methods have to meet.
 Read next: `coadjoint.cli.self_check`, which shows it.
 """
 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from copy import copy
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from coadjoint.build.compiler import BUILDS
+from coadjoint.build.compiler import BUILDS, CompilerWarning
 from coadjoint.errors import KernelArgumentError
-from coadjoint.methods import STRUCTURED, JudgedMethod
+from coadjoint.methods import FALLING, GROWING, PLAIN, STRUCTURED, JudgedMethod
 from coadjoint.solve.arrays import pack_inputs, pack_parameters
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.ensemble import Ensemble, Inputs, Status
@@ -63,6 +68,10 @@ DRIFTING: Final = 100
 LARGE: Final = 8
 #: Files of methods whose compositions take less time in NumPy, with compiling.
 QUICK: Final = ("midpoint", "gauss")
+#: The method that the motion is found by, and in what part of the step of the longest run.
+#: Where Python leads the steps it is that of SciPy.
+FINE: Final = 16
+LED: Final = "scipy:DOP853"
 #: By how much an order may be measured too low. One that is too high is no fault of a method.
 SHY: Final = 0.5
 #: The same of means over paths with noise, and how many of these there are of each state.
@@ -74,6 +83,8 @@ ROUNDED: Final = 1e-13
 #: kept exactly, times the square of the growth of states: near a pole terms of an integral cancel.
 DEFECT: Final = 1e-11
 DRIFT: Final = 1e-12
+#: The same of a law in one step: roundings alone.
+LAW: Final = 1e-14
 #: Directions that the tensor has, by the size that it has along them.
 LEAST: Final = 1e-9
 #: Of the noise of runs.
@@ -96,6 +107,7 @@ class Measured:
         drifts: The largest drift of each integral.
         exponents: With what power of the number of steps it grows.
         grown: By what factor states grew.
+        laws: What steps miss of each law, relative to the size of what it is about.
         compared: How many numbers were compared with what is claimed.
         failures: What contradicts the claims, as clauses.
     """
@@ -106,6 +118,7 @@ class Measured:
     drifts: dict[str, float]
     exponents: dict[str, float]
     grown: float
+    laws: dict[str, float]
     compared: int
     failures: tuple[str, ...]
 
@@ -153,6 +166,7 @@ class Runs:
     def __init__(self, system: System, count: int = HALVED) -> None:
         self.count = count
         self.system = system = _compile_sooner(system)
+        self._ends: dict[float, Array] = {}
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         self.is_noisy = has_noise(system)
         states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
@@ -246,6 +260,66 @@ class Runs:
         found = self._simulate(method, step, count, states, samples=1)
         return np.where(np.asarray(found.status) == "OK", found.state[..., -1], np.nan)
 
+    def find_end(self, step: float) -> Array:
+        """Where the motion leads in the time of so many steps as `count`, and from `states`."""
+        if step not in self._ends:
+            time = self.count * step
+            if self.system.obstacle:  # one after the other, in Python: the first is enough
+                end = np.full(self.states.shape, np.nan)
+                end[:, :1] = self._follow(LED, time, self.states[:, :1], rtol=1e-13, atol=1e-15)
+            else:
+                end = self._follow(PLAIN, time, self.states, step=step / FINE)
+            self._ends[step] = end
+        return self._ends[step]
+
+    def _follow(self, name: str, time: float, states: Array, **lengths: Any) -> Array:
+        """The ends by a method; NaN where they were not reached."""
+        found = self.system.simulate(
+            states,
+            (0.0, time),
+            method=name,
+            samples=1,
+            target=self.target,
+            progress=False,
+            **lengths,
+        )
+        return np.where(np.asarray(found.status) == "OK", found.state[..., -1], np.nan)
+
+    def find_gap(self, law: str, method: str) -> float:
+        """What steps miss of a law at the most, relative to the energy or the entropy."""
+        found = self._simulate(method, self.step, HALVED, self.states, samples=HALVED + 1)
+        path = np.moveaxis(found.state, -1, 0)
+        missed = [self._miss(law, n, *path[n : n + 2]) for n in range(HALVED)]
+        return float(np.nanmax(missed)) if np.isfinite(missed).any() else math.nan
+
+    def _miss(self, law: str, n: int, start: Array, end: Array) -> Array:
+        """Of step n: what the energy grows or the entropy falls by, or a gap of the balance.
+
+        The balance is ``h g.(P(m) g + f(m))`` with the discrete gradient g, the mean of the
+        gradient along the step corrected along it, the tensor P at the middle m, and f what else
+        acts there.
+        """
+        system = self.system
+        at: dict[str, Any] = {"time": (n + 0.5) * self.step} if system.TIME else {}
+        value = system.entropy if law == GROWING else system.energy
+        before, after = (np.asarray(value(each, **at)) for each in (start, end))
+        size = np.maximum(1.0, np.abs([before, after]).max(axis=0))
+        if law == GROWING:
+            return np.asarray((before - after) / size)
+        chord, middle = end - start, 0.5 * (start + end)
+        places, weights = np.polynomial.legendre.leggauss(5)
+        along = [system.energy_gradient(middle + 0.5 * p * chord, **at) for p in places]
+        slope = 0.5 * np.einsum("n,ni...->i...", weights, along)
+        square = (chord * chord).sum(axis=0)
+        rest = after - before - (slope * chord).sum(axis=0)
+        slope = slope + np.where(square > 0, rest / np.where(square > 0, square, 1.0), 0.0) * chord
+        more = slope - np.asarray(system.energy_gradient(middle, **at))
+        act = np.asarray(system.rhs(middle, **at)) + system.bracket_vector(middle, more, **at)
+        gained = self.step * (slope * act).sum(axis=0)
+        gap = np.abs(after - before - gained)
+        grown = after - before if law == FALLING else 0.0
+        return np.asarray(np.maximum(gap, grown) / size)
+
     def follow_paths(self, method: str, part: int) -> Array:
         """Ends of paths of one noise by steps of a part of the step, a quarter at the least."""
         system, choice = self.system, Choice(name=method, order=1, is_noisy=True)
@@ -284,14 +358,14 @@ class Runs:
         return np.concatenate([self.run(method, step, 1, each) for each in columns], axis=1)
 
     def find_drifts(
-        self, method: str, count: int = DRIFTING
+        self, method: str, count: int = DRIFTING, target: str = ""
     ) -> tuple[dict[str, float], float, dict[str, float]]:
         """The largest drift of each integral at ends of steps, how states grew, and how drifts did.
 
         The last are exponents p of the best lines ``log drift = p log n + c`` through numbers n of
         steps that are doubled, of the median of members; what is less than a rounding is half one.
         """
-        found = self._simulate(method, self.step, count, self.states, samples=count)
+        found = self._simulate(method, self.step, count, self.states, count + 1, target)
         sizes = np.abs(found.state).max(axis=0)
         first = sizes[..., :1]
         growth = float(np.nanmax(sizes / first, initial=1.0))
@@ -299,7 +373,10 @@ class Runs:
         if isinstance(self.system, FamilySystem):
             for name, radii in self.system.find_radii(found.state).items():
                 drifts[name] = float(np.nanmax(np.abs(radii / radii[..., :1] - 1.0)))
-        exponents = {name: _find_exponent(found.change(name), found[name]) for name in found.drift}
+        exponents = {
+            name: _find_exponent(found.change(name)[..., 1:], found[name][..., 1:])
+            for name in found.drift
+        }
         return drifts, growth, exponents
 
     def find_target(self, method: str) -> str:
@@ -308,14 +385,16 @@ class Runs:
         is_slow = own is not None and own.stages > 1 and own.file not in QUICK
         return "c" if is_slow else self.target
 
-    def _simulate(self, method: str, step: float, count: int, states: Array, samples: int) -> Any:
+    def _simulate(
+        self, method: str, step: float, count: int, states: Array, samples: int, target: str = ""
+    ) -> Any:
         return self.system.simulate(
             states,
             (0.0, count * step),
             method=method,
             step=step,
             samples=samples,
-            target=self.find_target(method),
+            target=target or self.find_target(method),
             progress=False,
             seed=SEED if self.is_noisy else None,
         )
@@ -348,9 +427,18 @@ def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> M
         count: Steps of the run that tells drifts.
     """
     order, reached = _find_order(runs, method)
+    apart = _find_distance(runs, method) if runs.is_noisy else None
     defect = find_defect(runs, method.name) if method.is_poisson else None
-    drifts, growth, exponents = runs.find_drifts(method.name, count)
     failures = [] if reached else ["no run reached its end"]
+    # of the default method as users have it: its C is compiled, and compared with NumPy
+    target = "c" if method.rank == 1 else ""
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", "a wrong ", CompilerWarning)
+            drifts, growth, exponents = runs.find_drifts(method.name, count, target)
+    except CompilerWarning:
+        drifts, growth, exponents = runs.find_drifts(method.name, count, "numpy")
+        failures.append("its C is another method than its NumPy")
     shy = SHY_OF_PATHS if runs.is_noisy else SHY
     if order is not None and not order > method.order - shy:
         failures.append(f"its order is {order:.1f}, and {method.order} is claimed")
@@ -362,7 +450,14 @@ def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> M
         for name, drift in missed.items()
         if not drift < DRIFT * growth**2
     ]
-    compared = (order is not None) + (defect is not None) + len(missed)
+    if apart is not None and not apart[0] < apart[1]:
+        failures.append(f"its paths end {apart[0]:.1e} from those of {apart[2]}")
+    laws = {law: runs.find_gap(law, method.name) for law in method.laws}
+    failures += [
+        f"{law} is missed by {gap:.1e}" for law, gap in laws.items() if not gap < LAW * growth**2
+    ]
+    compared = (order is not None) + (apart is not None) + (defect is not None)
+    compared += len(missed) + len(laws)
     return Measured(
         method=method,
         order=order,
@@ -370,6 +465,7 @@ def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> M
         drifts=drifts,
         exponents=exponents,
         grown=growth,
+        laws=laws,
         compared=compared,
         failures=tuple(failures),
     )
@@ -388,24 +484,25 @@ def _find_exponent(change: Array, values: Array) -> float:
 
 
 def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
-    """The order by three runs with steps that are halved, and whether some reached the end.
+    """The order by runs with steps that are halved, and whether some reached the end.
 
-    Where it is too low, steps may be too long for it: those of a run more are half as long. Where
-    there are roundings alone, those of a run more are twice as long, as far as they are solved; of
-    an order that is too low there, the shorter steps tell whether these are too long. Roundings
-    make the last gap larger, and the order smaller.
+    It is that of their distance from the motion. Where it is too low, steps may be too long for it:
+    those of a run more are half as long. Where there are roundings alone, those of a run more are
+    twice as long, as far as they are solved; of an order that is too low there, gaps between runs
+    with shorter steps tell whether these are too long. Roundings make the last distance larger, and
+    the order smaller.
     """
     if runs.is_noisy:
         return _compare([runs.follow_paths(method.name, part) for part in (1, 2, 4)], mean=True)
     first = runs.step * (2.0 if method.order > 4 else 1.0)
-    count, enough = runs.count, method.order - SHY
+    count, enough, end = runs.count, method.order - SHY, runs.find_end(first)
     ends = [runs.run(method.name, first / part, count * part, runs.states) for part in (1, 2, 4)]
-    order, reached = _compare(ends)
+    order, reached = _approach(ends, end)
     for power in range(1, SOONER + 1):
         if order is not None or not reached or not count >> power:
             break
         longer = runs.run(method.name, first * 2**power, count >> power, runs.states)
-        order, _ = _compare([longer, *ends[:2]])
+        order, _ = _approach([longer, *ends[:2]], end)
         if order is not None:
             shorter, _ = (order, True) if order > enough else _compare(ends, rounded=0.0)
             return None if shorter is None else max(order, shorter), True
@@ -414,9 +511,42 @@ def _find_order(runs: Runs, method: JudgedMethod) -> tuple[float | None, bool]:
         if order is None or order > enough:
             break
         ends = [*ends[1:], runs.run(method.name, first / part, count * part, runs.states)]
-        again, _ = _compare(ends)
+        again, _ = _approach(ends, end)
         order = order if again is None else again
     return order, reached
+
+
+def _approach(ends: list[Array], end: Array) -> tuple[float | None, bool]:
+    """The order by the ends of runs and that of the motion, and whether some reached it.
+
+    It is that of the last two distances that are no roundings; None where there are none.
+
+    Args:
+        ends: States, with halved steps.
+        end: Those of the motion.
+    """
+    reached = np.isfinite([*ends, end]).all(axis=(0, 1))
+    if not reached.any():
+        return None, False
+    end = end[:, reached]
+    far = [float(np.abs(each[:, reached] - end).max()) for each in ends]
+    seen = [pair for pair in pairwise(far) if pair[1] > ROUNDED * float(np.abs(end).max())]
+    return (math.log2(seen[-1][0] / seen[-1][1]) if seen else None), True
+
+
+def _find_distance(runs: Runs, method: JudgedMethod) -> tuple[float, float, str]:
+    """How far paths end from those of another method, how far they may, and the other's name.
+
+    Both come closer to the path by as much as halved steps move them, about.
+    """
+    other = "midpoint" if method.name == "heun" else "heun"
+    ends = [[runs.follow_paths(x, part) for part in (2, 4)] for x in (method.name, other)]
+    reached = np.isfinite(ends).all(axis=(0, 1, 2))
+    if not reached.any():
+        return math.nan, 0.0, other
+    (two, four), (others, last) = ([x[:, reached] for x in pair] for pair in ends)
+    moved = np.mean(np.abs(two - four)) + np.mean(np.abs(others - last))
+    return float(np.mean(np.abs(four - last))), float(2.0 * moved), other
 
 
 def _compare(
