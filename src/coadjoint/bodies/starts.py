@@ -30,11 +30,8 @@ from coadjoint.exact import dense
 from coadjoint.solve.strands import NODES, find_steps
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.bodies.energy import Strand
-
-    Array = NDArray[np.float64]
 
 #: Steps along the strand, at least.
 STEPS: Final = 64

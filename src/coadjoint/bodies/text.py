@@ -28,11 +28,8 @@ from coadjoint.spec import Spec, read_spec_text
 from coadjoint.spec.core.components import kept_places, matrix_size
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.spec.model import Observable, Parameter
-
-    Array = NDArray[np.float64]
 
 #: Names for what the strand has not, in the order in which they are tried.
 _NAMES: Final = {

@@ -15,7 +15,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from coadjoint.crosscheck.points import ODD_SIZES, Array, Batch, Points
+from coadjoint.array_types import Array
+from coadjoint.crosscheck.points import ODD_SIZES, Batch, Points
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.lower.program import evaluate, settled

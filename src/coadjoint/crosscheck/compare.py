@@ -15,10 +15,11 @@ from typing import Final
 
 import numpy as np
 
+from coadjoint.array_types import Array
 from coadjoint.crosscheck.columns import find_exact
 from coadjoint.crosscheck.hard import BATCHES, draw_usable, hard_batches
 from coadjoint.crosscheck.oracle import Bounded, distance_in_envelopes, errors
-from coadjoint.crosscheck.points import Array, Batch
+from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 

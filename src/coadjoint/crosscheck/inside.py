@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from coadjoint.crosscheck.points import Array
+from coadjoint.array_types import Array
 from coadjoint.derive import Equations
 from coadjoint.derive.domain import region
 from coadjoint.derive.setting import once

@@ -18,9 +18,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from coadjoint.array_types import Array
 from coadjoint.lower.program import Program, run
 
-Array = NDArray[np.float64]
 #: Evaluates one function.
 Evaluate = Callable[["Batch"], Array]
 

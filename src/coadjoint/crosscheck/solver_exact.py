@@ -17,6 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from coadjoint.array_types import Array
 from coadjoint.crosscheck import methods
 from coadjoint.crosscheck.oracle import (
     CONTEXT,
@@ -25,7 +26,7 @@ from coadjoint.crosscheck.oracle import (
     call,
     exact,
 )
-from coadjoint.crosscheck.points import Array, Batch
+from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.recurrences import (
     SLOPES,
     bounded_coefficients,

@@ -19,11 +19,11 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
+from coadjoint.array_types import Array
 from coadjoint.build.cache import fetch, store
 from coadjoint.build.compiler import compile_kernel, find_compiler
 from coadjoint.build.library import find_key
 from coadjoint.build.source import Source
-from coadjoint.crosscheck.points import Array
 from coadjoint.errors import OutputError
 from coadjoint.lower.compositions import list_schedules
 from coadjoint.lower.mapped import list_maps

@@ -21,8 +21,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from coadjoint.array_types import Array
 from coadjoint.crosscheck.compare import Figures
-from coadjoint.crosscheck.points import Array, Batch
+from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.recurrences import TRIES, check_recurrences, draw_points
 from coadjoint.crosscheck.solver_exact import START, Solvers
 from coadjoint.crosscheck.solver_objects import (

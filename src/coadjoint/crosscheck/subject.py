@@ -16,9 +16,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from coadjoint.array_types import Array
 from coadjoint.crosscheck.inside import points_inside
 from coadjoint.crosscheck.oracle import Reference
-from coadjoint.crosscheck.points import Array, Batch, Points, safe_exponent
+from coadjoint.crosscheck.points import Batch, Points, safe_exponent
 from coadjoint.crosscheck.replay import Replayed
 from coadjoint.derive.mechanics.iteration import SETTLE, SETTLE_LAST
 from coadjoint.derive.reference import Reference as Derived

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from coadjoint.array_types import Array
 from coadjoint.crosscheck.oracle import Reference
-from coadjoint.crosscheck.points import Array, Batch
+from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.lower.program import Program
 from coadjoint.solver_kinds import SOLVER, SolverKind

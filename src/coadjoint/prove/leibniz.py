@@ -35,9 +35,8 @@ from coadjoint.derive.fields.rings import Rings
 from coadjoint.exact import Element
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from coadjoint.array_types import Array
 
-    Array = NDArray[np.float64]
     #: Of theta.
     Function = Callable[[Array], Array]
     #: Of the order of a derivative and the number of a row of the bracket, its matrix.

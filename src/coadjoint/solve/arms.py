@@ -19,11 +19,8 @@ import numpy as np
 from coadjoint.errors import CoadjointError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Largest part of Y that is no ``Omega x s``: the generated functions round.
 ROUNDED: Final = 1e-9

@@ -21,10 +21,9 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.functions import Values
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Names of what is missing that a message lists at the most.
 MOST_NAMES = 12

@@ -24,15 +24,12 @@ from coadjoint.solve.occurrences import Events
 from coadjoint.solve.step_tables import read_dense
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.declared import Quantity
     from coadjoint.solve.dense_output import Dense
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 def import_extra(package: str, asked: str) -> Any:

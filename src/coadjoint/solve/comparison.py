@@ -21,13 +21,10 @@ from coadjoint.solve.family import FamilySystem
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Members by which a fresh object is compared with its twin: they fill no whole number of vectors.
 PROBES: Final = 11

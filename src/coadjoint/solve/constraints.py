@@ -20,13 +20,10 @@ from coadjoint.solve.driving import Following
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.declared import Quantity
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: How far off the constraints a start may be, for digits that were typed; as for attitudes.
 TYPED = 1e-9

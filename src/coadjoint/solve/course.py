@@ -17,7 +17,8 @@ from coadjoint.solve.kinks import Kinks
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
+
     Place = tuple[int, ...]
 
 

@@ -26,12 +26,9 @@ from coadjoint.solve.roots import Knots, find_knots, find_roots
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array, Mask, Places
     from coadjoint.solve.roots import Function
     from coadjoint.solve.taken import Enclosed, Steps
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
-    Places = NDArray[np.intp]
 
 EPS: Final = float(np.finfo(float).eps)
 #: The part of a step over which the slope at its end is taken.

@@ -21,11 +21,8 @@ from coadjoint.solve.labels import symbol_label, tell_time, unit_label
 from coadjoint.solve.scenes import TIME_MAP, angles, choose_view, draw_ball, style_space
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: How many times are shown.
 SHOWN: Final = 5

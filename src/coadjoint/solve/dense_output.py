@@ -24,12 +24,8 @@ from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.taken import Steps
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array, Places
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 #: The degree for which interpolants of SciPy are taken.
 SCIPY_DEGREE = 16

@@ -19,13 +19,10 @@ from coadjoint.solve.driving import Following
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.declared import Bound
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: How closely the end of a trajectory is found, as a part of the last step.
 RESOLUTION = 1e-12

@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 
 def find_drift(solution: Solution) -> dict[str, Any]:

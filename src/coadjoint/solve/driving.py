@@ -18,11 +18,8 @@ from coadjoint.errors import KernelArgumentError, KernelTypeError
 from coadjoint.solve.arrays import as_float64, pack_inputs
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: How samples say what inputs are between them.
 INTERPOLATIONS: Final = ("previous", "linear")

@@ -20,10 +20,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from coadjoint.array_types import Array, Mask
 
 #: Roundings of an operation, relative to the largest value.
 ROUNDED: Final = 8 * float(np.finfo(float).eps)

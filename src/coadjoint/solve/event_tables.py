@@ -20,11 +20,8 @@ from coadjoint.solve.events import Event
 from coadjoint.solve.occurrences import Events, Occurrences
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 def list_columns(events: Events) -> dict[str, list[Any]]:

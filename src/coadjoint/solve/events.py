@@ -19,12 +19,9 @@ import numpy as np
 from coadjoint.errors import KernelArgumentError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.formulas import Formula, Rows
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Names of the time where a system does not declare one of its own.
 TIME: Final = ("t", "time")

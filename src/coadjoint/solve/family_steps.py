@@ -35,16 +35,13 @@ from coadjoint.solve.runge_kutta import DormandPrince8
 from coadjoint.solve.twins import StepwiseStepper
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.methods.sequence import Part
     from coadjoint.solve.steps import Lanes, Method
-
-    Array = NDArray[np.float64]
 
 #: Numbers that a first call works on, about: it ends within some hundredths of a second.
 FIRST_NUMBERS: Final = 1 << 14

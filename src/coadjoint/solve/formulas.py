@@ -24,9 +24,8 @@ from coadjoint.spec.core.faults import ExpressionError, fault_at
 from coadjoint.spec.core.shapes import shape_of, words
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from coadjoint.array_types import Array
 
-    Array = NDArray[np.float64]
     Shape = tuple[int, ...]
 
 

@@ -37,15 +37,12 @@ from coadjoint.solve.surroundings import Driven, Surroundings
 from coadjoint.solve.twins import StepwiseStepper
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.request import Request
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Inputs that change on the way.
 _VARYING = Previous | Linear | Function

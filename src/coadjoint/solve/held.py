@@ -16,7 +16,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
+
     Arrays = dict[str, NDArray[np.generic]]
 
 

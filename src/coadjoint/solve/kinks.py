@@ -16,9 +16,9 @@ from coadjoint.solve.ensemble import MET
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.ensemble import Ensemble
 
-    Array = NDArray[np.float64]
     Place = tuple[int, ...]
 
 #: Roundings of time: a kink in time is met again where the time after it is rounded to before it.

@@ -18,13 +18,10 @@ from coadjoint.solve.occurrences import Events, Occurrences
 from coadjoint.solve.surroundings import enclose, make_function
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.events import Sought
     from coadjoint.solve.surroundings import Surroundings
     from coadjoint.solve.taken import Steps
-
-    Array = NDArray[np.float64]
 
 
 class Ending(NamedTuple):

@@ -16,12 +16,9 @@ import numpy as np
 from coadjoint.solve.labels import symbol_label, tell_time, unit_label
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.families import Index, Torus
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: How many times are shown.
 SHOWN: Final = 4

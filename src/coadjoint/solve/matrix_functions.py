@@ -19,9 +19,7 @@ import numpy as np
 from coadjoint.algebra.harmonics import list_towers
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 
 def show_on_sphere(entries: Array, heights: Array, longitudes: Array) -> Array:

@@ -15,9 +15,8 @@ from coadjoint.errors import KernelArgumentError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 
 def take_member(solution: Solution, place: tuple[int, ...]) -> Solution:

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
+
     Words = NDArray[np.uint64]
 
 _WORD: Final = np.uint64(0xFFFFFFFF)

@@ -23,10 +23,8 @@ from coadjoint.solve.surroundings import observe
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array, Places
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

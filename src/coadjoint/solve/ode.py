@@ -16,11 +16,8 @@ from coadjoint.solve.driving import Function, Linear, Previous, make_signal
 from coadjoint.solve.noisy import has_noise
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 class Ode:

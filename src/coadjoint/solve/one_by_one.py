@@ -24,10 +24,9 @@ from coadjoint.solve.solution import Solution
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 def simulate_one_by_one(

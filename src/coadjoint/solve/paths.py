@@ -17,9 +17,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Pieces of each interval between samples: points that are drawn, and panels of the integral.
 PIECES = 4

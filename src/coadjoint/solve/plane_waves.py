@@ -23,9 +23,9 @@ from coadjoint.solve.spectral import require_mean_zero
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.torus import TorusSystem
 
-    Array = NDArray[np.float64]
     Factors = Mapping[tuple[int, int], Array]
 
 #: The part of a field that waves beyond K may be where they are 0 but for rounding.

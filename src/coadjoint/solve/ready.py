@@ -18,9 +18,7 @@ from coadjoint.render.targets.protocol import FEW, Evaluate
 from coadjoint.solve.quantities import Quantities
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 _FLOAT64 = np.dtype(np.float64)
 #: Integers up to here are doubles.

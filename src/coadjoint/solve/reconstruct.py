@@ -16,13 +16,10 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.arrays import pack, tell_member
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.declared import Quantity
     from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 def is_asked(asked: Any) -> bool:

@@ -28,16 +28,12 @@ from coadjoint.solve.lookout import (
 from coadjoint.solve.terms import write_terms
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array, Places
     from coadjoint.solve.driving import Signal
     from coadjoint.solve.ensemble import Ensemble, Record
     from coadjoint.solve.events import Sought
     from coadjoint.solve.occurrences import Events
     from coadjoint.solve.surroundings import Surroundings
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 
 @dataclass

@@ -29,12 +29,9 @@ from coadjoint.solve.reconstruct import is_asked
 from coadjoint.solver_kinds import RECONSTRUCTION, SOLVER, SolverKind
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.events import Sought
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Explicit methods of SciPy, then those that use the Jacobian; each is ``scipy:NAME``.
 EXPLICIT, IMPLICIT = ("DOP853", "RK45", "RK23"), ("Radau", "BDF", "LSODA")

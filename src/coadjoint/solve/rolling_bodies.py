@@ -19,11 +19,8 @@ from coadjoint.solve.scenes import angles
 from coadjoint.solve.sliding_bodies import follow_sliding
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Rings of a surface and points of each.
 ROWS, COLUMNS = 24, 48

@@ -25,11 +25,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
-    Places = NDArray[np.intp]
+    from coadjoint.array_types import Array, Mask, Places
 
 #: The value and the size of its terms, ``(..., R)``, at parts ``(..., R)`` of the steps ``(R,)``.
 Function = Callable[["Places"], Callable[["Array"], tuple["Array", "Array"]]]

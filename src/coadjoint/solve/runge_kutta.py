@@ -28,10 +28,7 @@ from coadjoint.solve.steps import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from coadjoint.array_types import Array, Mask
 
 
 def end_where_rates_end(

@@ -22,9 +22,8 @@ from coadjoint.solve.linkages import find_lengths, find_pendulum
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: A map of colours that is even in lightness and stays apart for colour-blind readers.
 TIME_MAP: Final = "viridis"

@@ -33,14 +33,13 @@ from coadjoint.solve.surroundings import Driven, Surroundings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
     from scipy.integrate import OdeSolver
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.system import System
     from coadjoint.solve.wave_checkpoints import WaveCheckpoint
     from coadjoint.solve.wave_gauss import Made
 
-    Array = NDArray[np.float64]
     Rates = Callable[[float, Array], Array]
 
 #: Methods of SciPy that know no more of earlier steps than how long the next one is.

@@ -20,12 +20,8 @@ from coadjoint.solve.plot import begin_figure, finish
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from coadjoint.solve.occurrences import Events, Occurrences
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: The least part of its own size by which a component varies that is drawn by default.
 VARIES = 1e-9

@@ -21,11 +21,8 @@ from coadjoint.solve.arms import ROUNDED, Arms, list_vectors
 from coadjoint.solve.reconstruct import turn_upright
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Largest part of a velocity of the contact, over the largest velocity, that leaves the plane:
 #: motions keep constraints to their tolerances.

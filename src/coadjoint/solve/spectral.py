@@ -36,13 +36,12 @@ from coadjoint.solve.quantities import Quantities
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.families import Spectral
     from coadjoint.methods import JudgedMethod
     from coadjoint.solve.request import Request
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: How much larger than elsewhere a step across the ends is that is called a jump, and the least
 #: part of a field that is looked at.

@@ -33,14 +33,11 @@ from coadjoint.lower.tableau import END, STAGES, dop853
 from coadjoint.solve.arrays import pack_parameters
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.request import Request
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 #: Explicit methods of generated solvers.
 EXPLICIT: Final = ("taylor", "dop853", "rk4")

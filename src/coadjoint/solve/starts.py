@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
 
-    Array = NDArray[np.float64]
-
 
 def check_starts(system: System, request: Request, run: Ensemble, now: dict[str, Any]) -> None:
     """Have all members of a run begin in the domain and on the constraints.

@@ -18,9 +18,7 @@ from coadjoint.solve.driving import Linear, Previous, Signal
 from coadjoint.solve.recording import Polynomials
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 #: Inputs that are samples, by name.
 SAMPLED: Final = {"previous": Previous, "linear": Linear}

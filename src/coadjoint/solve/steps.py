@@ -18,8 +18,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from coadjoint.array_types import Array, Mask
 
 #: The part of the largest component below which no error can be seen.
 ROUNDING = 2.0**-48

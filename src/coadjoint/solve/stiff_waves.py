@@ -30,9 +30,9 @@ from coadjoint.solve.spectral import SpectralSystem, Waves
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array
     from coadjoint.solve.system import System
 
-    Array = NDArray[np.float64]
     Matrices = NDArray[np.complex128]
     Correct = Callable[[Array], Array]
 

@@ -33,7 +33,7 @@ from coadjoint.solve.steps import Attempt, Lanes, Left, find_fixed_step, larger
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 #: The part of the largest component by which the last sweep of a step may change it.
 SOLVED: Final = 2.0**-44

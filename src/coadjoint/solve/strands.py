@@ -35,13 +35,10 @@ from coadjoint.errors import KernelArgumentError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.families import Connection
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Points of the polynomial that stands for a field between ends.
 NEAREST: Final = 6

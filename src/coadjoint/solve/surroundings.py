@@ -23,16 +23,12 @@ from coadjoint.solve.taken import Enclosed
 from coadjoint.solve.terms import Kind, Term, list_components
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array, Places
     from coadjoint.solve.events import Sought
     from coadjoint.solve.formulas import Formula
     from coadjoint.solve.roots import Function
     from coadjoint.solve.system import System
     from coadjoint.solve.taken import Steps
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array, Places
     from coadjoint.solve.enclosures import Enclosure
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
 
 
 class Steps(Protocol):

@@ -19,12 +19,9 @@ from coadjoint.solve.paths import Path
 from coadjoint.solve.plot import begin_figure, finish
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:

@@ -28,15 +28,12 @@ from coadjoint.solve.stochastic import METHODS, Orbits
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.driving import Function
     from coadjoint.solve.ensemble import Ensemble, Record
     from coadjoint.solve.steps import Lanes, Method
     from coadjoint.solve.system import System
-
-    Array = NDArray[np.float64]
 
 
 class NumpyStepper:

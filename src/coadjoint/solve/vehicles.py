@@ -15,11 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.solution import Solution
-
-    Array = NDArray[np.float64]
 
 #: Largest sideways velocity over the size of its terms at which a wheel is said to roll: splines
 #: through the samples have errors of their own.

@@ -21,14 +21,11 @@ from coadjoint.solve.wave_gauss import WaveGauss
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.driving import Driving
     from coadjoint.solve.request import Request
     from coadjoint.solve.system import System
     from coadjoint.solve.wave_gauss import Made
-
-    Array = NDArray[np.float64]
 
 
 class WaveCheckpoint(RunFile):

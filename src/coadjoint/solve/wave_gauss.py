@@ -33,9 +33,8 @@ from coadjoint.solve.scipy_steps import NOT_SOLVED
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from coadjoint.array_types import Array
 
-    Array = NDArray[np.float64]
     #: What takes by how much stages ``(s, n)`` miss their equation to corrections of these.
     Correct = Callable[[Array], Array]
     #: Of a state and h A.

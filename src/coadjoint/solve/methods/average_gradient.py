@@ -24,11 +24,8 @@ from coadjoint.solve.methods.lie_poisson import Arc, Gradient, LiePoisson, Sweep
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.methods.lie_poisson import Bracket
-
-    Array = NDArray[np.float64]
 
 #: Nodes between the ends and their weights, of those nearer to the start: 1/2 - sqrt(5 +- 2
 #: sqrt(10/7))/6 and (322 -+ 13 sqrt(70))/1800. The middle has the rest.

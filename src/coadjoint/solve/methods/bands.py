@@ -21,9 +21,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,7 @@ from coadjoint.solve.steps import add_low, larger
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from coadjoint.array_types import Array, Mask
 
 #: Terms of the series of phi, at the most.
 TERMS: Final = 40

@@ -24,9 +24,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, Gradient, Sweep
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 #: The part of the energies at both ends that is no more than their roundings.
 ROUNDINGS: Final = 2.0**-50

@@ -34,10 +34,8 @@ from coadjoint.solve.steps import add_low
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from coadjoint.array_types import Array, Mask
     from coadjoint.solve.steps import Lanes
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
 
 _DIGITS: Final = 60
 

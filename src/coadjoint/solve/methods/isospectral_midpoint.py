@@ -24,9 +24,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, Bracket, Gradient, LiePoiss
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> IsospectralMidpoint:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 #: Vectors of a Krylov space, at the most.
 MOST: Final = 40

@@ -33,8 +33,7 @@ from coadjoint.solve.steps import Lanes, add_low
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from coadjoint.array_types import Array, Mask
 
 #: The derivative of the energy by the state, some time after that of the lanes, ``(n, N)``.
 Gradient = Callable[[Lanes, "Array", "Array"], "Array"]

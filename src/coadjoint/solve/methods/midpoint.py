@@ -14,12 +14,8 @@ from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.steps import Lanes
-
-    Array = NDArray[np.float64]
 
 
 def make(functions: Mapping[str, Callable[..., Array]], size: float, order: int) -> Midpoint:

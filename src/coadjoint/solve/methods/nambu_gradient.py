@@ -20,11 +20,8 @@ from coadjoint.solve.methods.several_gradients import SeveralGradients
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.solve.methods.lie_poisson import Arc
-
-    Array = NDArray[np.float64]
 
 
 def make(functions: Mapping[str, Any], size: float, order: int) -> NambuGradient:

@@ -19,11 +19,9 @@ from coadjoint.solve.runge_kutta import follow_cubic
 from coadjoint.solve.steps import Attempt, Lanes, Left, add_low, find_fixed_step
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array
     from coadjoint.render.targets.modules import KernelModule
 
-    Array = NDArray[np.float64]
     #: What a time adds to the state of lanes, given their parameters.
     Map = Callable[[Array, Array, Array], Array]
     #: A map, its part of the step, and the rows to which it adds something.

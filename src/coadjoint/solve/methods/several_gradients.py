@@ -21,9 +21,7 @@ from coadjoint.solve.methods.lie_poisson import Arc, LiePoisson, Sweep
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from coadjoint.array_types import Array
 
 
 class SeveralGradients(LiePoisson):

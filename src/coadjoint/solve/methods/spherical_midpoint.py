@@ -27,12 +27,8 @@ from coadjoint.solve.methods.lie_poisson import Arc, Gradient, LiePoisson, Sweep
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import NDArray
-
+    from coadjoint.array_types import Array, Mask
     from coadjoint.solve.steps import Lanes
-
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
 
 #: How far Newton's factor is from 1 at the most where its equation is solved.
 NEAR: Final = 2.0**-20

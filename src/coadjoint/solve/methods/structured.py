@@ -19,11 +19,7 @@ from coadjoint.solve.steps import Attempt, Lanes, Left, find_fixed_step
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from coadjoint.solve.methods.lie_poisson import LiePoisson
-
-    Array = NDArray[np.float64]
 
 
 class Structured:
