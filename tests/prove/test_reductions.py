@@ -294,3 +294,15 @@ def test_a_component_is_given_once():
     """Alone or with the vector."""
     with pytest.raises(SpecError, match="'Pi1' is given twice"):
         spec(SWING, ('Pi3 = "0"', 'Pi = "vector(0, Gamma1, 0)"'))
+
+
+def test_a_chart_gives_the_components_that_are_left():
+    """The angle of the pendulum; with the other sign of its rate it is none."""
+    chart = """[charts.angle]
+variables = { a = [], L = [] }
+map = { Pi2 = "L", Gamma1 = "sin(a)", Gamma3 = "cos(a)" }
+rates = { a = "-L/I2", L = "-w*sin(a)" }
+[claims]"""
+    assert prove_claims(spec(SWING, ("[claims]", chart))).holds
+    wrong = chart.replace("-L/I2", "L/I2")
+    assert not prove_claims(spec(SWING, ("[claims]", wrong))).holds

@@ -20,7 +20,7 @@ from coadjoint.spec.core.formulas import Formula, Scope, read_fitting
 from coadjoint.spec.core.parts import Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Naming, Reading, Table
-from coadjoint.spec.sections.reduction import REDUCTION
+from coadjoint.spec.sections.reduction import REDUCTION, list_left
 from coadjoint.spec.sections.state import state_of
 from coadjoint.spec.sections.variables import VARIABLES
 
@@ -109,7 +109,8 @@ def _read_chart(reading: Reading, name: str, part: ChartPart) -> DeclaredChart:
         )
     reduction = REDUCTION.of(reading)
     fixed = {} if reduction is None else reduction.section
-    state = {v.name: v.value_shape for v in state_of(VARIABLES.of(reading)) if v.name not in fixed}
+    left = list_left(state_of(VARIABLES.of(reading)), fixed)
+    state = {v.name: v.value_shape for v in left}
     given = [each for each in _MOTIONS if getattr(part, each)]
     if len(given) != 1:
         problem = f"the chart has {list_names(given) or 'no motion'}"

@@ -6,7 +6,7 @@ That the motion keeps it is proved later. Read next: `coadjoint.derive.reduction
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -65,10 +65,9 @@ def read_reduction(reading: Reading, part: ReductionPart) -> Submanifold:
         )
         raise reading.fault(("reduction", "section"), problem, list_names(part.section), expected)
     roles = tuple(dict.fromkeys(variable.role for variable in variables))
-    split = [replace(v, given=tuple(parts)) for v in known.values() if _is_split(v, part.section)]
-    pieces = {each.name: each.parts for each in split}
-    named = (p for q in reading.quantities for p in pieces.get(q.name, (q,)))
-    left: list[Declared] = [each for each in named if each.name not in part.section]
+    own = list_left(variables, part.section)
+    left: list[Declared] = [q for q in reading.quantities if q.name not in known]
+    left += own
     of_left = make_scope("a section", roles, left)
     scope = reading.scope("a function that vanishes", roles, driven=())
     return Submanifold(
@@ -104,9 +103,14 @@ def _check_alone(reading: Reading) -> None:
         raise reading.fault(("reduction",), problem, "hamiltonian", expected)
 
 
-def _is_split(variable: Variable, section: Mapping[str, str]) -> bool:
-    """Whether a section gives some components of a variable, one by one."""
-    return bool({*variable.components} & section.keys() - {variable.name})
+def list_left(variables: Iterable[Variable], section: Mapping[str, object]) -> list[Variable]:
+    """The variables that a section leaves, and the components of those of which it gives some."""
+    left = list[Variable]()
+    for each in variables:
+        given = tuple(c for c in each.components if c in section and c != each.name)
+        parts = replace(each, given=given).parts
+        left += [part for part in parts if part.name not in section and each.name not in section]
+    return left
 
 
 def _check_eliminated(
