@@ -76,7 +76,7 @@ FIELDS = (
     *core_of(
         "lie-poisson",
         "fields/generic",
-        "_find_slopes defects",
+        "find_slopes defects",
         systems=("hunter_saxton", "spin_chain"),
         tests=(*WAVES,),
     ),

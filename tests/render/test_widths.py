@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from coadjoint.notation.trees import write_tree
 from coadjoint.render.document import render_document
-from coadjoint.render.sums import fit_paper, split_sides
+from coadjoint.render.sums import _split_sum, fit_paper, split_sides
 from coadjoint.render.widths import PAPER, SMALLEST
+from coadjoint.spec.core.expressions import read_expression
 
 X, PLUS = "<mi>x</mi>", "<mo>+</mo>"
 
@@ -63,3 +65,13 @@ def test_a_page_has_the_size_of_its_widest_line_on_paper():
     shown = render_document({**page, "sections": sections}, "html")
     assert shown.count('style="--fit: 0.5"') == shown.count('style="--fit') == 1
     assert "var(--fit, 1)" in shown[shown.index("@media print") :]
+
+
+def test_what_is_split_keeps_functions_printable():
+    """A character that is not printable would be shown by its number on the page."""
+    shapes = {"a": (3,), "b": (3,)}
+    wide = " + ".join(["diag(a)*b"] * 9)
+    pieces = list(_split_sum(write_tree(read_expression(wide), shapes).mathml))
+    assert len(pieces) > 1
+    assert "".join(pieces).count("&#x2061;") == 9
+    assert all(piece.isprintable() for piece in pieces)

@@ -120,4 +120,5 @@ def _list_top(element: ET.Element) -> Iterator[ET.Element]:
 def _write(elements: Iterable[ET.Element]) -> str:
     """Elements as text."""
     whole = "".join(ET.tostring(each, encoding="unicode") for each in elements)
-    return re.sub(r" />", "/>", whole)
+    # what stands between a function and its argument is not printable, and terminals escape it
+    return re.sub(r" />", "/>", whole).replace("\u2061", "&#x2061;")

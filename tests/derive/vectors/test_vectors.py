@@ -143,13 +143,13 @@ BOOKS = {
         " + Pi[i] x (diag(I)^(-1) Pi[i])",
         "n = (K2 + K3 - K1, K3 + K1 - K2, K1 + K2 - K3)",
     ],
-    "sl2_r2": ["dmu/dt = [A^T, mu] - p (x) v + 1/2 (p . v) Id", "dp/dt = A^T p"],
+    "sl2_r2": ["dmu/dt = [A^T, mu] - p (x) v + 1/2 (p . v) diag(1, 1)", "dp/dt = A^T p"],
     "se2_pendulum": ["db/dt = -m J b", "J = rows((0, -1), (1, 0))"],
     "sp2_momentum": ["dX/dt = (X2, X1, -2 X3) x (k + b X1, 1/m, 0)"],
     "maxwell_bloch": ["dx/dt = (0, x2, x3) x (x1, 0, 1)"],
     "c3_oscillators": ["dq/dt = (w1 p1, w2 p2, w3 p3) + (c p2, c p1, 0) + k (q x p) x q"],
     "veselova_so4": [
-        "d(1/2 M + 1/2 N)/dt = rotate(Gamma^*, lambda)/(Gamma . Gamma) + 1/2 U x M + 1/2 U x N",
+        "d(M/2 + N/2)/dt = rotate(Gamma^*, lambda)/(Gamma . Gamma) + 1/2 U x M + 1/2 U x N",
     ],
 }
 

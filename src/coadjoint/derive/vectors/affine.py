@@ -30,8 +30,8 @@ from coadjoint.exact.linear import Span
 from coadjoint.spec.core import tree
 from coadjoint.spec.model import Variable
 
-#: What lines call the momentum, the velocity and the identity.
-LETTERS = ("mu", "A", "Id")
+#: What lines call the momentum and the velocity.
+LETTERS = ("mu", "A")
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def affine_lines(equations: Equations) -> tuple[list[VectorLine], frozenset[str]
     if not all(field.is_zero(a - b) for a, b in zip(given, [*right, *moved], strict=True)):
         return [], frozenset()
     lines = _write(parts, sign)
-    for letter, value in zip(LETTERS, (mu, shown), strict=False):
+    for letter, value in zip(LETTERS, (mu, shown), strict=True):
         written = _write_matrix(field, value)
         if written is None:
             return [], frozenset()
@@ -131,7 +131,7 @@ def weigh_dual(
 
 def _write(parts: AffineParts, sign: int) -> list[VectorLine]:
     """The equations, of the sign of a side."""
-    mu, A, one = map(tree.Name, LETTERS)
+    mu, A = map(tree.Name, LETTERS)
     p, v = tree.Name(parts.momentum.name), tree.Name(parts.velocity.name)
     turned = tree.Call(function="transpose", arguments=(A,))
     sides = (turned, mu) if sign > 0 else (mu, turned)
@@ -141,6 +141,9 @@ def _write(parts: AffineParts, sign: int) -> list[VectorLine]:
     ]
     if len(parts.turning) < parts.rows**2:
         trace = tree.Call(function="dot", arguments=(p, v))
+        ones = (tree.Number(Fraction(1)),) * parts.rows
+        along = tree.Call(function="vector", arguments=ones)
+        one = tree.Call(function="diag", arguments=(along,))
         right.append(Addend(Fraction(sign, parts.rows), (trace,), vector=one))
     moved = Addend(Fraction(sign), vector=tree.Binary(operator="*", left=turned, right=p))
     return [VectorLine(rate_of(mu), total_of(right)), VectorLine(rate_of(p), total_of([moved]))]

@@ -47,7 +47,6 @@ def vector_form(equations: Equations) -> VectorForm:
         covered = {line.left for line in found}
         missing = [each for each in missing if rate_of(tree.Name(each)) not in covered]
         lines += found
-        told = "Id is the identity" if found else told
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and balance is not None:
