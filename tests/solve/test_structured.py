@@ -280,3 +280,33 @@ def test_momenta_in_space_stay_where_forces_depend_on_the_attitude(method, least
     )
     assert least <= run.drift["J"] < most
     assert run.drift["energy"] > 1e-6
+
+
+KIRCHHOFF = """
+title = "A body in a fluid"
+routes = ["lie-poisson"]
+[algebra]
+name = "se(3)"
+[variables]
+L = { role = "momentum", block = "rotation" }
+P = { role = "momentum", block = "translation" }
+[hamiltonian]
+h = "L1^2/2 + L2^2/4 + L3^2/6 + P1^2/2 + P2^2/3 + P3^2/4 + L1*P1/9"
+"""
+
+
+def test_a_body_without_impulse_turns_as_one_on_its_sphere(tmp_path):
+    """Where P is 0 the orbit is the sphere of L, and the step that of a free body."""
+    (tmp_path / "kirchhoff_own.toml").write_text(KIRCHHOFF)
+    fluid = coadjoint.load(tmp_path / "kirchhoff_own.toml")
+    start = np.array([[0.3, 0.5, 0.9, 0, 0, 0], [0.3, 0.5, 0.9, 0.1, 0.2, 0.3], [0.0] * 6]).T
+    given = {"method": "spherical_midpoint", "step": 0.1, "samples": 101}
+    runs = [fluid.simulate(start, (0, 10), target=target, **given) for target in ("c", "numpy")]
+    assert (runs[0].status == "OK").all()
+    assert (runs[0].state == runs[1].state).all()
+    free = rigid_body.simulate([0.3, 0.5, 0.9], (0, 10), {"I": [1, 2, 3]}, **given)
+    assert runs[0].state[:3, 0] == pytest.approx(free.state, abs=1e-14)
+    assert not runs[0].state[3:, 0].any()
+    assert (
+        np.abs(runs[0].state[:3, 1] - free.state).max() > 1e-3
+    )  # with impulse it is another motion

@@ -145,6 +145,7 @@ class Scale:
     def __init__(self, state: Array, offset: Array, sphere: Sphere) -> None:
         self.sphere = sphere
         square, mixed = _measure(state, sphere)
+        square = _or_tangent(square, state, sphere)
         # half the inverse of the square; of a vector that is 0, anything will do
         self.half = 0.5 / np.where(square > 0.0, square, 1.0)
         self.slant = -4.0 * self.half * self.half * mixed
@@ -167,6 +168,7 @@ class Scale:
             change, so that lanes are held that are done.
         """
         square, mixed = _measure(state, self.sphere)
+        square = _or_tangent(square, state, self.sphere)
         both = self.scale * self.scale
         part = self.half * square
         self.rest = rest = 1.5 - part * both
@@ -225,3 +227,11 @@ def _measure(state: Array, sphere: Sphere) -> tuple[Array, Array]:
         return square, np.zeros(square.shape)
     d, e, f = (state[row] for row in sphere.tangent)
     return square, a * d + b * e + c * f
+
+
+def _or_tangent(square: Array, state: Array, sphere: Sphere) -> Array:
+    """The square of a length; of a vector that is 0, whose orbit is a sphere, of its tangent."""
+    if not sphere.tangent:
+        return square
+    d, e, f = (state[row] for row in sphere.tangent)
+    return np.where(square == 0.0, d * d + e * e + f * f, square)
