@@ -7,6 +7,7 @@ import os
 import random
 import re
 import signal
+import tomllib
 from collections import Counter
 from fractions import Fraction
 from pathlib import Path
@@ -39,6 +40,8 @@ SYSTEMS = tuple(
     or (re.search(r"^\[(index|truncation)\]$", text, re.MULTILINE) is None and name not in FIELDS)
 )
 FAMILIES = tuple(name for name in _TEXTS if name not in (*SYSTEMS, *FIELDS))
+#: The routes of each system, for lists of cases: to read the whole specs takes a second.
+ROUTES_OF = {name: tuple(tomllib.loads(_TEXTS[name])["routes"]) for name in SYSTEMS}
 
 
 @pytest.fixture(params=SYSTEMS)
@@ -70,6 +73,19 @@ def pytest_configure(config):
     specs.SEARCH_EVERYWHERE = everything
     if not everything:  # what compilers make of a text is for tests of compilers and of the ladder
         os.environ.setdefault(OPTIMIZE, "0")
+
+
+@pytest.fixture(scope="session")
+def shared_folder(tmp_path_factory):
+    """A folder of all processes of a run."""
+    folder = tmp_path_factory.getbasetemp()
+    return folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+
+
+@pytest.fixture(scope="session")
+def shared_cache(shared_folder):
+    """Their cache, which holds nothing of the user's."""
+    return shared_folder / "shared-cache"
 
 
 @pytest.fixture

@@ -4,12 +4,14 @@ The texts here have every member and every term of every sum; nothing of the lan
 used, so that the two ways share no step that writes sums out.
 """
 
+from functools import cache
 from itertools import combinations
 from random import Random
 
 import pytest
 import sympy
 
+from coadjoint import pipeline
 from coadjoint.derive import derive
 from coadjoint.derive.indexed import derive_family
 from coadjoint.errors import CrossCheckError
@@ -660,6 +662,12 @@ def read(text, *changes, sizes=None):
         assert old in text, old
         text = text.replace(old, new)
     return read_spec_text(text, "sample.toml", sizes or {})
+
+
+@cache
+def render(text, name="sample"):
+    """Its files, proved; made once in a process, for tests that change nothing of the engine."""
+    return pipeline.render(read_spec_text(text, f"{name}.toml"))
 
 
 def family_of(spec):

@@ -43,10 +43,10 @@ def commands():
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """A working folder with the README's spec and a cache of its own."""
+def folder(tmp_path, monkeypatch, shared_cache):
+    """A working folder with the README's spec, and a cache of tests' own."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("COADJOINT_CACHE", str(shared_cache))
     spec, *_ = blocks("toml")
     (tmp_path / "gyrostat.toml").write_text(spec, encoding="utf-8")
     return tmp_path

@@ -1,5 +1,6 @@
 """The main job: writes what passed, nothing of what did not, the same bytes everywhere."""
 
+import fcntl
 import hashlib
 import json
 import os
@@ -11,7 +12,9 @@ import time
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from coadjoint.cli import main
 from coadjoint.errors import ClaimError, DriftError, SpecError
 from coadjoint.fingerprint import template_hashes
 from coadjoint.regenerate import _guess_work, _Source, check, regenerate
@@ -25,13 +28,18 @@ from tests.specs import RIGID_BODY
 from tests.trees_of_files import ROOT, coadjoint, copy_source, environment, tree
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A source tree with one system, generated once and unchanged."""
-    folder = copy_source(tmp_path_factory.mktemp("made"), "rigid_body")
-    done = coadjoint(folder, "regenerate")
-    assert done.returncode == 0, done.stderr
-    assert coadjoint(folder, "regenerate", "--check").returncode == 0
+@pytest.fixture(scope="session")
+def made(shared_folder):
+    """A source tree with one system, generated once for all processes and unchanged."""
+    folder = shared_folder / "made"
+    with (shared_folder / "made.lock").open("a+") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not lock.seek(0, os.SEEK_END):  # nobody has made it yet
+            folder.mkdir()
+            done = coadjoint(copy_source(folder, "rigid_body"), "regenerate")
+            assert done.returncode == 0, done.stderr
+            assert coadjoint(folder, "regenerate", "--check").returncode == 0
+            lock.write("made")
     return folder
 
 
@@ -43,9 +51,23 @@ def checkout(made, tmp_path):
 
 
 @pytest.fixture
-def cache(monkeypatch, tmp_path):
-    """A cache of the test's own."""
-    monkeypatch.setenv("COADJOINT_CACHE", str(tmp_path / "cache"))
+def run(checkout, monkeypatch):
+    """A command in this process, whose engine is that of the copy."""
+    monkeypatch.chdir(checkout)
+    monkeypatch.setenv("COADJOINT_CACHE", str(checkout / "cache"))
+
+    def invoke(*words):
+        result = CliRunner().invoke(main, words)
+        assert result.exception is None or isinstance(result.exception, SystemExit)
+        return result
+
+    return invoke
+
+
+@pytest.fixture
+def cache(monkeypatch, shared_cache):
+    """A cache of tests' own: of what is compiled, since each has a folder of its own."""
+    monkeypatch.setenv("COADJOINT_CACHE", str(shared_cache))
 
 
 def write_spec(folder, name, *changes):
@@ -196,15 +218,14 @@ def test_a_false_claim_writes_nothing_and_shows_the_point(tmp_path, cache):
     assert (output / "true_body" / "kernel.c").is_file()
 
 
-def test_the_command_for_a_false_claim_exits_with_one(checkout):
+def test_the_command_for_a_false_claim_exits_with_one(checkout, run):
     """The counterexample stands on standard error, the generated tree as it was."""
     before = tree(checkout / "generated")
     spec = checkout / "derivations" / "rigid_body.toml"
     spec.write_text(spec.read_text().replace('"dot(Pi, Pi)"', '"dot(Pi, Pi)", "Pi1"'))
-    done = coadjoint(checkout, "regenerate")
-    assert done.returncode == 1
+    done = run("regenerate")
+    assert done.exit_code == 1
     assert "Pi1 is a Casimir" in done.stderr
-    assert "Traceback" not in done.stderr
     assert tree(checkout / "generated") == before
 
 
@@ -221,44 +242,47 @@ def test_the_command_for_a_false_claim_exits_with_one(checkout):
         pytest.param("templates/package/__init__.py.j2", marks=pytest.mark.campaign),
     ],
 )
-def test_check_notices_one_changed_byte(checkout, victim):
+def test_check_notices_one_changed_byte(checkout, run, victim):
     """Generated files, templates and specs: even a change that alters no kernel."""
     path = checkout / victim
     comment = {".j2": "{# remark #}", ".toml": "# remark"}.get(path.suffix, " ")
     path.write_text(path.read_text() + comment)
-    done = coadjoint(checkout, "regenerate", "--check")
-    assert done.returncode == 1
+    if victim.startswith("templates"):  # of this engine, which is not that of the copy any more
+        done = coadjoint(checkout, "regenerate", "--check")
+        assert done.returncode == 1
+    else:
+        done = run("regenerate", "--check")
+        assert done.exit_code == 1
     assert "differ from a fresh run" in done.stderr
 
 
-def test_check_notices_missing_and_extra_files(checkout):
+def test_check_notices_missing_and_extra_files(checkout, run):
     """Both are named; nothing is written by a check."""
     (checkout / "generated/rigid_body/kernel.h").unlink()
     (checkout / "generated/rigid_body/stray.c").write_text("int x;\n")
     before = tree(checkout / "generated")
-    done = coadjoint(checkout, "regenerate", "--check")
-    assert done.returncode == 1
+    done = run("regenerate", "--check")
+    assert done.exit_code == 1
     assert "rigid_body/kernel.h (missing)" in done.stderr
     assert "rigid_body/stray.c (extra)" in done.stderr
     assert tree(checkout / "generated") == before
 
 
-def test_a_system_without_spec_is_removed(checkout):
+def test_a_system_without_spec_is_removed(checkout, run):
     """A full run leaves the systems of the folder of specs; others go, the manifest with them."""
     (checkout / "derivations" / "rigid_body.toml").rename(checkout / "derivations" / "body.toml")
-    assert coadjoint(checkout, "regenerate", "--check").returncode == 1
-    assert coadjoint(checkout, "regenerate").returncode == 0
+    assert run("regenerate", "--check").exit_code == 1
+    assert run("regenerate").exit_code == 0
     assert not (checkout / "generated" / "rigid_body").exists()
     assert "rigid_body" not in (checkout / "generated" / "manifest.json").read_text()
 
 
-def test_an_output_that_cannot_be_written_is_named_and_exits_with_two(checkout, tmp_path):
+def test_an_output_that_cannot_be_written_is_named_and_exits_with_two(run, tmp_path):
     """A file in place of the folder: a clear error, and the file is untouched."""
     (tmp_path / "plain").write_text("mine")
-    done = coadjoint(checkout, "regenerate", "--output", str(tmp_path / "plain"))
-    assert done.returncode == 2
+    done = run("regenerate", "--output", str(tmp_path / "plain"))
+    assert done.exit_code == 2
     assert "plain" in done.stderr
-    assert "Traceback" not in done.stderr
     assert (tmp_path / "plain").read_text() == "mine"
 
 

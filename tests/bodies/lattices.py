@@ -1,5 +1,6 @@
 """Lattices of strands: specs of both, and numbers of their generic bodies."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,12 @@ def lattice_of(declared, bodies=16):
 def family_of(declared):
     """The motion of the generic body of a spec."""
     return derive_family(derive(declared, "lie-poisson"))
+
+
+@cache
+def family_of_chain(*changes):
+    """That of the lattice of the spin chain with some pieces replaced, made once in a process."""
+    return family_of(lattice_of(strand(*changes)))
 
 
 def compile_rates(family, modules="numpy"):

@@ -1,5 +1,6 @@
 """Lattices of strands tend to these: generic bodies against the field's equations and waves."""
 
+from functools import cache
 from random import Random
 
 import mpmath
@@ -10,18 +11,29 @@ from scipy.integrate import solve_ivp
 
 from coadjoint.derive import derive
 from coadjoint.solve.strands import transport
-from tests.bodies.lattices import STIFF, TOPS, compile_rates, family_of, lattice_of, strand
+from tests.bodies.lattices import (
+    STIFF,
+    TOPS,
+    compile_rates,
+    family_of,
+    family_of_chain,
+    lattice_of,
+    strand,
+)
 from tests.derive.test_lattice_limit import PI, STRAIN, a, curve
 from tests.fields import precessing_wave
 from tests.specs import shipped
 
 
+@cache
+def family_by_hand():
+    """The generic body of the lattice that ships."""
+    return family_of(shipped("spin_chain_lattice"))
+
+
 def test_the_lattice_of_the_spin_chain_is_the_shipped_one():
     """The same rates of the generic body, from the energy of the strand and from a spec by hand."""
-    found, known = (
-        family_of(lattice_of(shipped("spin_chain"))),
-        family_of(shipped("spin_chain_lattice")),
-    )
+    found, known = family_of_chain(), family_by_hand()
     assert (found.states, found.neighbours) == (known.states, known.neighbours)
     pairs = zip(found.rates, known.rates, strict=True)
     assert [sympy.expand(one - other) for one, other in pairs] == [0] * 12
@@ -42,12 +54,12 @@ def test_a_right_invariant_chain_is_a_left_one_of_inverses():
 
     Without that rates are other ones.
     """
-    found = compile_rates(family_of(lattice_of(strand(RIGHT, ODD))))
+    found = compile_rates(family_of_chain(RIGHT, ODD))
     state, given = np.random.default_rng(8).normal(size=(12, 5)), [1, 2, 3, 3, 2, 1, 0.3]
     turned = transposed(state)
     for sign, agrees in (("+", True), ("-", False)):
         odd = (STIFF, f"{STIFF} {sign} Xi[3]/2 {sign} Xi[1]*Xi[2]*Xi[3]")
-        known = compile_rates(family_of(lattice_of(strand(odd))))
+        known = compile_rates(family_of_chain(odd))
         other = transposed(known(turned, given))
         assert np.allclose(found(state, given), other, rtol=1e-11, atol=1e-11) == agrees
 
@@ -58,7 +70,7 @@ def test_rates_tend_to_those_of_a_right_invariant_strand():
     Against the left invariant strand the difference does not become less.
     """
     declared = strand(RIGHT, ODD)
-    rates = compile_rates(family_of(lattice_of(declared)), modules="mpmath")
+    rates = compile_rates(family_of_chain(RIGHT, ODD), modules="mpmath")
 
     def of_transposes(state, parameters):
         turned = transposed(state)
@@ -95,9 +107,8 @@ def test_a_right_invariant_chain_begins_as_its_strain_turns():
 
 def test_another_lattice_is_another():
     """With a term of degree 4 rates of momenta differ."""
-    found = family_of(lattice_of(strand((STIFF, f"{STIFF} - Xi[1]^4/24"))))
-    known = family_of(shipped("spin_chain_lattice"))
-    pairs = zip(found.rates, known.rates, strict=True)
+    found = family_of_chain((STIFF, f"{STIFF} - Xi[1]^4/24"))
+    pairs = zip(found.rates, family_by_hand().rates, strict=True)
     assert sum(sympy.expand(one - other) != 0 for one, other in pairs) == 3
 
 

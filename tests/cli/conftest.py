@@ -14,12 +14,10 @@ from tests.specs import RIGID_BODY
 
 
 @pytest.fixture(scope="session", autouse=True)
-def cache(tmp_path_factory):
+def cache(shared_cache):
     """A cache that holds nothing of the user's, of all processes that run these tests."""
-    folder = tmp_path_factory.getbasetemp()
-    shared = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("COADJOINT_CACHE", str(shared / "cache-of-commands"))
+        patch.setenv("COADJOINT_CACHE", str(shared_cache))
         yield
 
 

@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.crosscheck import families as ladder
 from coadjoint.crosscheck.families import crosscheck_family
 from coadjoint.crosscheck.family_text import check_family_text
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.folders import load_texts
-from coadjoint.spec.reader import read_spec_text
-from tests.families import CHAIN, CLOSED, DRIVEN, RING, VORTICES, WALLS
+from tests.families import CHAIN, CLOSED, DRIVEN, RING, VORTICES, WALLS, render
 
 TEXTS = {"ring": RING, "chain": CHAIN, "vortices": VORTICES, "driven": DRIVEN}
 TEXTS |= {"walls": WALLS, "closed": CLOSED}
@@ -71,9 +69,7 @@ SPOILED = [
 @pytest.fixture(scope="module")
 def rendered():
     """Each system up to its texts."""
-    return {
-        name: pipeline.render(read_spec_text(text, f"{name}.toml")) for name, text in TEXTS.items()
-    }
+    return {name: render(text, name) for name, text in TEXTS.items()}
 
 
 @pytest.mark.parametrize("name", TEXTS)

@@ -8,12 +8,10 @@ import re
 
 import pytest
 
-from coadjoint import pipeline
 from coadjoint.resources import derivations_folder, systems_folder
-from coadjoint.spec.reader import read_spec_text
 from tests import specs
 from tests.conftest import FAMILIES, FIELDS
-from tests.families import MOVED, TOPS, read
+from tests.families import MOVED, TOPS, render
 from tests.kernels import COMPILER
 from tests.render.test_sanitizers import SANITIZERS, compile_and_run
 
@@ -182,13 +180,13 @@ def write(rendered, change=lambda main: main):
 @pytest.fixture(scope="module")
 def tops():
     """Tops in a row: ends, attitudes, parameters of members."""
-    return pipeline.render(read(TOPS))
+    return render(TOPS, "tops")
 
 
 @pytest.fixture(scope="module")
 def moved():
     """Spins that inputs, the time and noise move."""
-    return pipeline.render(read_spec_text(MOVED, "moved.toml"))
+    return render(MOVED, "moved")
 
 
 @pytest.mark.campaign

@@ -12,7 +12,7 @@ from coadjoint.solve.family_steps import FamilyTwin
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import DRIVEN, VORTICES, write_driven
+from tests.families import DRIVEN, VORTICES, render, write_driven
 
 TIMES = np.linspace(0.0, 10.0, 6)
 RK4, TAYLOR, MIDPOINT = Choice("rk4", 4), Choice("taylor", 6), Choice("midpoint4", 4)
@@ -22,7 +22,7 @@ RUNS = [("rk4", 0.01, 1e-9), ("dop853", None, 1e-9), ("taylor", None, 1e-9)]
 @pytest.fixture(scope="module")
 def driven():
     """Oscillators in a row."""
-    with load_texts(pipeline.render(read_spec_text(DRIVEN, "driven.toml")).texts) as system:
+    with load_texts(render(DRIVEN, "driven").texts) as system:
         yield system
 
 
@@ -149,7 +149,7 @@ SPOILED_STEPS = [
 @pytest.mark.parametrize(("file", "old", "new", "choice"), SPOILED_STEPS)
 def test_steps_that_lose_the_time_differ_from_those_of_the_twin(file, old, new, choice):
     """In C or in NumPy, whose texts are two."""
-    texts = dict(pipeline.render(read_spec_text(DRIVEN, "driven.toml")).texts)
+    texts = dict(render(DRIVEN, "driven").texts)
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="differs from its"):
@@ -170,7 +170,7 @@ def test_the_ladder_passes_for_pairs_at_a_time():
 @pytest.mark.parametrize(("file", "old", "new"), SPOILED)
 def test_the_ladder_sees_a_time_that_is_lost(monkeypatch, file, old, new):
     """Also where the template itself loses it."""
-    rendered = pipeline.render(read_spec_text(DRIVEN, "driven.toml"))
+    rendered = render(DRIVEN, "driven")
     own, texts = rendered.family, dict(rendered.texts)
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)

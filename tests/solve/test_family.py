@@ -16,20 +16,20 @@ from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_folder, load_texts
 from coadjoint.spec.reader import read_spec_text
 from tests import specs
-from tests.families import CHAIN, NECKLACE, RING, TOPS, VORTICES
+from tests.families import CHAIN, NECKLACE, RING, TOPS, VORTICES, render
 
 
 @pytest.fixture(scope="module")
 def ring():
     """Spins on a ring."""
-    with load_texts(pipeline.render(read_spec_text(RING, "ring.toml")).texts) as system:
+    with load_texts(render(RING, "ring").texts) as system:
         yield system
 
 
 @pytest.fixture(scope="module")
 def vortices():
     """Vortices with an outer flow."""
-    with load_texts(pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts) as system:
+    with load_texts(render(VORTICES, "vortices").texts) as system:
         yield system
 
 
@@ -90,7 +90,7 @@ def test_rates_are_those_of_the_equations(ring, size, target):
 @pytest.fixture(scope="module")
 def necklace():
     """Beads on a ring, with springs between neighbours, of which all repel each other."""
-    with load_texts(pipeline.render(read_spec_text(NECKLACE, "necklace.toml")).texts) as system:
+    with load_texts(render(NECKLACE, "necklace").texts) as system:
         yield system
 
 
@@ -117,7 +117,7 @@ def test_springs_and_all_pairs_act_together(necklace, size, target):
 @pytest.fixture(scope="module")
 def chain():
     """Masses on a line, whose first and last one have one neighbour each."""
-    with load_texts(pipeline.render(read_spec_text(CHAIN, "chain.toml")).texts) as system:
+    with load_texts(render(CHAIN, "chain").texts) as system:
         yield system
 
 
@@ -274,7 +274,7 @@ def test_pickled_systems_keep_their_size():
 @pytest.mark.parametrize("method", ["rk4", "dop853", "taylor"])
 def test_wrong_steps_are_not_taken(tmp_path, method):
     """A fresh object whose steps are not those of the twin is refused before it is used."""
-    texts = pipeline.render(read_spec_text(RING, "ring.toml")).texts
+    texts = render(RING, "ring").texts
     wrong = {
         "rk4": ("+ half[l] * k[n + l]", "+ half[l] * k[n]"),
         "dop853": ("five[l] + a * a", "five[l] + a * b"),
@@ -343,7 +343,7 @@ def test_a_run_of_many_steps_stops_where_rates_are_not_finite(vortices):
 @pytest.fixture(scope="module")
 def tops():
     """Texts of tops in a row, whose attitudes are part of the state."""
-    return pipeline.render(read_spec_text(TOPS, "tops.toml")).texts
+    return render(TOPS, "tops").texts
 
 
 @pytest.mark.parametrize(
@@ -485,7 +485,7 @@ def test_members_that_are_written_out_are_derived_for_the_size_that_is_chosen(tm
 
 def test_fresh_kernels_are_compared_for_few_members():
     """Of many pairs NumPy would take minutes; and few have blocks, whose faults are seen."""
-    texts = dict(pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts)
+    texts = dict(render(VORTICES, "vortices").texts)
     with load_texts(texts) as system:
         assert [system.resize({"i": n}).probed.size for n in (9, 51, 100_000)] == [9, 51, 51]
     right, wrong = "_j = _run.i + LANES; _j < _whole", "_j = _run.i + 2 * LANES; _j < _whole"

@@ -17,7 +17,7 @@ from coadjoint.solve import family_steps
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import CHAIN, DRAG, RING, VORTICES, family_of
+from tests.families import CHAIN, DRAG, RING, VORTICES, family_of, render
 
 #: Pendulums in axes of their own, which turn one another: an open chain with rational flows.
 PENDULUMS = """
@@ -47,9 +47,7 @@ ORDERS = {"splitting": 2, "splitting4": 4, "splitting6": 6}
 @pytest.fixture(scope="module")
 def rendered():
     """Both systems up to their texts."""
-    return {
-        name: pipeline.render(read_spec_text(text, f"{name}.toml")) for name, text in TEXTS.items()
-    }
+    return {name: render(text, name) for name, text in TEXTS.items()}
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from coadjoint.solve.choices import Choice
 from coadjoint.solve.family_steps import load as load_steps
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
-from tests.families import PULLED, SPRINGS, read, write_pulled
+from tests.families import PULLED, SPRINGS, read, render, write_pulled
 
 SIZE = 4
 RK4, TAYLOR = Choice("rk4", 4), Choice("taylor", 6)
@@ -23,7 +23,7 @@ TIMES = [0.0, 0.5, 0.75, 2.0]
 @pytest.fixture(scope="module")
 def rendered():
     """Beads that are pulled."""
-    return pipeline.render(read_spec_text(PULLED, "pulled.toml"))
+    return render(PULLED, "pulled")
 
 
 @pytest.fixture(scope="module")

@@ -27,6 +27,7 @@ from tests.families import (
     RING,
     SPRINGS,
     VORTICES,
+    render,
     require_wrong_steps,
     write_chain,
     write_ring,
@@ -38,7 +39,7 @@ RADIUS = "dot(S[i], S[i])"
 @pytest.fixture(scope="module")
 def texts():
     """The files of spins on a ring."""
-    return pipeline.render(read_spec_text(RING, "ring.toml")).texts
+    return render(RING, "ring").texts
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +52,7 @@ def ring(texts):
 @pytest.fixture(scope="module")
 def chain():
     """Masses on a line."""
-    with load_texts(pipeline.render(read_spec_text(CHAIN, "chain.toml")).texts) as system:
+    with load_texts(render(CHAIN, "chain").texts) as system:
         yield system
 
 
@@ -316,7 +317,7 @@ def test_texts_say_how_far_members_are_coupled(ring, chain):
     """The masses on a line read two members further, and all pairs have no bands."""
     assert ring.series.value("BANDS") == (1, 1)
     assert chain.series.value("BANDS") == (2, 0)
-    pairs = pipeline.render(read_spec_text(VORTICES, "vortices.toml")).texts
+    pairs = render(VORTICES, "vortices").texts
     assert "BANDS" not in pairs["solver.py"]
     assert "KRYLOV" in pairs["solver.c"]
 

@@ -16,7 +16,7 @@ from coadjoint.solve.normals import draw_normals
 from coadjoint.solve.self_check import check_methods
 from coadjoint.solve.stochastic import find_bound
 from coadjoint.spec.reader import read_spec_text
-from tests.families import MOVED, SHAKEN, SPRINGS, VORTICES, read, write_shaken
+from tests.families import MOVED, SHAKEN, SPRINGS, VORTICES, read, render, write_shaken
 
 METHODS = ["heun", "midpoint"]
 SIZE, STEP, SEED = 4, 2.0**-6, 7
@@ -25,7 +25,7 @@ SIZE, STEP, SEED = 4, 2.0**-6, 7
 @pytest.fixture(scope="module")
 def rendered():
     """Spins that are shaken."""
-    return pipeline.render(read_spec_text(SHAKEN, "shaken.toml"))
+    return render(SHAKEN, "shaken")
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +162,7 @@ def test_noise_may_couple_neighbours_and_name_the_time():
         text = text.replace(f'"s_{k}*S_{k}[2]"', f'"s_{k}*t*{bonds[k]}"')
     state, numbers = source.normal(size=3 * n), source.normal(size=1 + 2 * n)
     own = {"time": 0.7, "target": "python"}
-    with load_texts(pipeline.render(read(RING)).texts) as ring:
+    with load_texts(render(RING).texts) as ring:
         found = ring.evaluate("noise_vector", np.concatenate([state, numbers]), **own)
     with load_texts(pipeline.render(read_spec_text(text, "whole.toml")).texts) as whole:
         spins = state.reshape(3, n).T.ravel()
@@ -205,7 +205,7 @@ def test_a_run_with_noise_says_what_is_missing(shaken):
 def test_inputs_time_and_noise_move_members_together():
     """Six arrays of a call, and steps in C with all that drives them: the bits of NumPy."""
     source = np.random.default_rng(6)
-    with load_texts(pipeline.render(read_spec_text(MOVED, "moved.toml")).texts) as system:
+    with load_texts(render(MOVED, "moved").texts) as system:
         three, signal = system.resize({"i": 3}), ([0, 0.5, 1], source.normal(size=(4, 3)), "linear")
         state, inputs = source.normal(size=(9, 5)), source.normal(size=(4, 5))
         found, expected = (
