@@ -43,8 +43,14 @@ def wheel(tmp_path_factory):
 
 def environment(folder):
     """An empty environment; its python."""
-    venv.create(folder, with_pip=True)
+    venv.create(folder)
     return folder / "bin" / "python"
+
+
+def install(python, *arguments, cwd):
+    """Install by this environment's pip into another one, which needs none of its own."""
+    pip = ("-m", "pip", "--python", str(python), "install", "--quiet", "--no-compile")
+    run(sys.executable, *pip, *arguments, cwd=cwd)
 
 
 def run(python, *arguments, cwd):
@@ -88,7 +94,7 @@ def test_the_wheel_carries_specs_templates_and_systems(wheel):
 def test_the_wheel_works_from_another_directory(wheel, tmp_path):
     """Import, evaluate, prove, and check the shipped systems; dependencies are borrowed."""
     python = environment(tmp_path / "env")
-    run(python, "-m", "pip", "install", "--quiet", "--no-deps", str(wheel), cwd=tmp_path)
+    install(python, "--no-deps", str(wheel), cwd=tmp_path)
     # The dependencies of this environment, without the hooks of its editable installs.
     site = next(Path(tmp_path / "env" / "lib").glob("python*/site-packages"))
     (site / "borrowed.pth").write_text(sysconfig.get_paths()["purelib"] + "\n")
@@ -106,6 +112,6 @@ def test_the_wheel_works_from_another_directory(wheel, tmp_path):
 def test_the_wheel_works_in_an_empty_environment(wheel, tmp_path):
     """The same with its own dependencies, fetched from the package index."""
     python = environment(tmp_path / "env")
-    run(python, "-m", "pip", "install", "--quiet", str(wheel), cwd=tmp_path)
+    install(python, str(wheel), cwd=tmp_path)
     spec = ROOT / "derivations" / "rigid_body.toml"
     assert "[-1.0, 2.0, -1.0" in run(python, "-c", USE, str(spec), cwd=tmp_path)

@@ -275,16 +275,22 @@ def test_casimirs_commute(name):
         check_commutes(tensor_of(equations), gradient_of(equations, casimir))
 
 
-def test_routes_without_a_bracket_are_few():
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        pytest.param({route: (name, route) for name, route in BY_ROUTE}.values(), id="one by each"),
+        pytest.param(BY_ROUTE, id="all", marks=pytest.mark.campaign),
+    ],
+)
+def test_routes_without_a_bracket_are_few(pairs):
     """Only routes in charts and restricted motions have no bracket."""
-    without = {
-        (name, route)
-        for name, route in BY_ROUTE
-        if derived(name)[route].exact.poisson_tensor is None
-    }
-    charts = {(name, route) for name, route in BY_ROUTE if derived(name)[route].chart is not None}
+    found = {(name, route): emitted(name, route) for name, route in pairs}
+    without = {pair for pair, each in found.items() if each.exact.poisson_tensor is None}
+    charts = {pair for pair, each in found.items() if each.chart is not None}
     assert charts < without
-    assert {name for name, _ in without - charts} == set(SYSTEMS) - set(textbook.TENSORS)
+    declared = {name for name, _ in found.keys() - charts}
+    assert {name for name, _ in without - charts} == declared - set(textbook.TENSORS)
+    assert declared == set(SYSTEMS) or len(found) < len(BY_ROUTE)
     assert len(WITH_BRACKET) > len(SYSTEMS) / 2
 
 

@@ -46,12 +46,12 @@ print(refusal("mirrored")[0])
 def test_two_folders_and_a_line_make_a_target(tmp_path):
     """It is rendered, read back, loaded, cross-checked and called, and its words are reserved."""
     source = tmp_path / "src"
-    ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
-    shutil.copytree(ROOT / "src", source, ignore=ignored)
+    shutil.copytree(ROOT / "src", source, ignore=shutil.ignore_patterns("*.egg-info"))
     shutil.copytree(ROOT / "templates", tmp_path / "templates")
     targets = source / "coadjoint" / "render" / "targets"
     for folder in (targets, tmp_path / "templates"):
-        shutil.copytree(folder / "python", folder / "mirror")
+        bytecode = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(folder / "python", folder / "mirror", ignore=bytecode)
         for path in (folder / "mirror").iterdir():
             text = path.read_text()
             for old, new in RENAMED:

@@ -11,7 +11,6 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.solve import family_steps
 from coadjoint.solve.folders import load_texts
 from coadjoint.solve.self_check import check_methods
-from coadjoint.spec.reader import read_spec_text
 from tests.families import (
     CHAIN,
     CLOSED,
@@ -19,6 +18,8 @@ from tests.families import (
     PEAKONS,
     RING,
     VORTICES,
+    read,
+    render,
     require_wrong_steps,
     write_ring,
 )
@@ -46,11 +47,6 @@ MAGNET = (
     .replace("3*sin(4*pi*s/L)/5, 4/5", "3*sin(4*pi*s/L)/5 + sin(2*pi*s/L)/4, 4/5")
     .replace("order = 4", "order = 2")
 )
-
-
-def render(text):
-    """A system of its text."""
-    return pipeline.render(read_spec_text(text, "sample.toml"))
 
 
 @pytest.fixture(scope="module")
@@ -165,11 +161,12 @@ def test_c_has_the_bits_of_numpy(ring, members):
         assert np.array_equal(one.sweeps, other.sweeps)
 
 
-def test_the_energy_stays_where_the_midpoint_loses_it(ring, chain):
-    """Over thousands of steps, of few members and of many; squared radii stay as well."""
-    for n, steps in ((16, 4000), (1000, 100)):
+@pytest.mark.parametrize("longer", [1, pytest.param(4, marks=pytest.mark.campaign)])
+def test_the_energy_stays_where_the_midpoint_loses_it(ring, chain, longer):
+    """Over a thousand steps or more, of few members and of many; squared radii stay as well."""
+    given = {"step": 0.1, "samples": 11}
+    for n, steps in ((16, 1000 * longer), (1000, 25 * longer)):
         system, start = ring.resize({"i": n}), draw_spins(n)
-        given = {"step": 0.1, "samples": 11}
         end = 0.1 * steps
         kept = system.simulate(start, (0, end), method="discrete_gradient", **given)
         lost = system.simulate(start, (0, end), method="midpoint", **given)
@@ -181,7 +178,7 @@ def test_the_energy_stays_where_the_midpoint_loses_it(ring, chain):
     line = chain.resize({"i": 12})
     start = np.random.default_rng(3).normal(size=24)
     drift = {
-        name: line.simulate(start, (0, 200), method=name, step=0.1, samples=11).drift["energy"]
+        name: line.simulate(start, (0, 50 * longer), method=name, **given).drift["energy"]
         for name in ("discrete_gradient", "midpoint")
     }
     assert drift["discrete_gradient"] < 1e-13
@@ -340,7 +337,7 @@ def test_a_wrong_step_in_c_is_seen(texts, old, new):
 def test_a_wrong_gradient_is_seen(monkeypatch, name, spoil, text):
     """By the members that are written out, to 50 digits."""
     monkeypatch.setattr(action._Terms, name, spoil(getattr(action._Terms, name)))
-    rendered = render(text)
+    rendered = pipeline.render(read(text))
     with pytest.raises(CrossCheckError, match=r"rung 4: .*: energy_gradient of"):
         pipeline.verify(rendered)
 
@@ -353,4 +350,4 @@ def test_a_wrong_bracket_is_seen(monkeypatch):
 
     monkeypatch.setattr("coadjoint.derive.indexed.add_action", spoil)
     with pytest.raises(CrossCheckError, match=r"rung 4: .*: bracket_vector of"):
-        pipeline.verify(render(VORTICES))
+        pipeline.verify(pipeline.render(read(VORTICES)))

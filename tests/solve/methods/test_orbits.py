@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
-import coadjoint
 from coadjoint.errors import KernelArgumentError
-from coadjoint.resources import derivations_folder
+from coadjoint.systems import heavy_top
 
 METHODS = ("coadjoint_mean", "spherical_midpoint")
 
@@ -15,7 +16,7 @@ METHODS = ("coadjoint_mean", "spherical_midpoint")
 @pytest.fixture(scope="module")
 def top():
     """A heavy top of three moments, its centre of mass off every axis."""
-    return coadjoint.load(derivations_folder() / "heavy_top.toml")
+    return heavy_top.system
 
 
 PARAMETERS = {"I": [1.0, 2.0, 3.0], "m": 1.0, "g": 0.7, "chi": [0.3, 0.0, 1.0]}
@@ -86,6 +87,6 @@ def test_too_long_steps_are_refused(top):
 )
 def test_other_systems_are_refused_with_the_reason(system, method, why):
     """The message says what the method expects."""
-    system = coadjoint.load(derivations_folder() / f"{system}.toml")
+    system = import_module(f"coadjoint.systems.{system}").system
     with pytest.raises(KernelArgumentError, match=why):
         system.simulate(np.ones(system.STATE.size), (0, 1), method=method, step=0.1)
