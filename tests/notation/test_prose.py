@@ -45,6 +45,8 @@ def show(text, names=None):
         ("m = u - d^2u/ds^2", r"$m = u - \frac{d^{2} u}{d {s}^{2}}$"),
         ("d2h/dp2", r"$\frac{\partial^{2} h}{\partial {p}^{2}}$"),
         ("oscillators x and z", "oscillators $x$ and $z$"),
+        ("by J. E. Marsden and R. Montgomery", "by J. E. Marsden and R. Montgomery"),
+        ("at the rate W. Its centre", "at the rate $W$. Its centre"),
         ("one of x alone, where x is", "one of $x$ alone, where $x$ is"),
         ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),
         ("b . curl b", r"$b \cdot \left(\operatorname{curl}\,b\right)$"),

@@ -113,6 +113,36 @@ def test_a_false_claim_is_refuted(number):
     assert "refuted" in str(caught.value)
 
 
+#: Springs to the centre of mass of n members: only for their own number the total momentum is kept.
+CENTRED = """
+title = "Springs to the centre of mass"
+routes = ["canonical"]
+[index]
+i = { size = 4, count = "n" }
+[variables]
+q = { role = "coordinate", index = "i" }
+p = { role = "momentum", of = "q", index = "i" }
+[hamiltonian]
+h = "sum(i, p[i]^2 + (1 - 1/n)*q[i]^2)/2 - sum(i, j, i < j, q[i]*q[j])/n"
+[observables]
+P = "sum(i, p[i])"
+[claims]
+conserved = ["energy", "P"]
+"""
+
+
+def test_a_claim_that_needs_the_number_of_members_says_what_was_asked():
+    """In proofs n is any number: refuted is that P is kept for each of them, and nothing else."""
+    certificate = prove(read(CENTRED))
+    (failed,) = certificate.failures
+    assert failed.statement == "P is conserved, for every N >= 2 and n > 0"
+    assert "the energy is conserved, for every N >= 2 and n > 0" in {
+        claim.statement for claim in certificate.claims
+    }
+    whole = prove(read(CENTRED, ('count = "n"', 'count = "n", written_out = true'))).require()
+    assert "P is conserved, for n = 4" in {claim.statement for claim in whole.claims}
+
+
 #: Friction between neighbours in a ring; what one loses the other gains.
 FRICTION = '[forces]\np = "c*(p[i+1] - p[i]) - c*(p[i] - p[i-1])"\n[observables]'
 

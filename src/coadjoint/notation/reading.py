@@ -34,8 +34,14 @@ from coadjoint.notation.written import (
     row,
 )
 
+#: Words that begin a sentence behind a symbol, as names do behind initials.
+_BEGINNINGS: Final = (
+    "A|All|An|And|As|At|Both|But|By|Each|Else|Every|For|Here|If|In|It|Its|No|Of|On|Only|So|The|Then"
+    "|There|These|They|This|To|Where|With"
+)
 _TOKEN: Final = re.compile(
-    r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
+    r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b"  # Lie-Poisson, 2-form
+    rf"|[A-Z]\.(?= (?:[A-Z]\. |(?!(?:{_BEGINNINGS})\b)[A-Z][a-z])))"  # R. Montgomery
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?(?:e(?P<ten>[-+]?\d{1,3})\b)?)"

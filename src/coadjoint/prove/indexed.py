@@ -147,10 +147,8 @@ def _examine_lax(family: Windows) -> Claim:
     for every number of members if it does as long as a row may be next to both ends.
     """
     start, counts, (_, pair) = perf_counter(), list[int](), family.lax[0]
-    statement = (
-        f"dL/dt = [L, M], with L = {pair.L.in_one_line} and M = {pair.M.in_one_line}, for every "
-        f"N >= {family.least}"
-    )
+    pair_of = f"dL/dt = [L, M], with L = {pair.L.in_one_line} and M = {pair.M.in_one_line}"
+    statement = f"{pair_of}, {_tell_scope(family)}"
     for spec, matrices in family.lax:
         decision = _decide_lax(spec, matrices)
         counts.append(len(spec.state) // len(family.variables))
@@ -242,7 +240,7 @@ def _join(family: Windows, same: Sequence[Claim]) -> Claim:
     """One claim from the claims of all windows: the weakest verdict decides."""
     counts = [len(window.state) // len(family.variables) for window in family.windows]
     worst = min(same, key=lambda claim: _ORDER.index(claim.verdict))
-    statement = f"{worst.statement}, for every N >= {family.least}"
+    statement = f"{worst.statement}, {_tell_scope(family)}"
     if worst.verdict is not Verdict.PROVED:
         method = f"{worst.method}, with {counts[same.index(worst)]} members"
         return replace(worst, statement=statement, method=method)
@@ -252,6 +250,12 @@ def _join(family: Windows, same: Sequence[Claim]) -> Claim:
     return replace(
         worst, statement=statement, method=method, seconds=sum(claim.seconds for claim in same)
     )
+
+
+def _tell_scope(family: Windows) -> str:
+    """For which numbers of members a claim is made; in formulas their number is any other one, too."""
+    index = family.index
+    return f"for every N >= {family.least}" + f" and {index.count} > 0" * index.is_value
 
 
 def _generalise(method: str) -> str:

@@ -63,9 +63,9 @@ def refusal(name: str) -> tuple[str, str, str] | None:
 
 
 def is_taken_in_c(name: str) -> bool:
-    """Whether only a number of that name cannot be told from what generated C calls so.
+    """Whether only a number that steps read cannot be told from what generated C calls so.
 
-    A matrix V has the entries V11, V12 and so on, and no kernel names V.
+    A matrix V has the entries V11, V12 and so on, and of observables steps know nothing.
 
     >>> is_taken_in_c("V"), is_taken_in_c("double")
     (True, False)

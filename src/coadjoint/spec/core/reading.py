@@ -57,6 +57,10 @@ class Naming:
     allowed: str = ""
 
 
+#: Tables of the numbers that generated steps read by their names.
+_READ_IN_STEPS = ("variables", "parameters", "inputs", "time")
+
+
 def name_each(key: str, records: Sequence[Any]) -> list[Naming]:
     """The names that the records of a table declare, each at its own key."""
     return [
@@ -192,8 +196,8 @@ class Reading:
             SpecError: One is reserved or taken, with a suggestion.
         """
         for derived in dict.fromkeys((naming.name, *naming.components)):
-            named = derived in naming.components or not is_taken_in_c(derived)
-            refused = refusal(derived) if named else None
+            is_read = naming.key[0] in _READ_IN_STEPS and derived in naming.components
+            refused = refusal(derived) if is_read or not is_taken_in_c(derived) else None
             if refused is not None and derived != naming.allowed:
                 problem, expected, hint = refused
                 if derived != naming.name:
