@@ -76,7 +76,14 @@ FIELDS = (
     *core_of(
         "lie-poisson",
         "fields/generic",
-        "_find_slopes defects",
+        "find_slopes",
+        systems=("hunter_saxton", "spin_chain"),
+        tests=(*WAVES,),
+    ),
+    *core_of(
+        "lie-poisson",
+        "fields/sums",
+        "find_bracket_defects",
         systems=("hunter_saxton", "spin_chain"),
         tests=(*WAVES,),
     ),
