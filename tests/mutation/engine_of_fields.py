@@ -61,7 +61,7 @@ DERIVED = (
         "look_at_symbol: rewrite x.imag if order % 2 else x.real -> x.imag",
         "look_at_symbol: rewrite _count_bad(_1, odd=_2) -> 0",
         "find_matrix: rewrite tower[order] -> tower[order - 1]",
-        "told: rewrite self.order > 1 -> False",
+        "told: rewrite self.order != 1 -> False",
         "_count_bad: omit I",
         "_count_real: omit power",
         "_is_diagonalizable: rewrite _1.sqf_part() -> _1",
