@@ -26,7 +26,8 @@ BOOK = (
     EQUATIONS,
     "-k",
     "(rates_are_those or poisson_tensor_is)"
-    " and (rigid_body- or heavy_top- or galilei- or se2_pendulum- or sl2_r2- or so5_body-)",
+    " and (rigid_body- or heavy_top- or galilei- or se2_pendulum- or sl2_r2- or so4_body-"
+    " or so5_body-)",
 )
 #: Kernels of systems with parameters and zero rows; the others are built the same way.
 KERNELS = (SOURCES + "test_kernels.py", "-k", "heavy_top or bargmann")

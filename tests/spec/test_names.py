@@ -214,8 +214,8 @@ def test_accepted_names_are_python_variables():
     assert sys.version_info >= (3, 11)
 
 
-def test_a_matrix_or_a_definition_may_have_the_name_of_a_type_of_generated_c():
-    """Their names stand in no kernel; a number of that name does, and is refused."""
+def test_what_no_step_reads_may_have_the_name_of_a_type_of_generated_c():
+    """Matrices, definitions and observables; a number of that name is read, and is refused."""
     text = """title = "N"
 routes = ["canonical"]
 [variables]
@@ -227,9 +227,14 @@ V = { shape = [2, 2], default = [[1, 0], [0, 1]] }
 "STATE(r)" = "V[1, 1]*r^2"
 [hamiltonian]
 h = "p^2/2 + STATE(q)"
+[observables]
+STATES = "q^2"
 """
     assert read_spec_text(text, "sample.toml").parameters[0].components[0] == "V11"
     with pytest.raises(SpecError, match="'V' is a type or a macro of generated C"):
         read_spec_text(
-            text.replace("V = { shape = [2, 2], default = [[1, 0], [0, 1]] }", "V = {}"), "s.toml"
+            text.replace("V = { shape = [2, 2], default = [[1, 0], [0, 1]] }", "V = {}").replace(
+                'V = "q^2"', 'W = "q^2"'
+            ),
+            "s.toml",
         )

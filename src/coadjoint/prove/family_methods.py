@@ -371,7 +371,7 @@ def _judge_splitting(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
             f"the energy is the sum of {count(len(parts), 'part')} whose flows are in closed form"
         )
         return Judgement(
-            exactly,
+            exactly=exactly,
             is_poisson=True,
             decides=f"{decides}, for every number of members",
             cost=count(len(list_schedules(parts)[method.name]), "explicit map"),
@@ -379,7 +379,7 @@ def _judge_splitting(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
     exactly = tuple(each for each in facts.integrals if facts.is_kept_by_flows(each.name))
     shifts = len(list_schedules(FLOWS)[method.name])
     return Judgement(
-        exactly,
+        exactly=exactly,
         is_poisson=True,
         decides="the energy is T of momenta plus V of positions, for every number of members",
         cost=f"{shifts} shifts, each with the rates",

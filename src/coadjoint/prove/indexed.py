@@ -253,7 +253,7 @@ def _join(family: Windows, same: Sequence[Claim]) -> Claim:
 
 
 def _tell_scope(family: Windows) -> str:
-    """For which numbers of members a claim is made; in formulas their number is any other one, too."""
+    """For which numbers of members a claim is made, and for which values of it in formulas."""
     index = family.index
     return f"for every N >= {family.least}" + f" and {index.count} > 0" * index.is_value
 

@@ -194,7 +194,7 @@ def _tell_held(integrals: Sequence[Kept]) -> str:
 
 def _judge_unknown(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
     """Of a method without a rule nothing is said."""
-    return Judgement((), False, "nothing is proved of it", SWEEPS)
+    return Judgement(exactly=(), is_poisson=False, decides="nothing is proved of it", cost=SWEEPS)
 
 
 def _judge_runge_kutta(
@@ -224,7 +224,9 @@ def _judge_runge_kutta(
     stages = method.order // 2 if is_gauss else STEPS[method.order]
     each = "stage" if is_gauss else "midpoint"
     cost = f"{SWEEPS} of {count(stages, each)}"
-    return Judgement(exactly, is_symplectic, "; ".join(said), cost, laws)
+    return Judgement(
+        exactly=exactly, is_poisson=is_symplectic, decides="; ".join(said), cost=cost, laws=laws
+    )
 
 
 def _on_orbits(facts: Facts) -> tuple[Kept, ...]:
@@ -254,18 +256,25 @@ def _judge_orbits(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     cost = f"{SWEEPS} of {count(stages, 'coadjoint arc')}, each a dozen brackets"
     if method.file == "isospectral_midpoint":
         cost = f"{SWEEPS} of {count(stages, 'midpoint')}, each with two products of matrices"
-        return Judgement(_on_orbits(facts), True, f"{_ACTION}, {_PRODUCTS}", cost)
+        return Judgement(
+            exactly=_on_orbits(facts), is_poisson=True, decides=f"{_ACTION}, {_PRODUCTS}", cost=cost
+        )
     kept = _on_orbits(facts)
     if facts.is_noisy:
-        return Judgement(kept, True, _NOISY_ACTION, cost)
+        return Judgement(exactly=kept, is_poisson=True, decides=_NOISY_ACTION, cost=cost)
     # the whole state moves by exp(h xi), attitudes with it: what all such elements leave as it is
     moved = [each for each in facts.integrals if each not in kept]
     turned = [each for each in moved if facts.is_kept_by_action(each.values)]
     if not turned:
-        return Judgement(kept, True, _ACTION, cost)
+        return Judgement(exactly=kept, is_poisson=True, decides=_ACTION, cost=cost)
     exactly = tuple(each for each in facts.integrals if each in kept or each in turned)
     decides = f"{_ACTION}; the element of a step moves all of the state, so that {_list(turned)}"
-    return Judgement(exactly, True, f"{decides} {'stays' if len(turned) == 1 else 'stay'}", cost)
+    return Judgement(
+        exactly=exactly,
+        is_poisson=True,
+        decides=f"{decides} {'stays' if len(turned) == 1 else 'stay'}",
+        cost=cost,
+    )
 
 
 def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -290,7 +299,7 @@ def judge_spheres(facts: Facts, method: StructuredMethod, _: Mapping[str, Progra
     cost = f"{SWEEPS} of {count(STEPS[method.order], 'midpoint')}"
     if facts.is_noisy:
         decides += ", on which drift and noise, brackets with their Hamiltonians, keep each path"
-    return Judgement(exactly, True, decides, cost)
+    return Judgement(exactly=exactly, is_poisson=True, decides=decides, cost=cost)
 
 
 def _judge_heun(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) -> Judgement:
@@ -299,7 +308,9 @@ def _judge_heun(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) ->
         each for each in facts.integrals if each.is_kept_within_steps and each.degree in (0, 1)
     )
     said = f"{_list(exactly)} {_be(exactly)} linear" if exactly else "no integral is linear"
-    return Judgement(exactly, False, said, "two evaluations of rates and noise")
+    return Judgement(
+        exactly=exactly, is_poisson=False, decides=said, cost="two evaluations of rates and noise"
+    )
 
 
 def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Program]) -> Judgement:
@@ -307,7 +318,10 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
     schedule = list_schedules(maps)[method.name]
     if method.name == "exact_body":
         return Judgement(
-            facts.integrals, facts.is_hamiltonian, "the motion is that of Euler's top", "one map"
+            exactly=facts.integrals,
+            is_poisson=facts.is_hamiltonian,
+            decides="the motion is that of Euler's top",
+            cost="one map",
         )
     is_flow = method.name in SPLITTINGS
     used = [maps[name] for name in dict.fromkeys(name for name, _ in schedule)]
@@ -318,10 +332,17 @@ def _judge_maps(facts: Facts, method: StructuredMethod, maps: Mapping[str, Progr
         or all(keeps(facts, each, program, is_flow=is_flow) for program in used)
     )
     if not is_flow:
-        return Judgement(exactly, False, "the rates are quadratic", "one linear equation")
+        return Judgement(
+            exactly=exactly,
+            is_poisson=False,
+            decides="the rates are quadratic",
+            cost="one linear equation",
+        )
     parts = len(used)
     decides = f"the energy is the sum of {count(parts, 'part')} whose flows are in closed form"
-    return Judgement(exactly, True, decides, count(len(schedule), "explicit map"))
+    return Judgement(
+        exactly=exactly, is_poisson=True, decides=decides, cost=count(len(schedule), "explicit map")
+    )
 
 
 def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Program]) -> Judgement:
@@ -356,7 +377,9 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
         )
         has_law = is_exact and facts.is_energy_steady and number == 1
         law = FALLING if facts.relaxes else BALANCED
-        return Judgement(exactly, False, decides, cost, (law,) * has_law)
+        return Judgement(
+            exactly=exactly, is_poisson=False, decides=decides, cost=cost, laws=(law,) * has_law
+        )
     decides = "the motion is an antisymmetric tensor times the gradient of its energy"
     if is_mean and not has_mean:
         decides += f", which is not seen to be a polynomial of degree {MEAN_DEGREE} or less"
@@ -366,7 +389,7 @@ def _judge_gradients(facts: Facts, method: StructuredMethod, _: Mapping[str, Pro
         decides += (
             "; after each step the state is moved, so that neither integrals nor laws are kept"
         )
-    return Judgement(exactly, False, decides, cost)
+    return Judgement(exactly=exactly, is_poisson=False, decides=decides, cost=cost)
 
 
 def _tell_balance(facts: Facts, step: str, *, is_exact: bool) -> str:
@@ -387,7 +410,7 @@ def _judge_nambu(facts: Facts, method: StructuredMethod, _: Mapping[str, Program
     """The product of discrete gradients of all distinguished functions keeps each of them."""
     exactly = tuple(each for each in facts.integrals if each.name == "energy" or each.is_casimir)
     decides = "the motion is the product of the gradients of its energy and Casimirs"
-    return Judgement(exactly, False, decides, SWEEPS)
+    return Judgement(exactly=exactly, is_poisson=False, decides=decides, cost=SWEEPS)
 
 
 def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Program]) -> Judgement:
@@ -408,7 +431,13 @@ def _judge_metriplectic(facts: Facts, _: StructuredMethod, __: Mapping[str, Prog
     else:
         decides += "; G is not proved positive semidefinite, and the entropy may fall"
     laws = (GROWING,) * (facts.is_semidefinite and not facts.is_moved)
-    return Judgement(exactly, False, decides, f"{SWEEPS}, each with ten gradients", laws)
+    return Judgement(
+        exactly=exactly,
+        is_poisson=False,
+        decides=decides,
+        cost=f"{SWEEPS}, each with ten gradients",
+        laws=laws,
+    )
 
 
 _RULES: Final[Mapping[str, Rule]] = {

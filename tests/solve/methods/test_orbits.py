@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
 from coadjoint.errors import KernelArgumentError
-from coadjoint.systems import heavy_top, heavy_top_damped, so5_body
+from coadjoint.systems import heavy_top
 
 METHODS = ("coadjoint_mean", "spherical_midpoint")
 
@@ -79,11 +81,12 @@ def test_too_long_steps_are_refused(top):
 @pytest.mark.parametrize(
     ("system", "method", "why"),
     [
-        (heavy_top_damped, "coadjoint_mean", "bracket with its energy alone"),
-        (so5_body, "spherical_midpoint", "product of so\\(3\\) and se\\(3\\)"),
+        ("heavy_top_damped", "coadjoint_mean", "bracket with its energy alone"),
+        ("so5_body", "spherical_midpoint", "product of so\\(3\\) and se\\(3\\)"),
     ],
 )
 def test_other_systems_are_refused_with_the_reason(system, method, why):
     """The message says what the method expects."""
+    system = import_module(f"coadjoint.systems.{system}").system
     with pytest.raises(KernelArgumentError, match=why):
-        system.simulate(np.ones(system.system.STATE.size), (0, 1), method=method, step=0.1)
+        system.simulate(np.ones(system.STATE.size), (0, 1), method=method, step=0.1)

@@ -43,7 +43,11 @@ def name_shared(
             [replace(each, right=_put(each.right, longest, letter, index)) for each in some]
             for some in (lines, added)
         )
-        node = tree.Name(letter) if index is None else tree.Member(letter, index, 0, ())
+        node = (
+            tree.Name(letter)
+            if index is None
+            else tree.Member(name=letter, index=index, shift=0, indices=())
+        )
         added.append(VectorLine(node, longest))
         named[letter] = (3,)
     return [*lines, *added], named
@@ -84,7 +88,11 @@ def _put(node: tree.Node, vector: tree.Node, letter: str, index: str | None) -> 
     """A formula with a letter in the place of a vector."""
     if _at_member(node) == vector:
         shifts = [each.shift for each in tree.walk(node) if isinstance(each, tree.Member)]
-        return tree.Member(letter, index, min(shifts), ()) if index else tree.Name(letter)
+        return (
+            tree.Member(name=letter, index=index, shift=min(shifts), indices=())
+            if index
+            else tree.Name(letter)
+        )
     below = tree.children(node)
     return (
         tree.rebuild(node, [_put(each, vector, letter, index) for each in below]) if below else node
