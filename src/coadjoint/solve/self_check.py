@@ -71,7 +71,9 @@ QUICK: Final = ("midpoint", "gauss")
 #: The method that the motion is found by, and in what part of the step of the longest run.
 #: Where Python leads the steps it is that of SciPy.
 FINE: Final = 16
+#: Members go one after the other there, so that they are fewer.
 LED: Final = "scipy:DOP853"
+LED_MEMBERS: Final = 2
 #: By how much an order may be measured too low. One that is too high is no fault of a method.
 SHY: Final = 0.5
 #: The same of means over paths with noise, and how many of these there are of each state.
@@ -181,7 +183,8 @@ class Runs:
         first = "heun" if self.is_noisy else "midpoint" if system.obstacle else "rk4"
         for _ in range(SHORTER):
             ends = self.run(first, self.step, HALVED, states)
-            self.states = states[:, np.isfinite(ends).all(axis=0)]
+            followed = states[:, np.isfinite(ends).all(axis=0)]
+            self.states = followed[:, :LED_MEMBERS] if system.obstacle else followed
             if self.states.size:
                 return
             self.step /= 2.0
