@@ -100,8 +100,8 @@ def test_many_names_of_drifts_leave_the_width_to_the_motion(monkeypatch):
 
     assert width() > 0.65
     given = draw_drift
-    beside = lambda axes, solution, **_: given(axes, solution, beside=True)  # noqa: E731
-    monkeypatch.setattr("coadjoint.solve.panels.draw_drift", beside)
+    at_right = lambda axes, solution, **_: given(axes, solution, is_wide=True)  # noqa: E731
+    monkeypatch.setattr("coadjoint.solve.panels.draw_drift", at_right)
     assert width() < 0.5
 
 

@@ -177,11 +177,10 @@ def describe(solution: Solution, *others: Solution) -> str:
     lead = f"A motion with the default parameters over {span}, by the generated code."
     if solution.status in ENDS:
         lead += f" {ENDS[solution.status]}"
-    told = _tell_colours(find_scene(solution)).replace("time", solution.system.clock[1])
-    return f"{lead} {told}".rstrip()
+    return f"{lead} {_tell_colours(find_scene(solution), solution.system.clock[1])}".rstrip()
 
 
-def _tell_colours(scene: Scene | None) -> str:
+def _tell_colours(scene: Scene | None, clock: str) -> str:
     """What the colours of a picture are; those of components stand in its legend."""
     from coadjoint.solve.curves import Curves
     from coadjoint.solve.rolling_bodies import RollingBody
@@ -199,20 +198,20 @@ def _tell_colours(scene: Scene | None) -> str:
         case (Sphere(labels=labels),) if labels:
             return "Each member has a colour of its own."
         case Curves(title=title):
-            return f"Above, {title}: the colour of a curve is its time, dark at the start."
+            return f"Above, {title}: the colour of a curve is its {clock}, dark at the start."
         case Paths() | (Sphere(), *_):
-            return "Colour is time, dark at the start."
+            return f"Colour is {clock}, dark at the start."
         case RollingBody():
             told = (
-                "The trace of the contact is coloured by time, dark at the start; the gray line is "
-                "the path of the centre of mass. Sectors of the body in two blues show how it "
-                "turns; the body is pale where it was before."
+                f"The trace of the contact is coloured by {clock}, dark at the start; the gray "
+                "line is the path of the centre of mass. Sectors of the body in two blues show how "
+                "it turns; the body is pale where it was before."
             )
             cap = " The orange cap is where the third axis of the body leaves it."
             return told + cap * (not scene.is_flat)
         case Vehicle():
             return (
-                "The path is coloured by time, dark at the start. The vehicle is black at the end, "
-                "and gray where it was before."
+                f"The path is coloured by {clock}, dark at the start. The vehicle is black at the "
+                "end, and gray where it was before."
             )
     return ""

@@ -222,7 +222,7 @@ def draw_panels(
         _limit_time(axes, solution)
     if conserved:
         axes = figure.add_subplot(grid[-1, 0], sharex=shared)
-        draw_drift(axes, solution, beside=columns > 1)
+        draw_drift(axes, solution, is_wide=columns > 1)
         if columns > 1:  # its names stand below the other column
             axes.get_legend().set_in_layout(False)
 
@@ -292,7 +292,7 @@ def _choose_limits(part: Array) -> tuple[float, float]:
     return (low + high - size) / 2, (low + high + size) / 2
 
 
-def draw_drift(axes: Any, solution: Solution, *, beside: bool = False) -> None:
+def draw_drift(axes: Any, solution: Solution, *, is_wide: bool = False) -> None:
     """Change of each conserved observable relative to its largest size, on a logarithmic axis.
 
     That of what begins at 0 is drawn as it is: its ratio to its own roundings would be 1. Of each
@@ -301,7 +301,7 @@ def draw_drift(axes: Any, solution: Solution, *, beside: bool = False) -> None:
     Args:
         axes: To draw on.
         solution: What is drawn.
-        beside: Whether there is room for many names at the right.
+        is_wide: Whether there is room for many names at the right.
     """
     curves = {name: _find_change(solution, name) for name in solution.conserved}
     shown = np.concatenate([change for _, change in curves.values()])
@@ -330,7 +330,7 @@ def draw_drift(axes: Any, solution: Solution, *, beside: bool = False) -> None:
     axes.tick_params(labelsize=8)
     axes.grid(alpha=0.3)
     names = len(solution.conserved)
-    if names > SHORT_LEGEND and not beside:  # at the right it would take half of the width
+    if names > SHORT_LEGEND and not is_wide:  # at the right it would take half of the width
         below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.6)}
         axes.legend(fontsize=7, ncols=SHORT_LEGEND, frameon=False, **below)
         return

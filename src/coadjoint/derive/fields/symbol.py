@@ -177,11 +177,9 @@ def _find_growth(matrices: Sequence[Sequence[Sequence[Fraction]]], k: int) -> mp
                     whole[i, j] += mpmath.mpc(0, k) ** n * x.numerator / x.denominator
         rates = mpmath.eig(whole, left=False, right=False)
         most = max(mpmath.re(rate) for rate in rates)
-        return (
-            most
-            if most > max(map(abs, rates)) * mpmath.mpf(10) ** (-DIGITS // 4)
-            else mpmath.mpf(0)
-        )
+        # a rate that is there four times is found to a quarter of the digits
+        roundings = max(map(abs, rates)) * mpmath.mpf(10) ** (-DIGITS // 4)
+        return most if most > roundings else mpmath.mpf(0)
 
 
 def _order(jets: Jets, rate: Element) -> int:

@@ -23,7 +23,7 @@ from coadjoint.derive.equations import Equations
 from coadjoint.derive.interpret import Value
 from coadjoint.derive.setting import weigh
 from coadjoint.derive.vectors.gradients import Addend, total_of, write_polynomial
-from coadjoint.derive.vectors.lines import VectorLine, rate_of
+from coadjoint.derive.vectors.lines import VectorLine, list_taken, rate_of
 from coadjoint.exact import Element, Field
 from coadjoint.exact.dense import apply, commutator, subtract, transpose
 from coadjoint.exact.linear import Span
@@ -97,7 +97,6 @@ def _find_parts(equations: Equations) -> AffineParts | None:
     momentum = next((q for q in spec.state if [*q.components] == names), None)
     names = [setting.velocities[k] for k in moving]
     velocity = next((q for q in spec.variables if [*q.components] == names), None)
-    taken = {m for q in (*spec.variables, *spec.parameters) for m in (q.name, *q.components)}
     traces = [sum(x for (i, j), x in each.items() if i == j) for each in turning.values()]
     whole = len(turning) - n * n + (0 if any(traces) else 1)
     if (
@@ -106,7 +105,7 @@ def _find_parts(equations: Equations) -> AffineParts | None:
         or whole
         or [matrices[k] for k in moving] != [{(i, n): 1} for i in range(n)]
         or any(i == n for each in matrices for i, _ in each)
-        or not taken.isdisjoint(LETTERS)
+        or not list_taken(spec).isdisjoint(LETTERS)
     ):
         return None
     return AffineParts(turning, momentum, velocity, n)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from coadjoint.derive.vectors.lines import VectorLine
+from coadjoint.derive.vectors.lines import VectorLine, list_taken
 from coadjoint.derive.vectors.transposes import list_factors, multiply, turn
 from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
@@ -59,8 +59,7 @@ def name_poses(spec: Spec) -> list[Pose]:
 
     A spec that has other use for a letter has no names of parts.
     """
-    taken = {n for q in (*spec.variables, *spec.parameters) for n in (q.name, *q.components)}
-    taken |= {each.name for each in spec.definitions}
+    taken = list_taken(spec) | {each.name for each in spec.definitions}
     found = list[Pose]()
     for variable in spec.state:
         if variable.turning != "pose":

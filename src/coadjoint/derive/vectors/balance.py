@@ -13,7 +13,7 @@ from coadjoint.derive.interpret import entries, interpret
 from coadjoint.derive.mechanics.frames import frame_of
 from coadjoint.derive.setting import Setting
 from coadjoint.derive.vectors.gradients import count_nodes, gradient, total_of
-from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
+from coadjoint.derive.vectors.lines import VectorForm, VectorLine, list_taken, rate_of
 from coadjoint.derive.vectors.recognise import is_short, recognise
 from coadjoint.derive.vectors.vocabulary import Vocabulary
 from coadjoint.derive.vectors.words import make_vocabulary
@@ -91,9 +91,8 @@ def _write_multipliers(spec: Spec, lines: Sequence[VectorLine]) -> tuple[dict[st
     """The multipliers in lines as lambda, by numbers if they are several; and what they are."""
     used = {n.name for line in lines for n in tree.walk(line.right) if isinstance(n, tree.Name)}
     shown = [each for each in spec.constraints if each.reaction in used]
-    named = {n for q in (*spec.variables, *spec.parameters) for n in (q.name, *q.components)}
     labels = ["lambda"] if len(shown) == 1 else [f"lambda{n}" for n in range(1, len(shown) + 1)]
-    if not named.isdisjoint(labels):
+    if not list_taken(spec).isdisjoint(labels):
         return {}, ""
     pairs = [(each, label) for each, label in zip(shown, labels, strict=True)]
     written = {each.reaction: name(label, bold=bool(each.shape)) for each, label in pairs}

@@ -17,7 +17,7 @@ from fractions import Fraction
 from coadjoint.algebra.matrices import SparseMatrix, commutator, size
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.jets import jets_of
-from coadjoint.derive.vectors.lines import VectorLine, rate_of
+from coadjoint.derive.vectors.lines import VectorLine, list_taken, rate_of
 from coadjoint.exact.linear import Span
 from coadjoint.spec.core import tree
 from coadjoint.spec.model import Variable
@@ -37,8 +37,7 @@ def commutator_lines(equations: Equations, momentum: Variable) -> list[VectorLin
     velocities = [v for v in spec.having_role("velocity") if v.block == momentum.block]
     if len(velocities) != 1 or momentum.elements or len(names) != len(matrices):
         return []
-    taken = {n for q in (*spec.variables, *spec.parameters) for n in (q.name, *q.components)}
-    if size(matrices) > MOST_ROWS or taken & {"W", "V", BASIS, "k"}:
+    if size(matrices) > MOST_ROWS or list_taken(spec) & {"W", "V", BASIS, "k"}:
         return []
     w = setting.elements(names)
     xi = [equations.close(each) for each in setting.elements(velocities[0].components)]

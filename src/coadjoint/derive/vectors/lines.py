@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from coadjoint.notation.written import Written
+from coadjoint.spec import Spec
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
 
@@ -46,6 +47,12 @@ class VectorForm:
     written: Mapping[str, Written]
     told: str = ""
     within: frozenset[str] = frozenset()
+
+
+def list_taken(spec: Spec) -> frozenset[str]:
+    """Names that letters may not have: of variables and parameters, and of their components."""
+    quantities = (*spec.variables, *spec.parameters)
+    return frozenset(name for each in quantities for name in (each.name, *each.components))
 
 
 def rate_of(node: tree.Node) -> tree.Node:

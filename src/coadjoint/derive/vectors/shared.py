@@ -43,31 +43,35 @@ def name_shared(
             [replace(each, right=_put(each.right, longest, letter, index)) for each in some]
             for some in (lines, added)
         )
-        node = (
-            tree.Name(letter)
-            if index is None
-            else tree.Member(name=letter, index=index, shift=0, indices=())
-        )
-        added.append(VectorLine(node, longest))
-        named[letter] = (3,)
+        added.append(VectorLine(_call(letter, index, 0), longest))
+        named[letter] = _shape_of(longest, shapes)
     return [*lines, *added], named
+
+
+def _call(letter: str, index: str | None, shift: int) -> tree.Node:
+    """A vector by its letter: of a member at some distance, or of none."""
+    if index is None:
+        return tree.Name(letter)
+    return tree.Member(name=letter, index=index, shift=shift, indices=())
 
 
 def _list_vectors(node: tree.Node, shapes: Mapping[str, Shape]) -> Iterator[tree.Node]:
     """The vectors in a formula."""
-    return (each for each in tree.walk(node) if _is_vector(each, shapes))
+    return (each for each in tree.walk(node) if len(_shape_of(each, shapes)) == 1)
 
 
-def _is_vector(node: tree.Node, shapes: Mapping[str, Shape]) -> bool:
-    """Whether a formula is a vector, as far as its names and functions tell."""
+def _shape_of(node: tree.Node, shapes: Mapping[str, Shape]) -> Shape:
+    """The shape of a vector, as far as its names and functions tell; else another one, or none."""
     match node:
         case tree.Name(name=name) | tree.Member(name=name, indices=()):
-            return len(shapes.get(name, ())) == 1
-        case tree.Call(function=function):
-            return function in ("vector", "cross", "vee")
+            return shapes.get(name, ())
+        case tree.Call(function="vector", arguments=entries):
+            return (len(entries),)
+        case tree.Call(function="cross" | "vee"):
+            return (3,)
         case tree.Binary(operator="*", right=side) | tree.Binary(left=side):
-            return _is_vector(side, shapes)
-    return False
+            return _shape_of(side, shapes)
+    return ()
 
 
 def _at_member(node: tree.Node) -> tree.Node:
@@ -88,11 +92,7 @@ def _put(node: tree.Node, vector: tree.Node, letter: str, index: str | None) -> 
     """A formula with a letter in the place of a vector."""
     if _at_member(node) == vector:
         shifts = [each.shift for each in tree.walk(node) if isinstance(each, tree.Member)]
-        return (
-            tree.Member(name=letter, index=index, shift=min(shifts), indices=())
-            if index
-            else tree.Name(letter)
-        )
+        return _call(letter, index, min(shifts, default=0))
     below = tree.children(node)
     return (
         tree.rebuild(node, [_put(each, vector, letter, index) for each in below]) if below else node
