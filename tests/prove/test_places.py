@@ -6,7 +6,6 @@ import pytest
 
 from coadjoint.errors import ClaimError
 from coadjoint.prove import prove
-from coadjoint.prove.certificate import find_formula
 from coadjoint.spec.reader import read_spec_text
 
 TEXT = """title = "Body"
@@ -61,7 +60,7 @@ def test_each_refuted_claim_is_shown_at_its_line(certificate):
 def test_a_claim_of_the_engine_has_no_place(certificate):
     """It is told by the name of the system; and no other claim lends it its place."""
     first, *rest = certificate.claims
-    assert find_formula(certificate.spec, first) is None
+    assert first.made is None
     wrong = certificate.refuted[0].verdict
     spoiled = replace(certificate, claims=(replace(first, verdict=wrong), *rest))
     (text,) = [each for each in spoiled.explain_failures() if first.statement in each]

@@ -5,7 +5,7 @@ import pytest
 from coadjoint import pipeline
 from coadjoint.errors import ClaimError, SpecError
 from coadjoint.prove import Certificate, Claim, Finding, Verdict
-from coadjoint.prove.zero import Decision, Discovery, make_entry, mark_accepted
+from coadjoint.prove.zero import Decision, Discovery, make_entry, mark_claimed
 from tests.specs import RIGID_BODY, prove_claims, spec
 
 
@@ -80,8 +80,8 @@ def test_a_discovery_becomes_a_finding():
         "scope": "for almost all parameters",
         "error": "below 1e-17",
     }
-    ((*_, examine),) = mark_accepted(
-        spec(), ("claims", "casimirs", 0), [("", "", lambda: discovery)], None
+    ((*_, examine),) = mark_claimed(
+        spec(), ("claims", "casimirs", 0), None, [("", "", lambda: discovery)], None
     )
     assert examine() is discovery
 

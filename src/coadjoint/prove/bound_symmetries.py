@@ -39,7 +39,7 @@ from coadjoint.prove.findings import SHOWN, finding
 from coadjoint.prove.momenta import law_along
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.symmetries import decide_on
-from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_claimed
 from coadjoint.spec.model import Symmetry
 
 
@@ -196,7 +196,8 @@ def about_motion_symmetries(motion: Motion) -> Iterator[Examined]:
             else Action(motion, symmetry)
         )
         examined = [*_about_action(motion, action), *_about_momenta(motion, action, values)]
-        yield from mark_accepted(motion.spec, ("symmetries", symmetry.name), examined, motion.field)
+        key = ("symmetries", symmetry.name)
+        yield from mark_claimed(motion.spec, key, symmetry, examined, motion.field)
 
 
 def _about_action(motion: Motion, action: Action) -> Iterator[Examined]:

@@ -34,7 +34,8 @@ from coadjoint.prove.zero import (
     Decision,
     Examined,
     decide_zero,
-    mark_accepted,
+    mark_claimed,
+    mark_place,
     prove_by_normal_form,
 )
 from coadjoint.spec import Formula
@@ -127,10 +128,10 @@ def about_casimirs(motion: Motion) -> Iterator[Examined]:
     for place, casimir in enumerate(spec.casimirs):
         decide = cache(partial(_casimir, motion, casimir))
         examined = [(f"{casimir.in_one_line} is a Casimir", "casimir", decide)]
-        yield from mark_accepted(spec, ("claims", "casimirs", place), examined, field)
+        yield from mark_claimed(spec, ("claims", "casimirs", place), casimir, examined, field)
         if decide().verdict is Verdict.PROVED:
             proved += first.setting.components(casimir)
-            yield from _about_survival(motion, casimir)
+            yield from mark_place(casimir, _about_survival(motion, casimir), field)
     searched = _about_completeness(motion, proved)
     yield from within_budget(field, "casimir", "Casimirs", searched)
 

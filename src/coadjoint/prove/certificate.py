@@ -61,6 +61,8 @@ class Claim:
             claim of the engine, which never does.
         shown: What the defect is of: of a function on a set that the motion leaves, not the rate
             of the function but that of a relation of the set.
+        made: The formula of the spec that makes this claim, or that it is about; None of most
+            claims of the engine, which stand nowhere in the spec.
     """
 
     statement: str
@@ -72,6 +74,7 @@ class Claim:
     defect: str = ""
     accepted: bool | None = None
     shown: Shown = Shown.DIFFERENCE
+    made: Formula | None = field(default=None, compare=False, repr=False)
 
     @property
     def holds(self) -> bool:
@@ -193,7 +196,7 @@ class Certificate:
         """Why claims do not hold, each with its place in the spec, or with the system's name."""
         spec = self.spec
         for claim in self.failures:
-            text, made = failure_text(claim), spec and find_formula(spec, claim)
+            text, made = failure_text(claim), claim.made
             yield made.locate(spec.path, text) if spec and made else f"{self.system}: {text}"
 
     def as_record(self) -> dict[str, Any]:
@@ -247,28 +250,6 @@ _OWN_FIXES = MappingProxyType(
 
 #: What the method adds where not the claimed function but the relations of its set have a rate.
 LEAVES = ": the motion leaves this set"
-
-
-def find_formula(spec: Spec, claim: Claim) -> Formula | None:
-    """The formula of a spec that makes a claim, or the arm of a body that does not roll.
-
-    None of most claims of the engine, which stand nowhere in the spec.
-    """
-    made: list[tuple[str, Formula]] = []
-    if claim.kind == "casimir":
-        made = [(f"{each.in_one_line} is ", each) for each in spec.casimirs]
-    if claim.kind == "conserved":
-        made = [(f"{each.formula.in_one_line} is ", each.formula) for each in spec.conserved]
-    if claim.kind == "bracket":
-        pairs = ((each, each.left.in_one_line, each.right.in_one_line) for each in spec.brackets)
-        made = [(f"{{{left}, {right}}} = ", each.value) for each, left, right in pairs]
-    if claim.kind == "reduction" and spec.reduction is not None:
-        made = [("the motion keeps ", next(iter(spec.reduction.section.values())))]
-    if claim.kind == "rolling" and spec.rolling is not None:
-        made = [("", spec.rolling.arm)]
-    made = [(begin, formula) for begin, formula in made if begin in claim.statement]
-    made.sort(key=lambda each: len(each[0]))  # "g*Pi3 is" has "Pi3 is" in it
-    return made[-1][1] if made else None
 
 
 def failure_text(claim: Claim) -> str:

@@ -64,7 +64,6 @@ from coadjoint.prove.zero import (
     make_entry,
 )
 from coadjoint.spec import Formula, Spec
-from coadjoint.spec.tables import list_formulas
 
 
 @dataclass(frozen=True)
@@ -266,7 +265,7 @@ def _certify(spec: Spec, routes: Sequence[Equations] = (), *, searched: bool = T
     _check_domain(spec, field)
     claims, findings, start = list[Claim](), list[Finding](), perf_counter()
     for statement, kind, examine in _claims(routes, searched=searched):  # finding takes its time
-        result = _examine(spec, statement, kind, examine, field)
+        result = _examine(spec, statement, examine, field)
         seconds, start = perf_counter() - start, perf_counter()
         entry = make_entry(statement, kind, result, seconds)
         if isinstance(entry, Claim):
@@ -294,7 +293,6 @@ def _claims(routes: Sequence[Equations], *, searched: bool) -> Iterator[Examined
 def _examine(
     spec: Spec,
     statement: str,
-    kind: str,
     examine: Callable[[], Sequence[Element] | Decision | Discovery],
     field: Field,
 ) -> Decision | Discovery:
@@ -308,15 +306,7 @@ def _examine(
         return result if isinstance(result, Decision | Discovery) else decide_zero(result, field)
     except UndecidedError as error:
         message = f"undecided: {statement}: {error}"
-        raise _fault(spec, _formula_of(spec, statement, kind), message, statement) from error
-
-
-def _formula_of(spec: Spec, statement: str, kind: str) -> Formula | None:
-    """The formula of the spec that a statement is about; None where it is about several."""
-    if kind == "rolling" and spec.rolling is not None and spec.rolling.contact is not None:
-        return spec.rolling.contact.surface
-    named = (each for each in list_formulas(spec) if each.path[0] == "claims")
-    return next((f for f in named if statement.startswith(f"{f.in_one_line} ")), None)
+        raise _fault(spec, error.made, message, statement) from error
 
 
 def _fault(spec: Spec, formula: Formula | None, message: str, found: str) -> UndecidedError:

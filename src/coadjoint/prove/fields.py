@@ -36,7 +36,7 @@ from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
 from coadjoint.prove.strands import about_strand, decide_holonomy
 from coadjoint.prove.torus import about_torus
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, give, mark_accepted
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, give, mark_claimed
 
 _COVECTORS = ("_xi", "_eta", "_zeta")
 
@@ -244,7 +244,7 @@ def _about_casimirs(first: Equations) -> Iterator[Examined]:
         defects = partial(lambda parts: [x for part in parts for x in decide(part)], parts)
         claimed = [(f"the integral of {formula.in_one_line} is a Casimir", "casimir", defects)]
         key = ("claims", "casimirs", place)
-        yield from mark_accepted(setting.spec, key, claimed, setting.field)
+        yield from mark_claimed(setting.spec, key, formula, claimed, setting.field)
 
 
 def _about_densities(first: Equations) -> Iterator[Examined]:
@@ -265,7 +265,8 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
             decision, where = decide_law(first, parts)
             statement = f"the integral of {claim.formula.in_one_line} is conserved{where}"
             claimed = [(statement, "conserved", partial(give, decision))]
-            yield from mark_accepted(spec, ("claims", "conserved", place), claimed, setting.field)
+            key = ("claims", "conserved", place)
+            yield from mark_claimed(spec, key, claim, claimed, setting.field)
 
 
 def _decide_between_ends(equations: Equations) -> Decision:

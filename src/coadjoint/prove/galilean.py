@@ -31,7 +31,7 @@ from coadjoint.groups.galilean import (
     transformation_defects,
 )
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_claimed
 
 #: The subgroup that moves time.
 SHIFT = "time shift"
@@ -41,7 +41,7 @@ def about_galilean(motion: Motion) -> Iterator[Examined]:
     """One claim for each subgroup, if the spec claims Galilean relativity."""
     if motion.spec.galilean:
         examined = _about_subgroups(motion.equations)
-        yield from mark_accepted(motion.spec, ("claims", "galilean"), examined, motion.field)
+        yield from mark_claimed(motion.spec, ("claims", "galilean"), None, examined, motion.field)
 
 
 def _about_subgroups(first: Equations) -> Iterator[Examined]:

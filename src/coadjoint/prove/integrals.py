@@ -25,7 +25,7 @@ from coadjoint.prove.energy import Balance, keeps_energy
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import noise_rates
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_accepted
+from coadjoint.prove.zero import Decision, Examined, UndecidedError, decide_zero, mark_claimed
 from coadjoint.spec.model import DerivedMomentum, Integral
 from coadjoint.spec.spatial import spatial_momenta
 
@@ -53,7 +53,8 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
     for place, claim in enumerate(spec.conserved):
         if claim.everywhere != said:
             claimed = [(_statement(motion, claim), "conserved", partial(_integral, motion, claim))]
-            yield from mark_accepted(spec, ("claims", "conserved", place), claimed, motion.field)
+            key = ("claims", "conserved", place)
+            yield from mark_claimed(spec, key, claim, claimed, motion.field)
 
 
 def _statement(motion: Motion, claim: Integral) -> str:

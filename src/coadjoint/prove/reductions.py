@@ -24,7 +24,14 @@ from coadjoint.prove.findings import finding, first_nonzero
 from coadjoint.prove.ideals import Ideal
 from coadjoint.prove.identities import casimir_defects, drift
 from coadjoint.prove.relaxation import about_relaxation, derive_whole
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, mark_accepted
+from coadjoint.prove.zero import (
+    Decision,
+    Discovery,
+    Examined,
+    decide_zero,
+    mark_claimed,
+    mark_place,
+)
 from coadjoint.spec import Formula
 
 Found = Sequence[Element] | Decision | Discovery
@@ -36,23 +43,28 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
     if reduction is None:
         return
     restriction = restriction_of(first)
-    whole = restriction.whole
+    whole, field = restriction.whole, first.setting.field
     section = ", ".join(f"{name} = {f.in_one_line}" for name, f in reduction.section.items())
     if reduction.where:
         where = ", ".join(f"{formula.in_one_line} = 0" for formula in reduction.where)
         functions = [g for f in reduction.where for g in whole.setting.components(f)]
         kept = partial(_decide_kept, whole, functions, where)
-        yield f"the whole motion keeps {where}", "reduction", kept
         vanishing = partial(_on_section, restriction, functions)
-        yield f"where {section}, {where}", "reduction", vanishing
-    yield f"the motion keeps {section}", "reduction", partial(section_defects, restriction)
+        examined: list[Examined] = [
+            (f"the whole motion keeps {where}", "reduction", kept),
+            (f"where {section}, {where}", "reduction", vanishing),
+        ]
+        yield from mark_place(reduction.where, examined, field)
+    keeps = partial(section_defects, restriction)
+    examined = [(f"the motion keeps {section}", "reduction", keeps)]
+    yield from mark_place(reduction.section, examined, field)
     for statement, kind, examine in about_relaxation(whole):
         yield f"{statement} (of the whole system)", kind, partial(_decide, whole, examine)
     yield from _about_bracket(first, restriction)
     for place, casimir in enumerate(first.spec.casimirs):
         examined = [*_about_casimir(first, restriction, casimir)]
         key = ("claims", "casimirs", place)
-        yield from mark_accepted(first.spec, key, examined, first.setting.field)
+        yield from mark_claimed(first.spec, key, casimir, examined, field)
 
 
 def _about_bracket(first: Equations, restriction: Restriction) -> Iterator[Examined]:

@@ -32,7 +32,7 @@ from coadjoint.prove.driven import has_moving_momenta
 from coadjoint.prove.equivalence import in_velocities
 from coadjoint.prove.identities import Tensor, casimir_defects, drift, gradient
 from coadjoint.prove.semidefinite import decide_semidefinite
-from coadjoint.prove.zero import Examined, UndecidedError, mark_accepted
+from coadjoint.prove.zero import Examined, UndecidedError, mark_claimed
 
 
 def about_relaxation(
@@ -69,7 +69,7 @@ def about_relaxation(
     terms = f"{{x, h}} + {relaxation.added}{' + the forces' * spec.is_forced}"
     terms += " + dx/dt at fixed momenta" * has_moving_momenta(first)
     claims.append((f"the rates are {terms}", "dissipation", known.list_added))
-    yield from mark_accepted(spec, (relaxation.table,), claims, first.setting.field)
+    yield from mark_claimed(spec, (relaxation.table,), relaxation, claims, first.setting.field)
 
 
 def derive_whole(first: Equations) -> Equations:

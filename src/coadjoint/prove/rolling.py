@@ -18,18 +18,23 @@ from coadjoint.derive.mechanics.followed import arm
 from coadjoint.exact.dense import cross, dot
 from coadjoint.prove.constrained import ConstrainedRates
 from coadjoint.prove.contact import about_contact
-from coadjoint.prove.zero import Examined, decide_zero
+from coadjoint.prove.zero import Examined, decide_zero, mark_place
 
 
 def about_rolling(motion: ConstrainedRates) -> Iterator[Examined]:
     """The claims about a body that rolls; none about any other."""
+    rolling = motion.spec.rolling
+    if rolling is not None and rolling.contact is not None:
+        yield from mark_place(rolling.contact.surface, about_contact(motion), motion.field)
+    elif rolling is not None:
+        yield from mark_place(rolling.arm, _about_plane(motion), motion.field)
+
+
+def _about_plane(motion: ConstrainedRates) -> Iterator[Examined]:
+    """The claims about a body that rolls on a plane."""
     first = motion.equations
     setting, rolling = first.setting, first.spec.rolling
-    if rolling is None:
-        return
-    if rolling.contact is not None:
-        yield from about_contact(motion)
-        return
+    assert rolling is not None, "asked for only of bodies that roll"
     s, Gamma = arm(setting), rolling.normal
     text, by_name = rolling.arm.in_one_line, {v.name: v for v in setting.spec.variables}
     Y, Omega, normal = (

@@ -25,7 +25,7 @@ from coadjoint.prove.certificate import Verdict
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import drift
 from coadjoint.prove.motion import Motion
-from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_accepted
+from coadjoint.prove.zero import Decision, Examined, decide_zero, mark_claimed
 from coadjoint.spec.model import ClaimedBracket, Formula, Symmetry, Transformation
 
 #: Entries of a cocycle that a statement shows.
@@ -42,7 +42,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
             of_map += _noether(first, symmetry, J, first.close(energy))
-        yield from mark_accepted(spec, ("symmetries", symmetry.name), of_map, field)
+        yield from mark_claimed(spec, ("symmetries", symmetry.name), symmetry, of_map, field)
     if energy is not None:
         yield from _about_integrals(first, known)
     for place, claim in enumerate(spec.brackets):
@@ -50,7 +50,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         statement = f"{text} = {claim.value.in_one_line}"
         defects = partial(_claimed_bracket, first, claim, known)
         claimed = [(statement, "bracket", partial(decide_on, motion, defects))]
-        yield from mark_accepted(spec, ("claims", "brackets", place), claimed, field)
+        yield from mark_claimed(spec, ("claims", "brackets", place), claim.value, claimed, field)
 
 
 def about_transformations(motion: Motion) -> Iterator[Examined]:
@@ -154,7 +154,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
         )
         follows = [(statement, "symmetry", partial(_commutators, first, flows))]
         key = ("claims", "conserved", place)  # it follows from the claim there
-        yield from mark_accepted(first.spec, key, follows, first.setting.field)
+        yield from mark_claimed(first.spec, key, claim, follows, first.setting.field)
 
 
 def _flows(first: Equations, formula: Formula, known: Mapping[str, Value]) -> list[VectorField]:
@@ -226,12 +226,12 @@ def _about_transformation(motion: Motion, transformation: Transformation) -> Ite
     key, kind, field = ("transformations", name), "transformation", motion.field
     moved = partial(_motion_defects, motion, transformation)
     examined = [(f"{name} takes the motion to {goal}", kind, partial(decide_on, motion, moved))]
-    yield from mark_accepted(spec, key, examined, field)
+    yield from mark_claimed(spec, key, transformation, examined, field)
     for observable, formula in transformation.exchanges.items():
         exchanged = partial(_exchange_defects, motion, transformation, observable, formula)
         statement = f"{name} takes {observable} to {formula.in_one_line}"
         examined = [(statement, kind, partial(decide_on, motion, exchanged))]
-        yield from mark_accepted(spec, (*key, "exchanges", observable), examined, field)
+        yield from mark_claimed(spec, (*key, "exchanges", observable), formula, examined, field)
 
 
 def decide_on(motion: Motion, defects: Callable[[], Sequence[Element]]) -> Decision:

@@ -34,8 +34,9 @@ from coadjoint.prove.points import (
     real,
     real_function,
 )
-from coadjoint.spec import Spec
+from coadjoint.spec import Formula, Spec
 from coadjoint.spec.core.positions import KeyPath
+from coadjoint.spec.tables import list_formulas
 
 __all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "real_function"]
 
@@ -64,6 +65,7 @@ class Decision:
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
         shown: What the defect is of.
+        made: The formula of the spec that makes the claim, or that it is about.
     """
 
     verdict: Verdict
@@ -72,6 +74,7 @@ class Decision:
     defect: str = ""
     accepted: bool | None = None
     shown: Shown = Shown.DIFFERENCE
+    made: Formula | None = None
 
 
 @dataclass(frozen=True)
@@ -117,6 +120,7 @@ def make_entry(
         defect=result.defect,
         accepted=result.accepted,
         shown=result.shown,
+        made=result.made,
     )
 
 
@@ -125,31 +129,52 @@ def give(found: Found) -> Found:
     return found
 
 
-def mark_accepted(
-    spec: Spec, key: KeyPath, examined: Iterable[Examined], ring: Field
+def mark_claimed(
+    spec: Spec, key: KeyPath, record: object, examined: Iterable[Examined], ring: Field
 ) -> Iterator[Examined]:
     """Statements that a spec makes, for which it may accept numerical support.
 
     Args:
         spec: The spec.
         key: Where it makes them, such as ``("claims", "conserved", 0)``.
+        record: What it declares there: a formula, or a record whose first formula stands for it.
         examined: The statements.
         ring: Where what must be zero lives.
     """
-    accepted = key in spec.accepted
-    for statement, kind, examine in examined:
-        yield statement, kind, partial(_mark, examine, ring, accepted=accepted)
+    return _mark(record, examined, ring, accepted=key in spec.accepted)
+
+
+def mark_place(record: object, examined: Iterable[Examined], ring: Field) -> Iterator[Examined]:
+    """Statements of the engine about what a spec declares; the arguments are as before."""
+    return _mark(record, examined, ring, accepted=None)
 
 
 def _mark(
-    examine: Callable[[], Sequence[Element] | Decision | Discovery], ring: Field, *, accepted: bool
+    record: object, examined: Iterable[Examined], ring: Field, *, accepted: bool | None
+) -> Iterator[Examined]:
+    """Statements with a formula, and with the mark whether support is enough."""
+    made = next(list_formulas(record), None)
+    for statement, kind, examine in examined:
+        yield statement, kind, partial(_examine_marked, examine, ring, made, accepted=accepted)
+
+
+def _examine_marked(
+    examine: Callable[[], Sequence[Element] | Decision | Discovery],
+    ring: Field,
+    made: Formula | None,
+    *,
+    accepted: bool | None,
 ) -> Decision | Discovery:
-    """The decision about a claim of a spec, with the mark whether support is enough."""
-    result = examine()
-    if isinstance(result, Discovery):
-        return result
-    decision = result if isinstance(result, Decision) else decide_zero(result, ring)
-    return replace(decision, accepted=accepted)
+    """The decision about a claim, or the error that there is none, with the marks."""
+    try:
+        result = examine()
+        if isinstance(result, Discovery):
+            return result
+        decision = result if isinstance(result, Decision) else decide_zero(result, ring)
+    except UndecidedError as error:
+        error.made = made
+        raise
+    return replace(decision, accepted=accepted, made=made)
 
 
 def decide_zero(
@@ -204,7 +229,13 @@ def refute_at_a_point(element: Element, ring: Field, where: Ideal) -> Decision |
 
 
 class UndecidedError(ClaimError):
-    """Nothing is known of a claim: no point is found at which it could fail."""
+    """Nothing is known of a claim: no point is found at which it could fail.
+
+    Attributes:
+        made: As of a claim.
+    """
+
+    made: Formula | None = None
 
 
 def prove_by_normal_form(ring: Field) -> Decision:
