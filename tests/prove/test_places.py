@@ -60,8 +60,59 @@ def test_each_refuted_claim_is_shown_at_its_line(certificate):
 def test_a_claim_of_the_engine_has_no_place(certificate):
     """It is told by the name of the system; and no other claim lends it its place."""
     first, *rest = certificate.claims
-    assert first.made is None
+    assert first.place is None
     wrong = certificate.refuted[0].verdict
     spoiled = replace(certificate, claims=(replace(first, verdict=wrong), *rest))
     (text,) = [each for each in spoiled.explain_failures() if first.statement in each]
     assert text.startswith("body: refuted: ")
+
+
+PARTICLE = """title = "Particle in a plane"
+routes = ["poisson", "lax"]
+[variables]
+q = { role = "coordinate", shape = [2] }
+p = { role = "coordinate", shape = [2] }
+[poisson]
+canonical = [["q", "p"]]
+[hamiltonian]
+h = "dot(p, p)/2 + dot(q, q)/2"
+[lax]
+L = "rows(vector(p1, q1, 0, 0), vector(q1, -p1, 0, 0), vector(0, 0, p2, q2), vector(0, 0, q2, -p2))"
+M = "rows(vector(0, 1, 0, 0), vector(-1, 0, 0, 0), vector(0, 0, 0, 1), vector(0, 0, -1, 0))/2"
+[symmetries]
+J = { algebra = "so(2)", vector = "e", generators = { q = "e*vector(-q2, q1)" } }
+[transformations]
+mirror = { map = { q = "vector(-q1, q2)", p = "vector(-p1, p2)" }, exchanges = { J = "-J" } }
+"""
+#: Changes that make a claim false: what is refuted, with the line and key of what declares it.
+WRONG = {
+    "pair": ("0, -1, 0))/2", "0, -1, 0))", "dL/dt = [L, M] for every lambda", 11, "lax.L"),
+    "momentum map": (
+        '"e*vector(-q2, q1)" }',
+        '"e*vector(-q2, q1)" }, map = "e*(q1*p2 + q2*p1)"',
+        "J is their momentum map",
+        14,
+        "symmetries.J",
+    ),
+    "map": (
+        '"vector(-q1',
+        '"vector(-2*q1',
+        "mirror takes the motion to itself",
+        16,
+        "transformations.mirror.map.q",
+    ),
+    "exchange": ('"-J"', '"J"', "mirror takes J to J", 16, "transformations.mirror.exchanges.J"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_refuted_pairs_symmetries_and_maps_are_shown_at_their_lines(wrong):
+    """Of a table without a formula the table is shown; the right spec has nothing to show."""
+    old, new, statement, line, key = WRONG[wrong]
+    assert PARTICLE.count(old) == 1
+    assert prove(read_spec_text(PARTICLE, "plane.toml")).holds
+    told = [*prove(read_spec_text(PARTICLE.replace(old, new), "plane.toml")).explain_failures()]
+    (shown,) = [text for text in told if f"refuted: {statement}" in text]
+    assert shown.startswith(f"plane.toml:{line}: {key}: refuted: ")
+    assert len(shown.splitlines()) == 3
+    assert shown.splitlines()[2].strip("^ ") == ""

@@ -34,12 +34,14 @@ class LaxPair:
         L: Affine in the state.
         M: How L turns; it may name velocities.
         texts: L and M as people write them.
+        declared: L as the spec declares it; None of a pair that was found.
     """
 
     spectral: str
     L: Matrix
     M: Matrix
     texts: tuple[str, str]
+    declared: Formula | None = None
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,8 @@ def declared_pair(setting: Setting) -> LaxPair:
             problem, expected = str(error), f"polynomials in {lax.spectral} and its inverse"
             hint = f"Choose another parameter than {lax.spectral}."
             raise refusal(setting, "lax", problem, lax.spectral, expected, hint) from None
-    return LaxPair(lax.spectral, L, M, (lax.L.in_one_line, lax.M.in_one_line))
+    texts = lax.L.in_one_line, lax.M.in_one_line
+    return LaxPair(spectral=lax.spectral, L=L, M=M, texts=texts, declared=lax.L)
 
 
 def find_matrix_at(setting: Setting, value: Fraction) -> dict[tuple[int, int], Element]:

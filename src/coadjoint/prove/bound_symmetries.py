@@ -197,7 +197,7 @@ def about_motion_symmetries(motion: Motion) -> Iterator[Examined]:
         )
         examined = [*_about_action(motion, action), *_about_momenta(motion, action, values)]
         key = ("symmetries", symmetry.name)
-        yield from mark_claimed(motion.spec, key, symmetry, examined, motion.field)
+        yield from mark_claimed(motion.spec, key, symmetry.place, examined, motion.field)
 
 
 def _about_action(motion: Motion, action: Action) -> Iterator[Examined]:

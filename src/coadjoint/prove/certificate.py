@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 from coadjoint.errors import ClaimError
 
 if TYPE_CHECKING:
-    from coadjoint.spec import Formula, Spec
+    from coadjoint.spec import Spec
+    from coadjoint.spec.core.source import Place
 
 
 class Verdict(StrEnum):
@@ -61,8 +62,8 @@ class Claim:
             claim of the engine, which never does.
         shown: What the defect is of: of a function on a set that the motion leaves, not the rate
             of the function but that of a relation of the set.
-        made: The formula of the spec that makes this claim, or that it is about; None of most
-            claims of the engine, which stand nowhere in the spec.
+        place: Where the spec makes this claim, or what it is about; None of most claims of the
+            engine, which stand nowhere in the spec.
     """
 
     statement: str
@@ -74,7 +75,7 @@ class Claim:
     defect: str = ""
     accepted: bool | None = None
     shown: Shown = Shown.DIFFERENCE
-    made: Formula | None = field(default=None, compare=False, repr=False)
+    place: Place | None = field(default=None, compare=False, repr=False)
 
     @property
     def holds(self) -> bool:
@@ -196,8 +197,8 @@ class Certificate:
         """Why claims do not hold, each with its place in the spec, or with the system's name."""
         spec = self.spec
         for claim in self.failures:
-            text, made = failure_text(claim), claim.made
-            yield made.locate(spec.path, text) if spec and made else f"{self.system}: {text}"
+            text, place = failure_text(claim), claim.place
+            yield place.locate(spec.path, text) if spec and place else f"{self.system}: {text}"
 
     def as_record(self) -> dict[str, Any]:
         """The certificate as JSON values, without times."""

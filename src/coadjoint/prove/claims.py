@@ -63,7 +63,8 @@ from coadjoint.prove.zero import (
     decide_zero,
     make_entry,
 )
-from coadjoint.spec import Formula, Spec
+from coadjoint.spec import Spec
+from coadjoint.spec.core.source import Place
 
 
 @dataclass(frozen=True)
@@ -306,19 +307,19 @@ def _examine(
         return result if isinstance(result, Decision | Discovery) else decide_zero(result, field)
     except UndecidedError as error:
         message = f"undecided: {statement}: {error}"
-        raise _fault(spec, error.made, message, statement) from error
+        raise _fault(spec, error.place, message, statement) from error
 
 
-def _fault(spec: Spec, formula: Formula | None, message: str, found: str) -> UndecidedError:
-    """An error that points at a formula, if there is one."""
-    if formula is None:
+def _fault(spec: Spec, place: Place | None, message: str, found: str) -> UndecidedError:
+    """An error that points at a place, if there is one."""
+    if place is None:
         return UndecidedError(f"{spec.path}: {message}", system=spec.name, found=found)
     return UndecidedError(
-        formula.locate(spec.path, message),
+        place.locate(spec.path, message),
         system=spec.name,
         path=str(spec.path),
-        line=formula.line,
-        key=formula.key,
+        line=place.line,
+        key=place.key,
         found=found,
     )
 

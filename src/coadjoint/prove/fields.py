@@ -36,7 +36,15 @@ from coadjoint.prove.grids import about_grid
 from coadjoint.prove.lax import lax_decision
 from coadjoint.prove.strands import about_strand, decide_holonomy
 from coadjoint.prove.torus import about_torus
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, give, mark_claimed
+from coadjoint.prove.zero import (
+    Decision,
+    Discovery,
+    Examined,
+    decide_zero,
+    give,
+    mark_claimed,
+    mark_place,
+)
 
 _COVECTORS = ("_xi", "_eta", "_zeta")
 
@@ -266,7 +274,7 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
             statement = f"the integral of {claim.formula.in_one_line} is conserved{where}"
             claimed = [(statement, "conserved", partial(give, decision))]
             key = ("claims", "conserved", place)
-            yield from mark_claimed(spec, key, claim, claimed, setting.field)
+            yield from mark_claimed(spec, key, claim.formula, claimed, setting.field)
 
 
 def _decide_between_ends(equations: Equations) -> Decision:
@@ -294,16 +302,17 @@ def _about_pair(
         return
     pair, space = equations.pair, first.spec.space
     motion = next((each for each in routes if each.pair is None), first)
-    yield (
+    statement = (
         f"dL/dt - dM/ds = [L, M] for every {pair.spectral}, with L = {pair.texts[0]} and M = "
-        f"{pair.texts[1]}, on the route {equations.route}",
-        "lax",
-        lambda: lax_decision(motion, pair),
+        f"{pair.texts[1]}, on the route {equations.route}"
     )
+    examined: list[Examined] = [(statement, "lax", lambda: lax_decision(motion, pair))]
     if space is not None and not space.has_ends:
-        yield (
+        statement = (
             f"the trace of the holonomy of dpsi/d{space.name} = psi L around the circle is "
-            f"conserved, for every {pair.spectral} for which L is finite",
-            "lax",
-            lambda: decide_holonomy(lax_decision(motion, pair), "M"),
+            f"conserved, for every {pair.spectral} for which L is finite"
         )
+        examined.append(
+            (statement, "lax", lambda: decide_holonomy(lax_decision(motion, pair), "M"))
+        )
+    yield from mark_place(pair.declared, examined, first.setting.field)

@@ -39,9 +39,10 @@ SHIFT = "time shift"
 
 def about_galilean(motion: Motion) -> Iterator[Examined]:
     """One claim for each subgroup, if the spec claims Galilean relativity."""
-    if motion.spec.galilean:
+    place = motion.spec.galilean
+    if place is not None:
         examined = _about_subgroups(motion.equations)
-        yield from mark_claimed(motion.spec, ("claims", "galilean"), None, examined, motion.field)
+        yield from mark_claimed(motion.spec, place.path, place, examined, motion.field)
 
 
 def _about_subgroups(first: Equations) -> Iterator[Examined]:

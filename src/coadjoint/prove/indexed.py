@@ -157,7 +157,7 @@ def _examine_lax(family: Windows) -> Claim:
     reason = f", with {list_names(map(str, counts))} members; an entry reads three rows"
     if decision.verdict is not Verdict.PROVED:
         reason = f", with {counts[-1]} members"
-    found = replace(decision, method=decision.method + reason)
+    found = replace(decision, method=decision.method + reason, place=pair.L)
     claim = make_entry(statement, "lax", found, perf_counter() - start)
     assert isinstance(claim, Claim), claim
     return claim

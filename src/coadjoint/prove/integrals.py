@@ -54,7 +54,7 @@ def about_integrals(motion: Motion) -> Iterator[Examined]:
         if claim.everywhere != said:
             claimed = [(_statement(motion, claim), "conserved", partial(_integral, motion, claim))]
             key = ("claims", "conserved", place)
-            yield from mark_claimed(spec, key, claim, claimed, motion.field)
+            yield from mark_claimed(spec, key, claim.formula, claimed, motion.field)
 
 
 def _statement(motion: Motion, claim: Integral) -> str:

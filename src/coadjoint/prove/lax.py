@@ -30,7 +30,7 @@ from coadjoint.prove.completeness import ALMOST
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.prove.findings import for_parameters
 from coadjoint.prove.identities import drift
-from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero
+from coadjoint.prove.zero import Decision, Discovery, Examined, decide_zero, mark_place
 
 #: Addends of an integral up to which it is differentiated along the motion: 40 take 0.1 seconds in
 #: six dimensions, 800 a minute.
@@ -50,12 +50,12 @@ def about_pairs(routes: Sequence[Equations]) -> Iterator[Examined]:
         if pair is None:
             continue
         decisions[" ".join(pair.texts)] = decide = cache(partial(lax_decision, motion, pair))
-        yield (
+        statement = (
             f"dL/dt = [L, M] for every {pair.spectral}, with L = {pair.texts[0]} and M = "
-            f"{pair.texts[1]}, on the route {equations.route}",
-            "lax",
-            decide,
+            f"{pair.texts[1]}, on the route {equations.route}"
         )
+        examined = [(statement, "lax", decide)]
+        yield from mark_place(pair.declared, examined, first.setting.field)
     integrals = lax_integrals(first.setting)
     if integrals is not None:
         of_pair = decisions[" ".join(integrals.pair.texts)]

@@ -54,10 +54,10 @@ def about_reduction(first: Equations) -> Iterator[Examined]:
             (f"the whole motion keeps {where}", "reduction", kept),
             (f"where {section}, {where}", "reduction", vanishing),
         ]
-        yield from mark_place(reduction.where, examined, field)
+        yield from mark_place(reduction.where[0], examined, field)
     keeps = partial(section_defects, restriction)
     examined = [(f"the motion keeps {section}", "reduction", keeps)]
-    yield from mark_place(reduction.section, examined, field)
+    yield from mark_place(next(iter(reduction.section.values())), examined, field)
     for statement, kind, examine in about_relaxation(whole):
         yield f"{statement} (of the whole system)", kind, partial(_decide, whole, examine)
     yield from _about_bracket(first, restriction)

@@ -69,7 +69,7 @@ def about_relaxation(
     terms = f"{{x, h}} + {relaxation.added}{' + the forces' * spec.is_forced}"
     terms += " + dx/dt at fixed momenta" * has_moving_momenta(first)
     claims.append((f"the rates are {terms}", "dissipation", known.list_added))
-    yield from mark_claimed(spec, (relaxation.table,), relaxation, claims, first.setting.field)
+    yield from mark_claimed(spec, (relaxation.table,), relaxation.G, claims, first.setting.field)
 
 
 def derive_whole(first: Equations) -> Equations:

@@ -42,7 +42,7 @@ def about_symmetries(motion: Motion) -> Iterator[Examined]:
         of_map = [*_about_map(first, symmetry, J)]
         if energy is not None:
             of_map += _noether(first, symmetry, J, first.close(energy))
-        yield from mark_claimed(spec, ("symmetries", symmetry.name), symmetry, of_map, field)
+        yield from mark_claimed(spec, ("symmetries", symmetry.name), symmetry.place, of_map, field)
     if energy is not None:
         yield from _about_integrals(first, known)
     for place, claim in enumerate(spec.brackets):
@@ -154,7 +154,7 @@ def _about_integrals(first: Equations, known: Mapping[str, Value]) -> Iterator[E
         )
         follows = [(statement, "symmetry", partial(_commutators, first, flows))]
         key = ("claims", "conserved", place)  # it follows from the claim there
-        yield from mark_claimed(first.spec, key, claim, follows, first.setting.field)
+        yield from mark_claimed(first.spec, key, claim.formula, follows, first.setting.field)
 
 
 def _flows(first: Equations, formula: Formula, known: Mapping[str, Value]) -> list[VectorField]:
@@ -226,7 +226,7 @@ def _about_transformation(motion: Motion, transformation: Transformation) -> Ite
     key, kind, field = ("transformations", name), "transformation", motion.field
     moved = partial(_motion_defects, motion, transformation)
     examined = [(f"{name} takes the motion to {goal}", kind, partial(decide_on, motion, moved))]
-    yield from mark_claimed(spec, key, transformation, examined, field)
+    yield from mark_claimed(spec, key, next(iter(transformation.map.values())), examined, field)
     for observable, formula in transformation.exchanges.items():
         exchanged = partial(_exchange_defects, motion, transformation, observable, formula)
         statement = f"{name} takes {observable} to {formula.in_one_line}"

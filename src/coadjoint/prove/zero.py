@@ -34,9 +34,9 @@ from coadjoint.prove.points import (
     real,
     real_function,
 )
-from coadjoint.spec import Formula, Spec
+from coadjoint.spec import Spec
 from coadjoint.spec.core.positions import KeyPath
-from coadjoint.spec.tables import list_formulas
+from coadjoint.spec.core.source import Place
 
 __all__ = ["DIGITS", "Decision", "Discovery", "decide_zero", "random_points", "real_function"]
 
@@ -65,7 +65,7 @@ class Decision:
         accepted: Whether the spec that makes this claim accepts numerical support; None for a
             claim of the engine, which never does.
         shown: What the defect is of.
-        made: The formula of the spec that makes the claim, or that it is about.
+        place: Where the spec makes the claim, or what it is about.
     """
 
     verdict: Verdict
@@ -74,7 +74,7 @@ class Decision:
     defect: str = ""
     accepted: bool | None = None
     shown: Shown = Shown.DIFFERENCE
-    made: Formula | None = None
+    place: Place | None = None
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def make_entry(
         defect=result.defect,
         accepted=result.accepted,
         shown=result.shown,
-        made=result.made,
+        place=result.place,
     )
 
 
@@ -130,38 +130,39 @@ def give(found: Found) -> Found:
 
 
 def mark_claimed(
-    spec: Spec, key: KeyPath, record: object, examined: Iterable[Examined], ring: Field
+    spec: Spec, key: KeyPath, place: Place, examined: Iterable[Examined], ring: Field
 ) -> Iterator[Examined]:
     """Statements that a spec makes, for which it may accept numerical support.
 
     Args:
         spec: The spec.
         key: Where it makes them, such as ``("claims", "conserved", 0)``.
-        record: What it declares there: a formula, or a record whose first formula stands for it.
+        place: What stands there.
         examined: The statements.
         ring: Where what must be zero lives.
     """
-    return _mark(record, examined, ring, accepted=key in spec.accepted)
+    return _mark(place, examined, ring, accepted=key in spec.accepted)
 
 
-def mark_place(record: object, examined: Iterable[Examined], ring: Field) -> Iterator[Examined]:
+def mark_place(
+    place: Place | None, examined: Iterable[Examined], ring: Field
+) -> Iterator[Examined]:
     """Statements of the engine about what a spec declares; the arguments are as before."""
-    return _mark(record, examined, ring, accepted=None)
+    return _mark(place, examined, ring, accepted=None)
 
 
 def _mark(
-    record: object, examined: Iterable[Examined], ring: Field, *, accepted: bool | None
+    place: Place | None, examined: Iterable[Examined], ring: Field, *, accepted: bool | None
 ) -> Iterator[Examined]:
-    """Statements with a formula, and with the mark whether support is enough."""
-    made = next(list_formulas(record), None)
+    """Statements with a place, and with the mark whether support is enough."""
     for statement, kind, examine in examined:
-        yield statement, kind, partial(_examine_marked, examine, ring, made, accepted=accepted)
+        yield statement, kind, partial(_examine_marked, examine, ring, place, accepted=accepted)
 
 
 def _examine_marked(
     examine: Callable[[], Sequence[Element] | Decision | Discovery],
     ring: Field,
-    made: Formula | None,
+    place: Place | None,
     *,
     accepted: bool | None,
 ) -> Decision | Discovery:
@@ -172,9 +173,9 @@ def _examine_marked(
             return result
         decision = result if isinstance(result, Decision) else decide_zero(result, ring)
     except UndecidedError as error:
-        error.made = made
+        error.place = place
         raise
-    return replace(decision, accepted=accepted, made=made)
+    return replace(decision, accepted=accepted, place=place)
 
 
 def decide_zero(
@@ -232,10 +233,10 @@ class UndecidedError(ClaimError):
     """Nothing is known of a claim: no point is found at which it could fail.
 
     Attributes:
-        made: As of a claim.
+        place: As of a claim.
     """
 
-    made: Formula | None = None
+    place: Place | None = None
 
 
 def prove_by_normal_form(ring: Field) -> Decision:

@@ -29,6 +29,7 @@ from coadjoint.spec.core.components import (
 from coadjoint.spec.core.definitions import Definition
 from coadjoint.spec.core.dimensions import KnownUnits
 from coadjoint.spec.core.formulas import Formula
+from coadjoint.spec.core.source import Place
 from coadjoint.spec.sections.claims import ClaimedBracket, Integral
 from coadjoint.spec.sections.constraints import Constraint
 from coadjoint.spec.sections.diffeomorphisms import Diffeomorphisms
@@ -211,7 +212,7 @@ class Spec:
         symmetries: Declared actions; their momentum maps are emitted after the observables.
         transformations: Maps that are claimed to keep the motion.
         brackets: Claimed brackets of observables, momentum maps and state.
-        galilean: Whether Newton's law is claimed to be that of every Galilean observer.
+        galilean: Where Newton's law is claimed to be that of every Galilean observer.
         reduction: The submanifold to which a motion is restricted, whose state this is, or None.
         constraints: Equations between velocities; empty for motions that are free.
         variational: Equations between velocities that are imposed before the variation.
@@ -264,7 +265,7 @@ class Spec:
     symmetries: tuple[Symmetry, ...] = ()
     transformations: tuple[Transformation, ...] = ()
     brackets: tuple[ClaimedBracket, ...] = ()
-    galilean: bool = False
+    galilean: Place | None = None
     reduction: Reduction | None = None
     constraints: tuple[Constraint, ...] = ()
     variational: tuple[Constraint, ...] = ()

@@ -83,7 +83,7 @@ def find_pair(setting: Setting) -> LaxPair:
     M = f"{texts[1]} + {SPECTRAL}*{A}"
     turning = combine((turn, body.velocity), (turn * spectral, diagonal(a)))
     pair = L, M if setting.sign == 1 else f"-({M})"
-    return LaxPair(SPECTRAL, combine(*terms), turning, pair)
+    return LaxPair(spectral=SPECTRAL, L=combine(*terms), M=turning, texts=pair)
 
 
 # -- the system, as matrices ----------------------------------------------------------------------

@@ -20,7 +20,7 @@ from coadjoint.spec.core.members import write_out
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
-from coadjoint.spec.core.source import Source, write_key
+from coadjoint.spec.core.source import Place, Source
 from coadjoint.spec.core.tree import Index, Name, Node, walk
 
 
@@ -37,7 +37,7 @@ class HasComponents(Named, Protocol):
 
 
 @dataclass(frozen=True)
-class Formula:
+class Formula(Place):
     """A parsed expression, its text as typed (for messages and documents) and where it stands.
 
     Attributes:
@@ -45,34 +45,19 @@ class Formula:
         typed: The parsed tree, in which definitions are names: documents show it.
         tree: The shape-checked tree, with definitions expanded.
         shape: Shape of its value.
-        path: Its key in the spec, e.g. ``("lagrangian", "l")``.
-        line: Line of the text in the file, counted from 1.
         sums: In a spec with an index, the tree with its sums over members; else None.
-        excerpt: The line of the text in the file, and carets under the text, for messages.
     """
 
     text: str
     typed: Node
     tree: Node
     shape: Shape
-    path: KeyPath
-    line: int
     sums: Node | None = None
-    excerpt: str = field(default="", compare=False, repr=False)
-
-    @property
-    def key(self) -> str:
-        """Its dotted key, e.g. ``lagrangian.l``."""
-        return write_key(self.path)
 
     @property
     def in_one_line(self) -> str:
         """The text without its line breaks, for statements and tables."""
         return " ".join(self.text.split())
-
-    def locate(self, path: object, message: str) -> str:
-        """A message with the place of the formula in a file before it, and its line below."""
-        return f"{path}:{self.line}: {self.key}: {message}\n{self.excerpt}".rstrip()
 
 
 #: What a spec declares and a formula may use.
@@ -207,16 +192,16 @@ def read_formula(
             raise ExpressionError(problem, 0, len(text), words(shape), "a scalar", hint)
     except ExpressionError as error:
         raise source.expression_fault(key, error) from None
-    span = source.positions.value(key)
+    place = source.place(key)
     return Formula(
         text=text,
         typed=typed,
         tree=tree,
         shape=shape,
         path=key,
-        line=source.line(span),
+        line=place.line,
+        excerpt=place.excerpt,
         sums=None if members is None else whole,
-        excerpt=source.excerpt(span),
     )
 
 

@@ -64,6 +64,30 @@ def _plain(found: object) -> object:
 
 
 @dataclass(frozen=True)
+class Place:
+    """Where something stands in a spec, for messages after it was read.
+
+    Attributes:
+        path: Its key in the spec, e.g. ``("lagrangian", "l")``.
+        line: Its line in the file, counted from 1.
+        excerpt: That line, and carets under what stands there.
+    """
+
+    path: KeyPath
+    line: int
+    excerpt: str = field(compare=False, repr=False)
+
+    @property
+    def key(self) -> str:
+        """Its dotted key, e.g. ``lagrangian.l``."""
+        return write_key(self.path)
+
+    def locate(self, path: object, message: str) -> str:
+        """A message with the place in a file before it, and its line below."""
+        return f"{path}:{self.line}: {self.key}: {message}\n{self.excerpt}".rstrip()
+
+
+@dataclass(frozen=True)
 class Source:
     """The text of a spec.
 
@@ -84,6 +108,11 @@ class Source:
     def line(self, span: Span) -> int:
         """Line of a place, counted from 1."""
         return self.text.count("\n", 0, span[0]) + 1
+
+    def place(self, key: KeyPath) -> Place:
+        """Where the value of a key stands."""
+        span = self.positions.value(key)
+        return Place(key, self.line(span), self.excerpt(span))
 
     def fault(
         self,

@@ -18,6 +18,7 @@ from coadjoint.spec.core.parts import Accept, ClaimPart, Part, TextPart, or_alon
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table
 from coadjoint.spec.core.shapes import words
+from coadjoint.spec.core.source import Place
 from coadjoint.spec.core.tree import Name
 from coadjoint.spec.sections.momenta import MOMENTA
 from coadjoint.spec.sections.observables import OBSERVABLES
@@ -112,13 +113,13 @@ class Claims:
         casimirs: Casimirs of the bracket, scalars or vectors of them.
         conserved: Integrals of the motion, some of them on a level set alone.
         brackets: Brackets of observables, momentum maps and state.
-        galilean: Whether Newton's law is claimed to be that of every Galilean observer.
+        galilean: Where Newton's law is claimed to be that of every Galilean observer.
     """
 
     casimirs: tuple[Formula, ...] = ()
     conserved: tuple[Integral, ...] = ()
     brackets: tuple[ClaimedBracket, ...] = ()
-    galilean: bool = False
+    galilean: Place | None = None
 
 
 def read_claims(reading: Reading, part: ClaimsPart) -> Claims:
@@ -135,7 +136,7 @@ def read_claims(reading: Reading, part: ClaimsPart) -> Claims:
         brackets=tuple(
             _read_bracket(reading, text, each.claim) for text, each in part.brackets.items()
         ),
-        galilean=part.galilean.claim,
+        galilean=reading.source.place(("claims", "galilean")) if part.galilean.claim else None,
     )
 
 

@@ -23,6 +23,7 @@ from coadjoint.spec.core.names import NAME
 from coadjoint.spec.core.parts import Accept, Part, name_pattern
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.reading import Reading, Table, name_each
+from coadjoint.spec.core.source import Place
 from coadjoint.spec.core.values import Names, Prose, Unit, misfit_form
 from coadjoint.spec.sections.algebra_keys import OperandPart
 from coadjoint.spec.sections.algebras import read_algebra, scalars_of
@@ -81,6 +82,7 @@ class Symmetry:
 
     Attributes:
         name: Of the momentum map.
+        place: Where it is declared.
         algebra: What acts.
         element: Name of its generic element in the formulas; "" if they are none.
         as_matrix: Whether the element is a matrix there, not the vector of its coefficients.
@@ -95,6 +97,7 @@ class Symmetry:
     """
 
     name: str
+    place: Place
     algebra: LieAlgebra
     element: str = ""
     as_matrix: bool = False
@@ -199,6 +202,7 @@ class _Actions:
         }
         return Symmetry(
             name=name,
+            place=self.source.place(key),
             algebra=algebra,
             element=element,
             as_matrix=part.matrix is not None,
