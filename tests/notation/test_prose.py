@@ -46,7 +46,7 @@ def show(text, names=None):
         ("d2h/dp2", r"$\frac{\partial^{2} h}{\partial {p}^{2}}$"),
         ("oscillators x and z", "oscillators $x$ and $z$"),
         ("by J. E. Marsden and R. Montgomery", "by J. E. Marsden and R. Montgomery"),
-        ("at the rate W. Its centre", "at the rate $W$. Its centre"),
+        ("W = A + i B. The first", r"$W = A + i\,B$. The first"),
         ("one of x alone, where x is", "one of $x$ alone, where $x$ is"),
         ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),
         ("b . curl b", r"$b \cdot \left(\operatorname{curl}\,b\right)$"),
@@ -79,6 +79,13 @@ def test_a_formula_is_found_in_a_sentence(text, shown):
 def test_words_stay_words(text):
     """Names of routes, plurals, articles, numbers and names of code are no formulas."""
     assert read_prose(text) == [text]
+
+
+def test_a_letter_that_is_a_name_ends_a_sentence():
+    """An initial is no name of the system; that of a person stays where it is."""
+    text = "by R. Montgomery at the rate W. Its centre"
+    assert show(text, {"W": name("W")}) == "by R. Montgomery at the rate $W$. Its centre"
+    assert show(text, {"R": name("R")}) != text
 
 
 def test_a_number_with_a_power_of_ten_is_no_product_with_e():

@@ -7,7 +7,7 @@ as tokens read as one, or `NoFormulaError`. Read next: `coadjoint.notation.writt
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Final
 
@@ -34,14 +34,12 @@ from coadjoint.notation.written import (
     row,
 )
 
-#: Words that begin a sentence behind a symbol, as names do behind initials.
-_BEGINNINGS: Final = (
-    "A|All|An|And|As|At|Both|But|By|Each|Else|Every|For|Here|If|In|It|Its|No|Of|On|Only|So|The|Then"
-    "|There|These|They|This|To|Where|With"
-)
+#: An initial of a name, behind no letter or sign of a formula: R. Montgomery. Where the letter is
+#: that of something, a sentence ends behind it: at the rate W. Its centre.
+_INITIAL: Final = r"(?<![-+*/^=<>] )(?<!\b[A-Za-z] )[A-Z]\.(?= (?:[A-Z]\. |[A-Z][a-z]))"
 _TOKEN: Final = re.compile(
-    r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b"  # Lie-Poisson, 2-form
-    rf"|[A-Z]\.(?= (?:[A-Z]\. |(?!(?:{_BEGINNINGS})\b)[A-Z][a-z])))"  # R. Montgomery
+    r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
+    rf"|(?P<initial>{_INITIAL})"
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?(?:e(?P<ten>[-+]?\d{1,3})\b)?)"
@@ -85,7 +83,18 @@ class Reading:
 
     def __init__(self, text: str, names: Mapping[str, Written]) -> None:
         self.text, self.names, self.at, self.deep = text, names, 0, 0
-        self.tokens = list(_TOKEN.finditer(text))
+        self.tokens = list(self._read_tokens())
+
+    def _read_tokens(self) -> Iterator[re.Match[str]]:
+        """The tokens, in which no letter that is a name is an initial."""
+        at = 0
+        while found := _TOKEN.search(self.text, at):
+            if found["initial"] and found[0][:-1] in self.names:
+                letter = _TOKEN.match(self.text, found.start(), found.start() + 1)
+                assert letter is not None, found
+                found = letter
+            yield found
+            at = found.end()
 
     def _peek(self, ahead: int = 0) -> str:
         """A token that is to come, empty behind the last one."""
