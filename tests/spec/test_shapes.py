@@ -1,7 +1,10 @@
 """Shapes: each function and operator takes what it says, and refuses the rest in words."""
 
+from dataclasses import replace
+
 import pytest
 
+from coadjoint.spec.core import tree
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError
 from coadjoint.spec.core.shapes import FUNCTIONS, shape_of, words
@@ -149,3 +152,28 @@ def test_shapes_in_words():
 def test_long_sum_does_not_exhaust_the_stack():
     """A sum of 500 terms is 500 levels deep and has a shape all the same."""
     assert shape_of(read_expression("s" + "+s" * 499), SCOPE) == ()
+
+
+def test_members_sums_and_vee_have_shapes():
+    """Those of one member, of the term, and of the vector whose hat a matrix is."""
+    at, scope = {"index": "i", "shift": 1}, {"S": (3,), "R": (3, 3)}
+    S = tree.Member(name="S", indices=(), **at)
+    assert shape_of(S, scope) == (3,)
+    assert shape_of(replace(S, indices=(2,)), scope) == ()
+    sides = (tree.Name("j"), tree.Name("i"))
+    assert shape_of(tree.Sum(indices=("j",), term=S, sides=sides, sign="!="), scope) == (3,)
+    for name, shape in (("R", (3,)), ("S", None)):
+        vee = tree.Call(function="vee", arguments=(tree.Name(name),))
+        if shape is None:
+            with pytest.raises(ExpressionError, match="vee is given a 3-vector"):
+                shape_of(vee, scope)
+        else:
+            assert shape_of(vee, scope) == shape
+    with pytest.raises(ExpressionError, match="'q' is not declared"):
+        shape_of(replace(S, name="q"), scope)
+
+
+def test_no_formula_calls_vee():
+    """Equations are written with it, and no spec."""
+    with pytest.raises(ExpressionError, match="vee"):
+        read_expression("vee(R)")

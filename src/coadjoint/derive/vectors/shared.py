@@ -13,6 +13,7 @@ from coadjoint.derive.vectors.gradients import count_nodes
 from coadjoint.derive.vectors.lines import VectorLine
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import Shape
+from coadjoint.spec.core.shapes import shape_of, shapes
 
 #: Names in the order in which they are given.
 LETTERS = ("n", "k", "b", "c", "u", "w")
@@ -21,7 +22,7 @@ LONG = 8
 
 
 def name_shared(
-    lines: Sequence[VectorLine], shapes: Mapping[str, Shape], taken: Collection[str]
+    lines: Sequence[VectorLine], known: Mapping[str, Shape], taken: Collection[str]
 ) -> tuple[list[VectorLine], dict[str, Shape]]:
     """Lines in which long vectors that are there twice have names, and the shapes of these.
 
@@ -29,7 +30,8 @@ def name_shared(
     """
     lines, added, named = list(lines), list[VectorLine](), dict[str, Shape]()
     for letter in (each for each in LETTERS if each not in taken):
-        vectors = [v for line in (*lines, *added) for v in _list_vectors(line.right, shapes)]
+        scope = {"pi": (), **known, **named}
+        vectors = [v for line in (*lines, *added) for v in _list_vectors(line.right, scope)]
         counts = dict[tree.Node, int]()
         for each in vectors:
             own = _at_member(each)
@@ -44,7 +46,7 @@ def name_shared(
             for some in (lines, added)
         )
         added.append(VectorLine(_call(letter, index, 0), longest))
-        named[letter] = _shape_of(longest, shapes)
+        named[letter] = shape_of(longest, scope)
     return [*lines, *added], named
 
 
@@ -55,23 +57,12 @@ def _call(letter: str, index: str | None, shift: int) -> tree.Node:
     return tree.Member(name=letter, index=index, shift=shift, indices=())
 
 
-def _list_vectors(node: tree.Node, shapes: Mapping[str, Shape]) -> Iterator[tree.Node]:
-    """The vectors in a formula."""
-    return (each for each in tree.walk(node) if len(_shape_of(each, shapes)) == 1)
-
-
-def _shape_of(node: tree.Node, shapes: Mapping[str, Shape]) -> Shape:
-    """The shape of a vector, as far as its names and functions tell; else another one, or none."""
-    match node:
-        case tree.Name(name=name) | tree.Member(name=name, indices=()):
-            return shapes.get(name, ())
-        case tree.Call(function="vector", arguments=entries):
-            return (len(entries),)
-        case tree.Call(function="cross" | "vee"):
-            return (3,)
-        case tree.Binary(operator="*", right=side) | tree.Binary(left=side):
-            return _shape_of(side, shapes)
-    return ()
+def _list_vectors(node: tree.Node, scope: Mapping[str, Shape]) -> Iterator[tree.Node]:
+    """The vectors in a formula, without signs and sums, which stay outside of what has a name."""
+    known = shapes(node, scope)
+    for each in tree.walk(node):
+        if len(known.get(id(each), ())) == 1 and not isinstance(each, tree.Negate | tree.Sum):
+            yield each
 
 
 def _at_member(node: tree.Node) -> tree.Node:

@@ -19,11 +19,14 @@ from coadjoint.spec.core.tree import (
     Call,
     Component,
     Index,
+    Member,
     Name,
     Negate,
     Node,
     Number,
     Power,
+    Sum,
+    children,
     evaluate_nodes,
 )
 
@@ -69,6 +72,7 @@ _RULES: Mapping[str, _Rule] = MappingProxyType(
         "inverse": lambda a: a if _is_small_square(a) else None,
         "complex": lambda a, b: (2 * a[0], 2 * a[1]) if len(a) == 2 and a == b else None,
         "hat": lambda a: (3, 3) if a == (3,) else None,
+        "vee": lambda a: (3,) if a == (3, 3) else None,
         "diag": lambda a: a * 2 if len(a) == 1 else a[:1] if _is_square(a) else None,
         "norm": lambda a: () if len(a) == 1 else None,
         "outer": lambda a, b: a + b if len(a) == len(b) == 1 else None,
@@ -143,6 +147,10 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
 )
 
 
+#: Functions that equations are written with, and no formula of a spec may call.
+_WRITTEN = {"vee": Function(1, "a 3 by 3 matrix", "the vector whose hat it is")}
+
+
 def words(shape: Shape) -> str:
     """A shape as a person says it.
 
@@ -175,8 +183,21 @@ def shape_of(tree: Node, scope: Mapping[str, Shape]) -> Shape:
 
 
 def shapes(tree: Node, scope: Mapping[str, Shape]) -> dict[int, Shape]:
-    """The shape of every node of a tree, by ``id``."""
-    return evaluate_nodes(tree, lambda node, below: _shape(node, below, scope))
+    """The shape of every node of a tree, by ``id``; what bounds a sum has none.
+
+    Args:
+        tree: As for `shape_of`, or a formula of the members of a family.
+        scope: Likewise; of what members have, the shape of that of one member.
+
+    Raises:
+        ExpressionError: As for `shape_of`.
+    """
+    return evaluate_nodes(tree, lambda node, below: _shape(node, below, scope), _below)
+
+
+def _below(node: Node) -> tuple[Node, ...]:
+    """What the shape of a node follows from: of a sum its term."""
+    return (node.term,) if isinstance(node, Sum) else children(node)
 
 
 def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
@@ -186,8 +207,10 @@ def _shape(node: Node, below: list[Shape], scope: Mapping[str, Shape]) -> Shape:
             return ()
         case Name(name=name):
             return _find_shape(node, name, scope)
-        case Index(name=name, indices=indices):
+        case Index(name=name, indices=indices) | Member(name=name, indices=indices):
             return _component(node, name, indices, _find_shape(node, name, scope))
+        case Sum():
+            return below[0]
         case Component(name=name, indices=indices):
             return _component(node, name, indices, below[0])
         case Negate():
@@ -259,7 +282,8 @@ def _binary(node: Node, operator: str, left: Shape, right: Shape) -> Shape:
 
 
 def _call(node: Call, arguments: list[Shape]) -> Shape:
-    function, name = FUNCTIONS[node.function], node.function
+    name = node.function
+    function = FUNCTIONS.get(name) or _WRITTEN[name]
     if function.arity not in (0, len(arguments)):
         given = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
         raise fault_at(node, f"{name} is given {given}", given, function.takes)
