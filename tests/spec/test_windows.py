@@ -104,6 +104,18 @@ INDEXED = [
     ),
     (
         CHAIN,
+        [("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2)/n")],
+        'With count = "n" in [index], n is the number of members, and x[n-1] of the last.',
+        [("{ size = 6 }", '{ size = 6, count = "n" }')],
+    ),
+    (
+        CHAIN,
+        [("sum(i, p[i]^2/2)", "sum(i, p[i]^2/N)"), ("size = 6", "first = 1, size = 6")],
+        'With count = "N" in [index], N is the number of members, and x[N] of the last.',
+        [("first = 1", 'first = 1, count = "N"')],
+    ),
+    (
+        CHAIN,
         [("sum(i, p[i]^2/2)", "sum(i, p[i]^2/2) + q[7]^2"), ("size = 6", "first = 1, size = 6")],
         'With count = "n" in [index], n is the number of members, and x[n] of the last.',
         [("q[7]^2", "q[n]^2"), ("first = 1", 'first = 1, count = "n"'), ('"P"]', '"energy"]')],

@@ -16,7 +16,7 @@ from coadjoint.spec.core.components import Named, Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
-from coadjoint.spec.core.members import write_out
+from coadjoint.spec.core.members import Members, tell_count, write_out
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
@@ -184,6 +184,8 @@ def read_formula(
         tree = whole if members is None else write_out(whole, members, key)
         _check_roles(tree, scope)
         _check_derivatives(tree, scope)
+        if members is not None:
+            _check_number(tree, scope, members)
         shape = shape_of(tree, scope.shapes)
         check_size(tree, scope.shapes)
         if shape != () and not any_shape:
@@ -203,6 +205,15 @@ def read_formula(
         excerpt=place.excerpt,
         sums=None if members is None else whole,
     )
+
+
+def _check_number(tree: Node, scope: Scope, members: Members) -> None:
+    """Say how the number of members gets its usual name, where that is not declared."""
+    for node in walk(tree):
+        if isinstance(node, Name) and node.name in ("n", "N") and node.name not in scope.shapes:
+            hint = did_you_mean(node.name, scope.shapes, tell_count(members, node.name))
+            expected = "a variable or parameter of this spec"
+            raise fault_at(node, f"{node.name!r} is not declared", node.name, expected, hint)
 
 
 def _check_roles(tree: Node, scope: Scope) -> None:

@@ -196,10 +196,10 @@ def _check_free(found: Mapping[str, Node], members: Members, *, free: bool = Tru
             name = node.name if isinstance(node, Member) else members.index
             problem = f"the index {index!r} is not that of a sum around it"
             expected = f"{name}[{members.index}] inside sum({members.index}, ...)"
-            raise fault_at(node, problem, index, expected, _tell_count(members, index))
+            raise fault_at(node, problem, index, expected, tell_count(members, index))
 
 
-def _tell_count(members: Members, name: str = "n") -> str:
+def tell_count(members: Members, name: str = "n") -> str:
     """How the number of members, and so the last one, is named."""
     if members.number or name == members.index:
         return ""
@@ -333,7 +333,7 @@ def _find_member(node: Node, name: str, numbers: tuple[int, ...], members: Membe
     if at is None:
         problem = f"{name}[{numbers[0]}] lies beyond the end of the chain"
         expected = f"members {members.first} to {members.last}"
-        hint = _tell_count(members)
+        hint = tell_count(members)
         if isinstance(node, Member) and node.index:  # of member i, and so of each
             problem = f"{name}[{node.index}{node.shift:+d}] lies beyond the end of the chain"
             problem += " for some members"
