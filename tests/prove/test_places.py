@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from coadjoint.errors import ClaimError
+from coadjoint.errors import ClaimError, DerivationError
 from coadjoint.prove import prove
+from coadjoint.resources import derivations_folder
 from coadjoint.spec.reader import read_spec_text
 
 TEXT = """title = "Body"
@@ -116,3 +117,21 @@ def test_refuted_pairs_symmetries_and_maps_are_shown_at_their_lines(wrong):
     assert shown.startswith(f"plane.toml:{line}: {key}: refuted: ")
     assert len(shown.splitlines()) == 3
     assert shown.splitlines()[2].strip("^ ") == ""
+
+
+@pytest.mark.parametrize(
+    ("system", "density", "said"),
+    [
+        ("euler_2d", "psi^2", "by psi is no multiple of w; expected one of w"),
+        ("camassa_holm", "u^3", "by u is no multiple of m; expected one of m"),
+    ],
+)
+def test_a_density_that_cannot_be_varied_is_shown_at_its_claim(system, density, said):
+    """And not at the Lagrangian, which is right; the message has the claim as attributes, too."""
+    text = (derivations_folder() / f"{system}.toml").read_text()
+    text = text.replace('conserved = ["energy"', f'conserved = ["energy", "{density}"')
+    with pytest.raises(DerivationError, match=said) as caught:
+        prove(read_spec_text(text, f"{system}.toml"))
+    line = next(n for n, row in enumerate(text.splitlines(), 1) if row.startswith("conserved"))
+    assert str(caught.value).startswith(f"{system}.toml:{line}: claims.conserved[2]: ")
+    assert (caught.value.line, caught.value.found) == (line, density)

@@ -270,7 +270,7 @@ def _about_densities(first: Equations) -> Iterator[Examined]:
     for place, claim in enumerate(spec.conserved):
         if claim.everywhere != "energy":
             parts = read_density(setting, claim.formula, emitted)
-            decision, where = decide_law(first, parts)
+            decision, where = decide_law(first, parts, claim.formula)
             statement = f"the integral of {claim.formula.in_one_line} is conserved{where}"
             claimed = [(statement, "conserved", partial(give, decision))]
             key = ("claims", "conserved", place)

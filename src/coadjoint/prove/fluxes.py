@@ -26,20 +26,31 @@ from coadjoint.exact.witness import is_entire
 from coadjoint.prove.certificate import Shown, Verdict
 from coadjoint.prove.strands import list_turning, tell_turn, turn_along
 from coadjoint.prove.zero import Decision, decide_zero
+from coadjoint.spec import Formula
 
 #: Characters of a flux that a certificate shows.
 SHOWN = 400
 
 
-def decide_law(equations: Equations, parts: Sequence[Element]) -> tuple[Decision, str]:
+def decide_law(
+    equations: Equations, parts: Sequence[Element], formula: Formula | None = None
+) -> tuple[Decision, str]:
     """Whether the integrals of densities are conserved, and where.
 
     That is everywhere, or only where the advected quantities of a strand turn along it.
 
+    Args:
+        equations: Of fields.
+        parts: The components of the density.
+        formula: Where the density is declared; by default it is that of the energy.
+
     Returns:
         The decision, and " where da/ds = -Xi a", or "".
+
+    Raises:
+        DerivationError: The integral of the density has no variation that is a field.
     """
-    decision = decide_density(equations, parts)
+    decision = decide_density(equations, parts, formula)
     turning = list_turning(equations)
     if decision.verdict is Verdict.PROVED or not turning:
         return decision, ""
@@ -55,13 +66,15 @@ def decide_law(equations: Equations, parts: Sequence[Element]) -> tuple[Decision
     return Decision(verdict=Verdict.PROVED, method=method), f" where {' and '.join(told)}"
 
 
-def decide_density(equations: Equations, parts: Sequence[Element]) -> Decision:
-    """Whether the rates of densities are total derivatives, with the fluxes."""
+def decide_density(
+    equations: Equations, parts: Sequence[Element], formula: Formula | None = None
+) -> Decision:
+    """Whether the rates of densities are total derivatives; arguments as of `decide_law`."""
     setting, every = equations.setting, jets_of(equations.setting)
     rates = dict(zip(setting.state, equations.exact.rates, strict=True))
     texts, moved = list[str](), solved(setting.spec)
     for part in parts:
-        rate, jets = _find_rate(equations, part, rates), every
+        rate, jets = _find_rate(equations, part, rates, formula), every
         if moved and any(every.variation(rate).values()):  # then both fields as those of one
             rate, jets = circle.close(setting, rate), every.only(moved)
         decision = decide_zero([*jets.variation(rate).values()], setting.field)
@@ -120,13 +133,15 @@ def _list_bounds(field: Field, element: Element) -> list[Element]:
     return below + [x for g in field.functions_in(element) for x in field.adjoined[g].arguments]
 
 
-def _find_rate(equations: Equations, part: Element, rates: Mapping[str, Element]) -> Element:
+def _find_rate(
+    equations: Equations, part: Element, rates: Mapping[str, Element], formula: Formula | None
+) -> Element:
     """The rate of a density, or one with the same integral where A u = m."""
     setting, jets = equations.setting, jets_of(equations.setting)
     if not solved(setting.spec):
         return jets.rate(part, rates)
     return setting.field.sum(
-        circle.vary(setting, part, name) * rate for name, rate in rates.items()
+        circle.vary(setting, part, name, formula) * rate for name, rate in rates.items()
     )
 
 

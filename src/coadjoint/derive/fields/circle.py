@@ -38,9 +38,9 @@ from coadjoint.derive.fields.emission import emit_fields
 from coadjoint.derive.fields.jets import Jets, Rows, jets_of, list_rows, solved
 from coadjoint.derive.fields.structure import central_charge
 from coadjoint.derive.records import write_rates, write_slopes, write_step
-from coadjoint.derive.setting import Setting, fault, once
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault, once
 from coadjoint.exact import Element
-from coadjoint.spec import Spec
+from coadjoint.spec import Formula, Spec
 
 #: The variation of the motion, whose derivatives are symbols like those of a field.
 VARIED = "_eta"
@@ -170,11 +170,17 @@ def inertia_along(setting: Setting) -> Mapping[int, Element]:
     return {i: x for (i, _), x in inertia(setting).items()}
 
 
-def vary(setting: Setting, density: Element, name: str) -> Element:
+def vary(setting: Setting, density: Element, name: str, formula: Formula | None = None) -> Element:
     """The variational derivative by a field, the velocity being a function of the momentum.
 
     Where A u = m, a density that names u has the part ``A^-1 (dh/du)`` in addition, which is c u
     for ``dh/du = c m``.
+
+    Args:
+        setting: What was declared.
+        density: Whose integral is varied.
+        name: The field.
+        formula: Where the density is declared; by default it is that of the energy.
 
     Raises:
         DerivationError: ``dh/du`` is anything else.
@@ -190,8 +196,8 @@ def vary(setting: Setting, density: Element, name: str) -> Element:
             f"a density names {u} such that its derivative by {u} is no multiple of {name}; "
             f"expected one of {name} and its derivatives, or the energy."
         )
-        formula = setting.spec.lagrangian
-        assert formula is not None, "the reader asks for a Lagrangian on this route"
+        if formula is None:
+            raise lagrangian_fault(setting, message)
         raise fault(setting, formula, message, formula.text)
     return found + factor * field[u]
 
