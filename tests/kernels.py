@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from coadjoint.lower.program import run
+from coadjoint.lower.evaluation import run
 
 COMPILER = shutil.which("gcc") or shutil.which("clang") or shutil.which("cc")
 STRICT = ["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic"]

@@ -25,7 +25,8 @@ from coadjoint.crosscheck.oracle import (
     take,
 )
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.program import FUNCTIONS, evaluate
+from coadjoint.lower.evaluation import evaluate
+from coadjoint.lower.program import FUNCTIONS
 from tests.kernels import ProgramReference
 from tests.programs import program
 from tests.trees import NAMES, trees

@@ -14,8 +14,9 @@ from coadjoint.derive.mechanics import iteration, legendre
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError, DerivationError, LimitError
 from coadjoint.lower.check import check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import Number, run
+from coadjoint.lower.program import Number
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.prove.equivalence import LegendreMap
 from coadjoint.render.solvers import arrange, select_programs

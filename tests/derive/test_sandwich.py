@@ -12,7 +12,7 @@ from coadjoint.derive.formulas import rows_of
 from coadjoint.derive.sandwich import sandwich
 from coadjoint.derive.setting import vector_names
 from coadjoint.derive.times_vector import times_vector
-from coadjoint.lower.program import run
+from coadjoint.lower.evaluation import run
 from tests.specs import emitted, lowered, spec
 
 SYSTEMS = {"manakov_so4": 4, "so5_body": 5, "manakov_so6": 6, "so8_body": 8}

@@ -9,7 +9,8 @@ import pytest
 
 from coadjoint.derive.formulas import rows_of
 from coadjoint.derive.reference import Reference
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import Program
 from tests.specs import emitted, lowered
 
 #: Systems over algebras of many kinds, with declared brackets, canonical ones, inputs and time,

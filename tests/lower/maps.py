@@ -12,9 +12,9 @@ import mpmath
 
 from coadjoint.derive.splittings import Splitting, find_splitting
 from coadjoint.lower.compositions import schedule
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.flows import lower_flows
 from coadjoint.lower.kahan import lower_kahan
-from coadjoint.lower.program import run
 from tests import specs
 from tests.sources import textbook
 

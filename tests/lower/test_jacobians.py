@@ -13,8 +13,9 @@ from coadjoint.errors import CrossCheckError, KernelArgumentError
 from coadjoint.exact.linear import PRIME
 from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.check import check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import Negate, Number, Output, run
+from coadjoint.lower.program import Negate, Number, Output
 from coadjoint.render.targets import BUILDS
 from tests.driven_specs import PENDULUM, SUSLOV, build, rendered
 from tests.specs import render_claims, shipped, spec

@@ -2,8 +2,8 @@
 
 from fractions import Fraction
 
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.joined import join, widen
-from coadjoint.lower.program import run
 from tests.programs import program
 
 RATES = program("rhs", "q p", "r", "_p1 = r*r; _t1 = q*p; _t2 = _t1*_p1", "_t2 + p; _t1 - q", (2,))

@@ -20,9 +20,10 @@ from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError
 from coadjoint.exact.residues import Residue, call_modulo, residue
 from coadjoint.lower.check import call_residue, check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import Add, Factors, Negate, Solution, run
+from coadjoint.lower.program import Add, Factors, Negate, Solution
 from coadjoint.prove.certificate import Verdict
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.render.targets import TARGETS

@@ -15,20 +15,11 @@ from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, LimitError
 from coadjoint.exact.linear import PRIME
 from coadjoint.lower.check import check_inverse, check_size
+from coadjoint.lower.evaluation import evaluate, run
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.products import share_pairs
-from coadjoint.lower.program import (
-    Add,
-    Multiply,
-    Negate,
-    Number,
-    Output,
-    Symbol,
-    evaluate,
-    run,
-    walk,
-)
+from coadjoint.lower.program import Add, Multiply, Negate, Number, Output, Symbol, walk
 from coadjoint.lower.sums import Lowering
 from coadjoint.methods import RELAXED
 from coadjoint.spec.reader import read_spec_text

@@ -12,11 +12,12 @@ from coadjoint.derive.mechanics.solver import Solve
 from coadjoint.errors import CrossCheckError
 from coadjoint.exact import Field
 from coadjoint.lower.check import check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.lowering import lower
 from coadjoint.lower.minors import entries_of, find_solve, solve_by_minors
 from coadjoint.lower.naming import Naming
-from coadjoint.lower.program import Add, Negate, Statement, run
+from coadjoint.lower.program import Add, Negate, Statement
 from coadjoint.render.solvers import arrange, select_programs
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec

@@ -5,10 +5,11 @@ from fractions import Fraction
 import pytest
 
 from coadjoint.lower import motion
+from coadjoint.lower.evaluation import evaluate, run
 from coadjoint.lower.jets import make_jets
 from coadjoint.lower.motion import Function, Quotient, find_plan
 from coadjoint.lower.polynomials import add
-from coadjoint.lower.program import Symbol, evaluate, run, walk
+from coadjoint.lower.program import Symbol, walk
 from tests.programs import program
 
 

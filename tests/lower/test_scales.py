@@ -8,8 +8,8 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.check import check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import run
 from coadjoint.lower.scales import Scales, cost, find_scales
 from coadjoint.resources import derivations_folder
 from coadjoint.spec import read_spec

@@ -7,8 +7,8 @@ from coadjoint.derive.frame_names import symbols
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower import shared_frames
 from coadjoint.lower.check import check_programs
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import run
 from coadjoint.lower.shared_frames import name_frames
 from coadjoint.lower.shared_frames import shared_frames as relations_of
 from coadjoint.resources import derivations_folder

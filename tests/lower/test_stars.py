@@ -6,7 +6,7 @@ from itertools import combinations
 
 import pytest
 
-from coadjoint.lower.program import evaluate, run
+from coadjoint.lower.evaluation import evaluate, run
 from coadjoint.lower.stars import MOST, find_stars, make_looped_jets
 from coadjoint.lower.tables import UNROLLED_PRODUCTS
 from tests.lower.test_tables import programs

@@ -20,7 +20,8 @@ from coadjoint.derive.formulas import rows_of
 from coadjoint.derive.reference import Reference
 from coadjoint.errors import CrossCheckError, KernelArgumentError, LimitError
 from coadjoint.lower import check, lowering
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import Program
 from coadjoint.prove.declaration import kernel_context
 from coadjoint.render.kernels import render_system
 from coadjoint.render.targets import TARGETS

@@ -9,8 +9,9 @@ import pytest
 from coadjoint.derive import derive
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.check import check_inverse
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.lowering import lower
-from coadjoint.lower.program import ZERO, run
+from coadjoint.lower.program import ZERO
 from tests.specs import shipped
 
 #: The spin of a disk changes however fast it spins. Wheels that allow cos(phi) v2 = 0 alone leave a

@@ -458,7 +458,7 @@ MUTANTS = (
         "_slope: unwrap negate in divide",
         "_call_slope: rewrite map(self.multiply, outer, inner) -> inner",
     ),
-    *of("lower/program", "evaluate: flip evaluate"),
+    *of("lower/evaluation", "evaluate: flip evaluate"),
     *of(
         "printers",
         "_link: rewrite ('-', operand) -> ('+', operand)",

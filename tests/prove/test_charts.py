@@ -4,8 +4,7 @@ import dataclasses
 
 import pytest
 
-from coadjoint.derive import Chart, Equations, Exact, Relation, derive
-from coadjoint.derive import setting as settings
+from coadjoint.derive import Chart, Equations, Exact, Relation, assembly, derive
 from coadjoint.exact.ranks import CHANCE
 from coadjoint.prove import Verdict
 from coadjoint.prove.charts import ChartMap, reach
@@ -25,7 +24,7 @@ def pair(text_or_spec, image, spoil=lambda rates: rates):
     Any two vectors that are constant in space obey dQ/dt = Q x Omega, and Pi = P x Q then obeys
     Euler's equations (Holm 2011, 2.5.5).
     """
-    setting = settings.make_setting(text_or_spec, OWN)
+    setting = assembly.make_setting(text_or_spec, OWN)
     field = setting.field
     first = derive(text_or_spec, setting=setting)
     Q, P = setting.elements(OWN[:3]), setting.elements(OWN[3:])

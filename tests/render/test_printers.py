@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from coadjoint.crosscheck.bits import find_differing_bits
 from coadjoint.crosscheck.parse_back import as_printed
 from coadjoint.errors import SpecError
-from coadjoint.lower.program import Add, Divide, Multiply, Negate, Number, Symbol, evaluate
+from coadjoint.lower.evaluation import evaluate
+from coadjoint.lower.program import Add, Divide, Multiply, Negate, Number, Symbol
 from coadjoint.render.printers import (
     WIDTH,
     number_text,

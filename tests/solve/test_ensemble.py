@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.ensemble import ROOM, Ensemble, Inputs, Record, Status
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.limits import Limits
 from coadjoint.solve.march import march
 from coadjoint.solve.solvers import load
+from coadjoint.solve.step_records import ROOM, Record
 from coadjoint.solve.steps import Attempt
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.systems import rigid_body

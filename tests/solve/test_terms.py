@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.ensemble import Ensemble, Inputs, Record
+from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.events import Event, read_events
 from coadjoint.solve.solvers import load
+from coadjoint.solve.step_records import Record
 from coadjoint.solve.surroundings import Points, Surroundings
 from coadjoint.solve.terms import SOUGHT_MOST, TERMS_MOST, Kind, write_terms
 from tests.kernels import COMPILER

@@ -10,9 +10,9 @@ import pytest
 import sympy
 
 from coadjoint.derive import derive
+from coadjoint.derive.assembly import make_setting
 from coadjoint.derive.mechanics.configuration import mechanics
 from coadjoint.derive.routes.euler_lagrange import christoffel, christoffel_first
-from coadjoint.derive.setting import make_setting
 from coadjoint.prove import Verdict
 from coadjoint.resources import derivations_folder
 from tests.specs import prove_claims, spec, unitless

@@ -10,10 +10,10 @@ from itertools import combinations
 import pytest
 
 from coadjoint.derive import derive, make_setting
+from coadjoint.derive.assembly import make_setting as with_symbols
 from coadjoint.derive.integrals import expanded_traces, lax_integrals, pair_of, slope_row
 from coadjoint.derive.mechanics.planes import find_pair
 from coadjoint.derive.pairs import LaxPair
-from coadjoint.derive.setting import make_setting as with_symbols
 from coadjoint.errors import AlgebraError, DerivationError
 from coadjoint.exact import Field
 from coadjoint.exact.dense import combine, commutator, diagonal, product

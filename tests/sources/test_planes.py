@@ -5,7 +5,7 @@ from itertools import combinations
 
 import sympy
 
-from coadjoint.lower.program import run
+from coadjoint.lower.evaluation import run
 from coadjoint.prove import Verdict
 from tests.sources import classical, planes
 from tests.sources.components import cross, product, turned

@@ -5,9 +5,10 @@ import pytest
 from coadjoint.errors import LimitError, SpecError
 from coadjoint.families import Index
 from coadjoint.spec.core.expressions import read_expression
-from coadjoint.spec.core.members import Members, reach, write_out
+from coadjoint.spec.core.members import Members, reach
 from coadjoint.spec.core.positions import scan
 from coadjoint.spec.core.source import Source
+from coadjoint.spec.core.written_out import write_out
 from coadjoint.spec.looped import find_misfit
 from coadjoint.spec.reader import read_spec
 from coadjoint.spec.validate import validate

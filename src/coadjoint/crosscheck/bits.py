@@ -19,7 +19,7 @@ from coadjoint.array_types import Array
 from coadjoint.crosscheck.points import ODD_SIZES, Batch, Points
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.elementary import ELEMENTARY
-from coadjoint.lower.program import evaluate, settled
+from coadjoint.lower.evaluation import evaluate, settled
 from coadjoint.render.kernels import find_chunk
 from coadjoint.render.solvers import count_unknowns
 from coadjoint.render.targets import BUILDS

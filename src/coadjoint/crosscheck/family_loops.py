@@ -27,8 +27,8 @@ from coadjoint.crosscheck.oracle import (
     call,
     exact,
 )
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.loops import SUM, Loops, Part, Products, Solve
-from coadjoint.lower.program import run
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ import numpy as np
 
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.loops import FEWEST, SUM, Loops, Part
-from coadjoint.lower.program import run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coadjoint.array_types import Array
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import Program
 
 #: Evaluates one function.
 Evaluate = Callable[["Batch"], Array]

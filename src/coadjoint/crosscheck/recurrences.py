@@ -23,8 +23,9 @@ from coadjoint.crosscheck.points import Batch
 from coadjoint.crosscheck.series import Rates, solve
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
+from coadjoint.lower.evaluation import evaluate, run, settled
 from coadjoint.lower.kinks import SIDE
-from coadjoint.lower.program import Program, Symbol, evaluate, run, settled, walk
+from coadjoint.lower.program import Program, Symbol, walk
 from coadjoint.render.recurrences import Line
 from coadjoint.render.solvers import SolverText
 

@@ -40,7 +40,7 @@ from coadjoint.crosscheck.solver_objects import IMPLICIT, MAPS, NOISY, ORDER, Ad
 from coadjoint.crosscheck.subject import Levels, Subject, level_of
 from coadjoint.errors import CrossCheckError
 from coadjoint.lower.compositions import list_schedules
-from coadjoint.lower.program import run
+from coadjoint.lower.evaluation import run
 from coadjoint.methods import list_structured
 from coadjoint.render.solvers import SolverText
 from coadjoint.solve.ensemble import Ensemble, Inputs

@@ -33,11 +33,12 @@ from coadjoint.methods import STRUCTURED as KEEPING
 from coadjoint.render.solvers import describe_structured
 from coadjoint.solve.calls import call
 from coadjoint.solve.choices import Choice
-from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.ensemble import Ensemble
 from coadjoint.solve.limits import Limits
 from coadjoint.solve.methods.sequence import Maps
 from coadjoint.solve.methods.structured import Structured
 from coadjoint.solve.runge_kutta import DormandPrince8, RungeKutta4
+from coadjoint.solve.step_records import Record
 from coadjoint.solve.steps import Lanes, Method, Taylor
 from coadjoint.solve.stochastic import METHODS, Orbits
 from coadjoint.solver_kinds import SOLVER, SolverKind

@@ -42,8 +42,9 @@ from coadjoint.crosscheck.solver_objects import COMPILED_MAPS, NEWTON, ORDER, li
 from coadjoint.crosscheck.subject import Subject
 from coadjoint.errors import CrossCheckError
 from coadjoint.solve.domain import explain_bound
-from coadjoint.solve.ensemble import ROOM, Ensemble, Record, Status
+from coadjoint.solve.ensemble import Ensemble, Status
 from coadjoint.solve.methods.lie_poisson import EXACT, FREE
+from coadjoint.solve.step_records import ROOM, Record
 
 #: Members of a run: more than lanes, and no multiple of them.
 MEMBERS: Final = 13

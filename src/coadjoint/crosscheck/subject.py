@@ -26,6 +26,7 @@ from coadjoint.derive.reference import Reference as Derived
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import CoadjointError, CrossCheckError
 from coadjoint.kernel_functions import KERNEL_FUNCTIONS
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.program import (
     LEVELS,
     Call,
@@ -36,7 +37,6 @@ from coadjoint.lower.program import (
     Solution,
     Statement,
     list_names,
-    run,
     walk,
 )
 from coadjoint.render.kernels import elementary_functions

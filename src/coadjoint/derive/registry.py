@@ -11,8 +11,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import cast
 
-from coadjoint.derive import charts, frame_names, pairs, times_vector
-from coadjoint.derive import setting as settings
+from coadjoint.derive import assembly, charts, frame_names, pairs, times_vector
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle, jets
 from coadjoint.derive.mechanics import external, kinematics, legendre
@@ -60,4 +59,4 @@ def make_setting(spec: Spec, symbols: Sequence[str] = (), room: int = 0) -> Sett
     makers = dict.fromkeys(module.symbols for module in modules if hasattr(module, "symbols"))
     names = [name for make in (kinematics.symbols, *makers, *_ALWAYS) for name in make(spec)]
     room += INVERTED * sum(map(is_guess, dict.fromkeys(names)))
-    return settings.make_setting(spec, tuple(dict.fromkeys([*names, *symbols])), room)
+    return assembly.make_setting(spec, tuple(dict.fromkeys([*names, *symbols])), room)

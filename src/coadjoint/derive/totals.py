@@ -23,8 +23,9 @@ from coadjoint.families import Sum, Total
 from coadjoint.spec import Formula
 from coadjoint.spec.core import tree
 from coadjoint.spec.core.components import component_names
-from coadjoint.spec.core.members import place_at, reach
+from coadjoint.spec.core.members import reach
 from coadjoint.spec.core.totals import find_alone, is_linear, keep_rest
+from coadjoint.spec.core.written_out import place_at
 from coadjoint.spec.model import Symmetry
 
 

@@ -3,7 +3,7 @@
 Comes in: names of the symbols. Goes out: elements with a decidable zero. Elementary functions
 are adjoined as new generators with their derivative and, for roots and the pairs sin, cos and sinh,
 cosh, the relation that reduces them, as `coadjoint.elementary` has it.
-Read next: `coadjoint.derive.setting`, which makes the Field of a Spec.
+Read next: `coadjoint.derive.assembly`, which makes the Field of a Spec.
 """
 
 from __future__ import annotations

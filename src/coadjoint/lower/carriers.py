@@ -17,7 +17,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from coadjoint.exact.residues import Residue, call_modulo, vanish
-from coadjoint.lower.program import Program, list_names, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import Program, list_names
 from coadjoint.methods import Carrier, Sphere
 
 

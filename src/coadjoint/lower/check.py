@@ -21,7 +21,8 @@ from coadjoint.exact import Element
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, draw, residue
 from coadjoint.limits import C_STATEMENTS, OPERATIONS, TABLE_ENTRIES
-from coadjoint.lower.program import LEVELS, ZERO, Output, Program, count_loop, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import LEVELS, ZERO, Output, Program, count_loop
 from coadjoint.lower.vanishing import find_vanishing
 
 #: Points modulo a prime at which Programs without a closed form are compared.

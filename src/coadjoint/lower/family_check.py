@@ -17,8 +17,8 @@ import sympy
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Action, Family, MatrixMotion, Rises, Symbol, Tree
 from coadjoint.lower.equal_trees import are_equal, find_polynomials
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.loops import GIVEN, PRODUCTS, SUM, Loops, Part, Read
-from coadjoint.lower.program import run
 from coadjoint.methods import ACTION
 
 

@@ -22,9 +22,10 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, residue
 from coadjoint.lower.check import call_residue
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.kahan import POINTS
 from coadjoint.lower.lowering import lower_rows
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.program import Program
 
 
 def lower_flows(splitting: Splitting) -> tuple[Program, ...]:

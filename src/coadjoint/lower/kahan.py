@@ -26,9 +26,10 @@ from coadjoint.exact.linear import primes
 from coadjoint.exact.residues import Residue, residue
 from coadjoint.exact.text import brief_text
 from coadjoint.lower.check import call_residue
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.graph import Graph
 from coadjoint.lower.naming import Naming
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.program import Program
 from coadjoint.lower.sums import Lowering
 
 #: Operations of a step beyond which another method takes less time, and compilers take long.

@@ -14,7 +14,8 @@ from fractions import Fraction
 from typing import Final
 
 from coadjoint.exact.residues import Residue, call_modulo, vanish
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import Program
 from coadjoint.methods import ACTION, DISTINGUISHED, RELAXED, Sphere
 
 

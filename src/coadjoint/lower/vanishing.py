@@ -18,7 +18,8 @@ from coadjoint.derive.formulas import rows_of
 from coadjoint.derive.mechanics.decided import TRIES, Decided
 from coadjoint.exact.linear import PRIME
 from coadjoint.exact.residues import Residue, call_modulo, residue
-from coadjoint.lower.program import ZERO, Program, run
+from coadjoint.lower.evaluation import run
+from coadjoint.lower.program import ZERO, Program
 
 
 def find_hidden_zeros(program: Program, equations: Equations) -> list[int]:

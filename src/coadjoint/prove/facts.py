@@ -19,6 +19,7 @@ from coadjoint.derive.records import Emitted
 from coadjoint.errors import AlgebraError
 from coadjoint.exact import Element
 from coadjoint.exact.residues import Residue, call_modulo, vanish
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.orbits import (
     find_spheres,
@@ -27,7 +28,7 @@ from coadjoint.lower.orbits import (
     is_product,
     stays_on_orbits,
 )
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.program import Program
 from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.prove.certificate import Certificate, Verdict

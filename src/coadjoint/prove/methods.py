@@ -17,9 +17,10 @@ from coadjoint.derive import Equations
 from coadjoint.derive.times_vector import find_product
 from coadjoint.exact.residues import Residue, call_modulo, vanish
 from coadjoint.lower.compositions import SPLITTINGS, list_schedules
+from coadjoint.lower.evaluation import run
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.mapped import Maps
-from coadjoint.lower.program import Program, run
+from coadjoint.lower.program import Program
 from coadjoint.methods import (
     BACKWARD,
     BALANCED,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from coadjoint.exact import Element
 from coadjoint.exact.residues import Residue, call_modulo, draw, vanish
-from coadjoint.lower.program import run
+from coadjoint.lower.evaluation import run
 from coadjoint.spec.model import Variable
 
 if TYPE_CHECKING:

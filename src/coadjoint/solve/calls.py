@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from coadjoint.solve.ensemble import MET, Ensemble, Record
+from coadjoint.solve.ensemble import MET, Ensemble
+from coadjoint.solve.step_records import Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -16,8 +16,9 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
-from coadjoint.solve.ensemble import HEAD, ROOM, Ensemble, Inputs, Record
+from coadjoint.solve.ensemble import Ensemble, Inputs
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.step_records import HEAD, ROOM, Record
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:

@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.driving import Function
-    from coadjoint.solve.ensemble import Record
     from coadjoint.solve.family import FamilySystem
     from coadjoint.solve.methods.sequence import Part
+    from coadjoint.solve.step_records import Record
     from coadjoint.solve.steps import Lanes, Method
 
 #: Numbers that a first call works on, about: it ends within some hundredths of a second.

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from coadjoint.solve.ensemble import Record, Status
+from coadjoint.solve.ensemble import Status
+from coadjoint.solve.step_records import Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -30,9 +30,10 @@ from coadjoint.solve.terms import write_terms
 if TYPE_CHECKING:
     from coadjoint.array_types import Array, Places
     from coadjoint.solve.driving import Signal
-    from coadjoint.solve.ensemble import Ensemble, Record
+    from coadjoint.solve.ensemble import Ensemble
     from coadjoint.solve.events import Sought
     from coadjoint.solve.occurrences import Events
+    from coadjoint.solve.step_records import Record
     from coadjoint.solve.surroundings import Surroundings
 
 

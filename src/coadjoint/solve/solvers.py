@@ -21,9 +21,10 @@ from coadjoint.render.targets.modules import KernelModule
 from coadjoint.solve.calls import CStepper
 from coadjoint.solve.comparison import compare_steps, count_rows
 from coadjoint.solve.costs import Costs, read_costs
-from coadjoint.solve.ensemble import Ensemble, Record
+from coadjoint.solve.ensemble import Ensemble
 from coadjoint.solve.kernels import say_once
 from coadjoint.solve.ready import make_pack
+from coadjoint.solve.step_records import Record
 from coadjoint.solve.twins import NumpyStepper
 from coadjoint.solver_kinds import SOLVER
 

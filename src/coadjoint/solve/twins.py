@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
     from coadjoint.solve.driving import Function
-    from coadjoint.solve.ensemble import Ensemble, Record
+    from coadjoint.solve.ensemble import Ensemble
+    from coadjoint.solve.step_records import Record
     from coadjoint.solve.steps import Lanes, Method
     from coadjoint.solve.system import System
 

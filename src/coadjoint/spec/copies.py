@@ -4,7 +4,7 @@ Comes in: a checked file with a table [index]. Goes out: one without, in which e
 parameter and input of a member is there for each of them: ``S_0``, ``S_1`` and so on. What acts
 along a variable of a member, and a constraint or condition of a member, is there for each, too. The
 algebra is a direct sum of equal algebras, and brackets of different members are zero.
-Read next: `coadjoint.spec.core.members`, which does the same for formulas.
+Read next: `coadjoint.spec.core.written_out`, which does the same for formulas.
 """
 
 from __future__ import annotations

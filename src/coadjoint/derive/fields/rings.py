@@ -13,7 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 
-from coadjoint.derive import setting as settings
+from coadjoint.derive import assembly
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields.ends import find_place, find_row, find_weight
 from coadjoint.derive.fields.generic import GenericPoint
@@ -48,7 +48,7 @@ class Rings:
         variables = tuple(write_point(v, k) for v in self.spec.state for k in range(size))
         spec = replace(make_bare(self.spec, variables), family=self.declared)
         room = len(self.point.setting.field.adjoined) * size
-        setting = settings.make_setting(spec, (), room)
+        setting = assembly.make_setting(spec, (), room)
         field = setting.field
         inverse = self.point.find_inverse(field.number(size), field[self.space.length])
         calculus = self.point.calculus_in(field, inverse)

@@ -25,7 +25,7 @@ from functools import cached_property
 
 import sympy
 
-from coadjoint.derive import setting as settings
+from coadjoint.derive import assembly
 from coadjoint.derive.equations import Equations
 from coadjoint.derive.fields import circle
 from coadjoint.derive.fields.jets import Jets, jets_of, solved
@@ -204,7 +204,7 @@ class _Making:
         bare = make_bare(self.spec, variables)
         spec = replace(bare, parameters=(*self.spec.parameters, *own), family=self.declared)
         room = len(self.setting.field.adjoined) * size
-        setting = settings.make_setting(spec, (), room)
+        setting = assembly.make_setting(spec, (), room)
         field, source = setting.field, self.setting.field
 
         def place(element: Element, k: int) -> Element:

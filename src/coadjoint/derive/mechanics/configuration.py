@@ -16,10 +16,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
+from coadjoint.derive.assembly import sampled_setting
 from coadjoint.derive.interpret import entries
 from coadjoint.derive.mechanics.frames import Frame, frame_of
 from coadjoint.derive.mechanics.radial import radial_solution
-from coadjoint.derive.setting import Setting, fault, lagrangian_fault, once, sampled_setting
+from coadjoint.derive.setting import Setting, fault, lagrangian_fault, once
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element, Field, element_text

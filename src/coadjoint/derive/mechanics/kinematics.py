@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from coadjoint.derive.assembly import make_setting
 from coadjoint.derive.mechanics.configuration import (
     LARGEST_BLOCK,
     coupled_blocks,
@@ -33,7 +34,7 @@ from coadjoint.derive.mechanics.solver import (
     names_for,
     solver_names,
 )
-from coadjoint.derive.setting import Setting, make_setting, once
+from coadjoint.derive.setting import Setting, once
 from coadjoint.errors import DerivationError
 from coadjoint.exact import Element
 from coadjoint.spec import Spec

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 
-from coadjoint.derive import setting as settings
+from coadjoint.derive import assembly
 from coadjoint.derive.setting import Setting, fault, list_components, once
 from coadjoint.elementary import ELEMENTARY
 from coadjoint.errors import DerivationError
@@ -36,7 +36,7 @@ def check_slipping(setting: Setting) -> None:
     if not spec.is_forced:
         return
     reactions = [name for each in spec.constraints for name in each.reactions]
-    own = settings.make_setting(spec, reactions)  # whose functions are not those of the routes
+    own = assembly.make_setting(spec, reactions)  # whose functions are not those of the routes
     names = list_components(spec.having_role("velocity"))
     seen = list[Element]()
     for formula, part in _acting(own, names):

@@ -17,7 +17,7 @@ from coadjoint import limits
 from coadjoint.spec.core.components import Shape
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean
-from coadjoint.spec.core.members import Members, write_out
+from coadjoint.spec.core.members import Members
 from coadjoint.spec.core.names import refusal
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of
@@ -38,6 +38,7 @@ from coadjoint.spec.core.tree import (
     rebuild,
     walk,
 )
+from coadjoint.spec.core.written_out import write_out
 
 
 @dataclass(frozen=True)

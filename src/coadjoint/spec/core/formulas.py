@@ -16,12 +16,13 @@ from coadjoint.spec.core.components import Named, Shape
 from coadjoint.spec.core.definitions import Definition, expand, functions
 from coadjoint.spec.core.expressions import read_expression
 from coadjoint.spec.core.faults import ExpressionError, did_you_mean, fault_at
-from coadjoint.spec.core.members import Members, tell_count, write_out
+from coadjoint.spec.core.members import Members, tell_count
 from coadjoint.spec.core.positions import KeyPath
 from coadjoint.spec.core.shapes import shape_of, words
 from coadjoint.spec.core.sizes import check_size
 from coadjoint.spec.core.source import Place, Source
 from coadjoint.spec.core.tree import Index, Name, Node, walk
+from coadjoint.spec.core.written_out import write_out
 
 
 class HasComponents(Named, Protocol):

@@ -2,7 +2,7 @@
 
 Comes in: a tree whose sums are not written out. Goes out: its sums, each with what it stands in,
 and the rest: functions of single members at the ends of an open chain.
-Read next: `coadjoint.spec.core.members`, which writes sums out.
+Read next: `coadjoint.spec.core.written_out`, which writes sums out.
 """
 
 from __future__ import annotations
