@@ -234,7 +234,7 @@ PROVED = (
         "decide_density: rewrite jets.integrate(-rate) -> jets.integrate(rate)",
         "_decide_still: rewrite [jets.still(rate)] -> []",
         "_list_bounds: let below = []",
-        "_find_rate: rewrite circle.vary(setting, part, name) -> jets.euler(part, name)",
+        "_find_rate: rewrite circle.vary(setting, part, name, formula) -> jets.euler(part, name)",
         tests=(f"{CLAIMS} -k 'conserved_is or flux or grows or turns'",),
     ),
     *changes_of(
