@@ -7,9 +7,9 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.solve.matrix_functions import show_on_torus
 from coadjoint.systems import euler_2d, zeitlin_torus
 from tests.kernels import COMPILER
-from tests.solve.test_truncated import random_state
+from tests.solve.test_truncated import check_casimirs, random_state
 from tests.torus_matrices import find_parts, find_velocity, sample, wave, waves
-from tests.truncated import pack, spectrum, unpack
+from tests.truncated import pack, unpack
 
 FLUID = zeitlin_torus.system
 TARGET = "c" if COMPILER else "numpy"
@@ -84,18 +84,7 @@ def test_waves_of_one_length_and_layers_are_at_rest(terms):
 )
 def test_the_isospectral_midpoint_keeps_all_casimirs(method, keeps, target):
     """The spectrum of 9 rows to 1e-13 of its size, and so tr W^k, k = 2 to 9; others do not."""
-    n, state = 9, random_state(9)
-    motion = FLUID.resize({"N": n}).simulate(
-        state, (0, 2), step=0.1, method=method, samples=2, target=target
-    )
-    assert motion.status == "OK"
-    before, after = spectrum(state), spectrum(motion.state[:, -1])
-    change = np.abs(after - before).max() / np.abs(before).max()
-    assert bool(change < 1e-13) is keeps, change
-    for k in range(2, n + 1):
-        one, other = (np.sum(x**k) for x in (before, after))
-        assert not keeps or abs(one - other) < 1e-12 * np.sum(np.abs(before) ** k)
-    assert np.abs(motion.state[:, -1] - state).max() > 0.1
+    check_casimirs(FLUID, random_state(9), method, keeps=keeps, target=target)
 
 
 def on_grid(count, terms):

@@ -22,8 +22,7 @@ Read next: `coadjoint.lower.exact_body`.
 from __future__ import annotations
 
 from coadjoint.derive.equations import Equations
-from coadjoint.errors import DerivationError
-from coadjoint.exact import Element, Field
+from coadjoint.exact import Element
 from coadjoint.exact.text import brief_text
 
 Three = tuple[Element, Element, Element]
@@ -64,42 +63,3 @@ def add_time(a: Three, x: Three, functions: Three) -> Three:
         (x2 * c * d + a[1] * n * x1 * x3) * under,
         (x3 * d + a[2] * n * c * x1 * x2) * under,
     )
-
-
-def check_flow(flow: Three, functions: tuple[str, str, str], field: Field, a: Three) -> None:
-    """Prove the flow: its derivative by the time is the motion, and it begins at the identity.
-
-    Args:
-        flow: As `add_time` has it, in the symbols x1, x2, x3 and those of n, c and d.
-        functions: The names of n, c and d.
-        field: Has them.
-        a: The coefficients.
-
-    Raises:
-        DerivationError: It is wrong.
-    """
-    names = ("x1", "x2", "x3")
-    x: Three = (field["x1"], field["x2"], field["x3"])
-    n, c, d = (field[name] for name in functions)
-    large, small = integrals(a, x)
-    slopes = (c * d, -large * n * d, -small * n * c)
-    begin = dict(zip(functions, (field.zero, field.one, field.one), strict=True))
-    for i, name in enumerate(names):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        moved = field.sum(
-            field.derivative(flow[i], function) * slope
-            for function, slope in zip(functions, slopes, strict=True)
-        )
-        gap = (moved - a[i] * flow[j] * flow[k]).combine()
-        for function, square in (
-            (functions[1], 1 - large * n**2),
-            (functions[2], 1 - small * n**2),
-        ):
-            gap = field.reduce_squares(gap, function, square).combine()
-        start = field.substitute(flow[i], begin) - field[name]
-        if not field.is_zero(gap) or not field.is_zero(start):
-            raise DerivationError(
-                f"the flow of Euler's top is wrong: {name} does not move as it should. This is a "
-                "fault of coadjoint, please report it.",
-                found=name,
-            )
