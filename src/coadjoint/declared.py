@@ -50,6 +50,23 @@ class Quantity:
         """Whether it is a quaternion, whose components are counted from the real part."""
         return self.shape == (4,) and self.components[0] == f"{self.name}0"
 
+    @property
+    def center(self) -> tuple[float, ...]:
+        """Around which runs are tried: the default; without one an attitude's identity, or ones.
+
+        >>> Quantity("R", (2, 2), "1", ("R11", "R12", "R21", "R22")).center
+        (1.0, 0.0, 0.0, 1.0)
+        >>> Quantity("Pi", (2,), "1", ("Pi1", "Pi2")).center
+        (1.0, 1.0)
+        """
+        if self.default:
+            return self.default
+        count = len(self.components)
+        width = self.shape[-1] if self.shape else 0
+        if self.shape == (width, width):
+            return tuple(float(not n % (width + 1)) for n in range(count))
+        return (1.0,) * count
+
     def unit_of(self, name: str) -> str:
         """The unit of a component; by the name of the whole, that of the whole.
 

@@ -171,7 +171,7 @@ class Runs:
         self._ends: dict[float, Array] = {}
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         self.is_noisy = has_noise(system)
-        states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
+        states = self._draw([np.array(each.center) for each in system.STATE.values()])
         self.target = "c" if len(states) > LARGE else "numpy"
         if not states.size:
             raise self._fail()
@@ -409,16 +409,6 @@ def _compile_sooner(system: System) -> System:
     own.__dict__.pop("_solvers", None)
     own.levels = {(SOLVER.stem, build): 0 for build in BUILDS}
     return own
-
-
-def _fill(quantity: Any) -> list[float]:
-    """The default of a quantity; else that of an attitude, or ones."""
-    count = len(quantity.components)
-    if quantity.default:
-        return [*quantity.default]
-    if len(quantity.shape) == 2 and quantity.shape == (math.isqrt(count),) * 2:
-        return [float(each) for row in np.eye(quantity.shape[0]) for each in row]
-    return [1.0] * count
 
 
 def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> Measured:
