@@ -159,7 +159,8 @@ class KernelContext:
 
     Attributes:
         name: Name of the system, the prefix of its C functions.
-        spec: Path of the spec for readers, relative: ``derivations/heavy_top.toml``.
+        spec: The file of the spec for readers: ``derivations/heavy_top.toml``, or its name alone
+            where it lies in another folder.
         license: SPDX expression of the spec's licence, or "".
         routes: How the equations were derived, one line each.
         equations: The equations, one line each, in safe names and operators only.

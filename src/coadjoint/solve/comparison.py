@@ -65,7 +65,10 @@ def compare_steps(
     for asked, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
         room = most * PROBES + ROOM
         for size in (asked * part for part in PARTS):
-            expected, other = _probe(system, choice, size, most), Record.make(n, choice.degree, room)
+            expected, other = (
+                _probe(system, choice, size, most),
+                Record.make(n, choice.degree, room),
+            )
             twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
             if not size or _has_solved(expected):
                 break
@@ -147,9 +150,7 @@ def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
     if is_projected or system.DOMAIN:
         near = slice(None, None, 1 if is_projected else 2)
         for array, quantities in ((state, system.STATE), (parameters, system.PARAMETERS)):
-            array[: quantities.size, near] = move_near(
-                array[: quantities.size, near], quantities
-            )
+            array[: quantities.size, near] = move_near(array[: quantities.size, near], quantities)
     run = Ensemble(
         state=state,
         parameters=parameters,
