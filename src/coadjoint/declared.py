@@ -50,6 +50,23 @@ class Quantity:
         """Whether it is a quaternion, whose components are counted from the real part."""
         return self.shape == (4,) and self.components[0] == f"{self.name}0"
 
+    @property
+    def center(self) -> tuple[float, ...]:
+        """Around which runs are tried: the default; without one an attitude's identity, or ones.
+
+        >>> Quantity("R", (2, 2), "1", ("R11", "R12", "R21", "R22")).center
+        (1.0, 0.0, 0.0, 1.0)
+        >>> Quantity("Pi", (2,), "1", ("Pi1", "Pi2")).center
+        (1.0, 1.0)
+        """
+        if self.default:
+            return self.default
+        count = len(self.components)
+        width = self.shape[-1] if self.shape else 0
+        if self.shape == (width, width):
+            return tuple(float(not n % (width + 1)) for n in range(count))
+        return (1.0,) * count
+
     def unit_of(self, name: str) -> str:
         """The unit of a component; by the name of the whole, that of the whole.
 
@@ -142,7 +159,8 @@ class KernelContext:
 
     Attributes:
         name: Name of the system, the prefix of its C functions.
-        spec: Path of the spec for readers, relative: ``derivations/heavy_top.toml``.
+        spec: The file of the spec for readers: ``derivations/heavy_top.toml``, or its name alone
+            where it lies in another folder.
         license: SPDX expression of the spec's licence, or "".
         routes: How the equations were derived, one line each.
         equations: The equations, one line each, in safe names and operators only.

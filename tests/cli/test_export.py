@@ -13,6 +13,18 @@ def test_a_header_is_written_whole_or_printed(run, folder, rigid_body):
     assert sorted(path.name for path in folder.iterdir()) == ["body.h", "body.toml"]
     printed = run("export", rigid_body, "--method", "rk4", "--format", "c").stdout
     assert "#ifndef BODY_RK4_H" in printed
+    assert "--method rk4 --format c` from body.toml." in printed
+
+
+def test_a_header_names_the_file_it_was_made_from(run, folder, rigid_body):
+    """Its name, wherever it lies; of a folder derivations this, too."""
+    text = rigid_body.read_text()
+    for place, named in (("derivations", "derivations/body.toml"), ("own", "body.toml")):
+        (folder / place).mkdir()
+        (folder / place / "body.toml").write_text(text)
+        for given in (f"{place}/body.toml", folder / place / "body.toml"):
+            printed = run("export", given, "--method", "rk4").stdout
+            assert f"--format c` from {named}.\n" in printed
 
 
 def test_what_cannot_be_exported_is_told(run, folder, rigid_body):

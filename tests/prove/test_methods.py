@@ -8,6 +8,7 @@ import pytest
 
 from coadjoint import pipeline
 from coadjoint.derive import derive
+from coadjoint.exact import element_text
 from coadjoint.exact.linear import PRIME
 from coadjoint.exact.residues import draw, residue
 from coadjoint.lower.lowering import lower
@@ -15,10 +16,13 @@ from coadjoint.lower.mapped import lower_maps
 from coadjoint.methods import BALANCED, FALLING, GROWING, MAPPED, STRUCTURED
 from coadjoint.prove import Certificate
 from coadjoint.prove.certificate import Claim, Verdict
+from coadjoint.prove.completeness import completeness
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.turned import are_linear_symmetries, with_rotations
+from coadjoint.solve.folders import load_texts
 from coadjoint.spec.reader import read_spec_text
 from coadjoint.systems import galilei, heavy_top, kepler, nambu_body, rigid_body, suslov
+from tests.prove.test_completeness import SPIRAL
 from tests.prove.test_noise import OSCILLATOR
 from tests.solve.test_noisy_orbits import CUBIC
 from tests.specs import RIGID_BODY, emitted, lowered, spec
@@ -246,6 +250,64 @@ def test_a_double_bracket_is_followed_by_its_law_whether_casimirs_are_claimed(ca
         assert methods["discrete_gradient"].laws == (law,)
         assert (methods["discrete_gradient"].rank == 1) == (law == FALLING)
         assert not methods["gauss4"].laws
+
+
+#: A motion on the dual of su(3), whose second Casimir is of degree 3, and one on that of the
+#: translations of a plane with spirals, whose Casimir mu3/mu2^a is no polynomial.
+RELAXED = '\n[double_bracket]\nG = "1/5"\n'
+UNITARY = """
+title = "A momentum on the dual of su(3) that loses energy"
+routes = ["lie-poisson"]
+[algebra]
+name = "su(3)"
+[variables]
+Pi = { role = "momentum" }
+[hamiltonian]
+h = "(Pi[1]^2 + 2*Pi[2]^2 + 3*Pi[3]^2 + Pi[4]^2 + Pi[5]^2 + 4*Pi[6]^2 + 2*Pi[7]^2 + Pi[8]^2)/2"
+"""
+UNITARY += RELAXED
+
+
+@pytest.mark.parametrize(
+    ("declared", "expected"),
+    [
+        (spec(UNITARY), "a Casimir that is found and not claimed is of higher degree, a function "),
+        (spec(SPIRAL.replace("{a}", "a") + RELAXED), "0 of 1 independent Casimirs are known"),
+    ],
+    ids=["found", "not found"],
+)
+def test_a_double_bracket_with_casimirs_that_are_not_quadratic_is_left_to_choice(
+    declared, expected
+):
+    """No method keeps all its laws: what nobody claims counts, too, and what is not found."""
+    equations = derive(declared, declared.routes[0])
+    shown = Claim("G is positive semidefinite", "bracket", Verdict.PROVED, "sums of squares")
+    _, methods = _judge(equations, lower(equations), [shown])
+    found = methods["discrete_gradient"]
+    assert (found.laws, found.rank) == ((FALLING,), 0)
+    assert f"and never adds to it; {expected}" in found.decides
+    assert found.decides.endswith("it is taken by name alone")
+
+
+def test_a_discrete_gradient_keeps_the_casimir_of_degree_2_and_loses_the_other():
+    """On su(3), whatever is claimed; both are read from the search for Casimirs."""
+    first = pipeline.render(spec(UNITARY, name="unitary"))
+    equations = first.equations
+    square, cube = completeness(equations).found
+    with load_texts(first.texts) as system:
+        run = system.simulate(np.linspace(-0.8, 0.9, 8), (0, 5), step=0.125,
+                              method="discrete_gradient", target="numpy")  # fmt: skip
+        energy = system.energy(run.state, target="numpy")
+    state = dict(zip(equations.setting.state, run.state, strict=True))
+
+    def change(casimir):
+        text = element_text(equations.setting.field, casimir).replace("^", "**")
+        values = eval(text, {"sqrt": np.sqrt}, state)
+        return np.abs(values - values[0]).max() / np.abs(values).max()
+
+    assert change(square) < 1e-14
+    assert change(cube) > 1e-5
+    assert (np.diff(energy) < 0).all()
 
 
 def test_entropy_grows_where_its_matrix_is_proved_semidefinite():

@@ -50,6 +50,15 @@ from coadjoint.spec.core.members import member_name
 from coadjoint.spec.model import Reconstructed
 
 
+def _tell_file(spec: Spec) -> str:
+    """The file of a spec for readers, with its folder where that is called ``derivations``.
+
+    Files that are generated are to be the same wherever the spec lies.
+    """
+    path = spec.path.absolute()
+    return f"derivations/{path.name}" if path.parent.name == "derivations" else path.name
+
+
 def kernel_context(
     equations: Equations,
     programs: Mapping[str, Program],
@@ -71,7 +80,7 @@ def kernel_context(
     proved = [f"Proved equal to the route {route}." for route in others]
     return KernelContext(
         name=spec.name,
-        spec=f"derivations/{spec.name}.toml",
+        spec=_tell_file(spec),
         license=spec.license,
         routes=(f"Route {first} {_origin(spec)}.", *proved),
         equations=equation_lines(equations),
@@ -132,7 +141,7 @@ def family_context(
 
     return FamilyContext(
         name=spec.name,
-        spec=f"derivations/{spec.name}.toml",
+        spec=_tell_file(spec),
         license=spec.license,
         routes=(
             f"Route {first} for every number of {'rows' if family.matrices else 'members'}.",

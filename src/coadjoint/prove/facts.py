@@ -17,8 +17,9 @@ from coadjoint.derive import Equations
 from coadjoint.derive.mechanics.turning import turning_residuals
 from coadjoint.derive.records import Emitted
 from coadjoint.errors import AlgebraError
-from coadjoint.exact import Element
+from coadjoint.exact import BudgetSpent, Element
 from coadjoint.exact.residues import Residue, call_modulo, vanish
+from coadjoint.limits import SEARCH_WORK
 from coadjoint.lower.evaluation import run
 from coadjoint.lower.kinks import hold_sides
 from coadjoint.lower.orbits import (
@@ -32,6 +33,7 @@ from coadjoint.lower.program import Program
 from coadjoint.methods import Sphere
 from coadjoint.poisson.structure import PoissonStructure
 from coadjoint.prove.certificate import Certificate, Verdict
+from coadjoint.prove.completeness import completeness, describe
 from coadjoint.prove.constrained import motion_of
 from coadjoint.prove.driven import while_constant
 from coadjoint.prove.identities import noise_rates
@@ -40,6 +42,7 @@ from coadjoint.prove.measures import volume_statement
 from coadjoint.prove.motion import Motion
 from coadjoint.prove.noise import tell_commuting
 from coadjoint.prove.turned import are_linear_symmetries
+from coadjoint.prove.zero import Decision, UndecidedError
 
 #: The degrees that are told apart: of polynomials in the state, at most 2.
 DEGREES = ("constant", "linear", "quadratic")
@@ -361,6 +364,31 @@ class Facts:
         relaxation = self.spec.relaxation
         is_double = relaxation is not None and relaxation.S is None
         return is_double and self.is_semidefinite and is_product(self.programs)
+
+    @cached_property
+    def open_casimirs(self) -> str:
+        """Why not all Casimirs are known to have degree 2 at the most, as a clause; "" if they do.
+
+        Those count as well that are found and not claimed, and those that are not found.
+        """
+        claimed = [each.name for each in self.integrals if each.degree is None]
+        if claimed:
+            return f"{claimed[0]} is of higher degree"
+        if self.equations.exact.poisson_tensor is None:
+            return "its Casimirs are not counted"
+        try:
+            with self.field.budget(SEARCH_WORK):
+                known = completeness(self.equations, reach=self.motion.reach)
+                higher = [x for x in known.found if self.find_degree([x]) is None]
+                if higher:
+                    found = describe(self.field, higher[0])
+                    return f"a Casimir that is found and not claimed is of higher degree, {found}"
+                if known.known < known.expected or not isinstance(known.decision, Decision):
+                    number = f"{known.known} of {known.expected} independent Casimirs"
+                    return f"{number} are known"
+        except (BudgetSpent, UndecidedError, OverflowError):
+            return "the search for Casimirs ended before all were known"
+        return ""
 
     @cached_property
     def is_semidefinite(self) -> bool:

@@ -400,9 +400,15 @@ def _tell_balance(facts: Facts, step: str, *, is_exact: bool) -> str:
     if not facts.is_energy_steady:
         return "inputs or the time change the energy at a state that stays"
     if facts.relaxes:
-        return (
+        law = (
             "the motion is P + P G P times the gradient of its energy: a step takes "
             "h (P g).G (P g) of the energy, g its discrete gradient, and never adds to it"
+        )
+        if not facts.open_casimirs:
+            return f"{law}; all Casimirs, of degree 2 at the most, stay"
+        return (
+            f"{law}; {facts.open_casimirs}, and what is of higher degree does not stay: "
+            "it is taken by name alone"
         )
     return f"{step} adds h g.f to the energy, f what acts at its middle, g the discrete gradient"
 
@@ -521,7 +527,7 @@ def _prefer_first(facts: Facts) -> Sequence[str]:
         return ["splitting4", *general] if facts.is_separable else general
     if facts.is_canonical:
         return ["splitting4"] if facts.is_separable else []
-    if facts.relaxes and all(each.degree is not None for each in facts.integrals):
+    if facts.relaxes and not facts.open_casimirs:
         return ["discrete_gradient"]
     return ["splitting4", "discrete_gradient"] if facts.is_hamiltonian else []
 

@@ -1,7 +1,8 @@
 """Comparison: a solver that was compiled against its NumPy twin, over a few steps.
 
 Comes in: both. Goes out: whether they went the same way. It is asked once for each object, before
-that enters the cache.
+that enters the cache. Steps that fail tell little: states are near the default one where a domain
+or constraints leave no room elsewhere, and steps are shorter where the twin solves none.
 Read next: `coadjoint.solve.solvers`.
 """
 
@@ -16,14 +17,16 @@ from coadjoint.errors import CrossCheckError
 from coadjoint.methods import MAPPED
 from coadjoint.render.targets.c.loader import ROUNDINGS
 from coadjoint.render.targets.modules import KernelModule
-from coadjoint.solve.ensemble import Ensemble, Inputs
+from coadjoint.solve.ensemble import Ensemble, Inputs, Status
 from coadjoint.solve.family import FamilySystem
+from coadjoint.solve.kernels import say_once
 from coadjoint.solve.step_records import HEAD, ROOM, Record
 from coadjoint.solver_kinds import SOLVER
 
 if TYPE_CHECKING:
     from coadjoint.array_types import Array
     from coadjoint.solve.choices import Choice
+    from coadjoint.solve.quantities import Quantities
     from coadjoint.solve.solvers import Stepper
     from coadjoint.solve.system import System
 
@@ -31,6 +34,13 @@ if TYPE_CHECKING:
 PROBES: Final = 11
 #: The most steps of each.
 MOST_STEPS: Final = 4
+#: What is drawn is between these, or a default plus this part of its size times that.
+DRAWN: Final = (0.5, 2.0)
+NEAR: Final = 0.01
+#: The parts of a step that are tried until the twin solves some.
+PARTS: Final = (1.0, 2.0**-6, 2.0**-12)
+#: What becomes of members whose steps fail.
+FAILED: Final = (Status.NONFINITE, Status.NOT_SOLVED, Status.STEP_UNDERFLOW)
 
 
 def compare_steps(
@@ -40,7 +50,8 @@ def compare_steps(
 
     Steps that follow tolerances are compared where bits are promised; elsewhere a rounding may
     decide whether a step is accepted, so that steps are fixed. Where nobody records them, C makes
-    several fixed steps before it looks at them; this is compared as well.
+    several fixed steps before it looks at them; this is compared as well. It is said where the twin
+    solves none of the fixed steps: then failures alone were compared.
 
     Raises:
         CrossCheckError: They differ.
@@ -51,13 +62,21 @@ def compare_steps(
     adaptive = exact and choice.name in ("taylor", "dop853")
     kept = ("late", "memory", *["sweeps"] * choice.sweeps_alike)
     runs = [*([(0.0, MOST_STEPS, True)] if adaptive else []), (2.0**-7, MOST_STEPS, True)]
-    for size, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
-        found, expected = (_probe(system, choice, size, most) for _ in range(2))
+    solved = False
+    for asked, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
         room = most * PROBES + ROOM
-        one, other = (Record.make(n, choice.degree, room) for _ in range(2))
+        for size in (asked * part for part in PARTS):
+            expected, other = (
+                _probe(system, choice, size, most),
+                Record.make(n, choice.degree, room),
+            )
+            twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
+            if not size or _has_solved(expected):
+                break
+        solved |= size > 0 and _has_solved(expected)
+        found, one = _probe(system, choice, size, most), Record.make(n, choice.degree, room)
         while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
             pass  # calls that break off now and then, so that this is compared as well
-        twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
         same = _agree(found, expected, kept, exact=exact)
         if not (same and _agree_steps(one, other, exact=exact)):
             raise CrossCheckError(
@@ -69,6 +88,25 @@ def compare_steps(
                 function=choice.name,
                 target=target,
             )
+    if not solved:
+        say_once(
+            f"the compiled {choice} of {system.name} does what its NumPy twin does, but all steps "
+            "that were compared fail: each was tried from states near the default one. Give "
+            "[variables] and [parameters] defaults from which a motion can be followed."
+        )
+
+
+def move_near(drawn: Array, quantities: Quantities) -> Array:
+    """Numbers ``(n, N)`` that were drawn as `DRAWN` says, moved to the defaults of quantities."""
+    centers = [np.array(quantity.center) for quantity in quantities.values()]
+    sizes = [np.full(len(each), np.abs(each).max() or 1.0) for each in centers]
+    center, size = (np.concatenate([*parts, ()])[:, np.newaxis] for parts in (centers, sizes))
+    return np.asarray(center + NEAR * size * drawn)
+
+
+def _has_solved(run: Ensemble) -> bool:
+    """Whether a member made steps, and none of them failed."""
+    return bool(((run.steps > 0) & ~np.isin(run.status, FAILED)).any())
 
 
 def has_same_bits(system: System, method: str) -> bool:
@@ -96,17 +134,27 @@ def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
 
 
 def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
-    """A few members at the start of a few steps, driven by two lines, with four samples."""
+    """A few members at the start of a few steps, driven by two lines, with four samples.
+
+    All are near the default where states are projected: from far off this may lead nowhere. Every
+    other one is where there is a domain: those elsewhere may leave it, which is compared as well.
+    """
     rows = count_rows(system, choice)
     source = np.random.default_rng(0)
     samples = np.array([0.0, 2.0**-8, 2.0**-6, 5 * 2.0**-8])
 
     def draw(*shape: int) -> Array:
-        return source.uniform(0.5, 2.0, shape)
+        return source.uniform(*DRAWN, shape)
 
+    state, parameters = draw(rows, PROBES), draw(system.PARAMETERS.size, PROBES)
+    is_projected = "projection" in system.functions
+    if is_projected or system.DOMAIN:
+        near = slice(None, None, 1 if is_projected else 2)
+        for array, quantities in ((state, system.STATE), (parameters, system.PARAMETERS)):
+            array[: quantities.size, near] = move_near(array[: quantities.size, near], quantities)
     run = Ensemble(
-        state=draw(rows, PROBES),
-        parameters=draw(system.PARAMETERS.size, PROBES),
+        state=state,
+        parameters=parameters,
         inputs=Inputs(
             knots=np.array([0.0, 3 * 2.0**-8]),
             values=draw(system.INPUTS.size, 2),

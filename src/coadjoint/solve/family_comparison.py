@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from coadjoint.errors import CrossCheckError
+from coadjoint.solve.comparison import DRAWN, move_near
 from coadjoint.solve.ensemble import Ensemble, Inputs
 
 if TYPE_CHECKING:
@@ -85,16 +86,12 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
     """A few trajectories at the start of twelve steps, with two samples on the way."""
     source = np.random.default_rng(0)
     end = 12 * (step or 2.0**-7)
-    state = source.uniform(0.5, 2.0, (system.STATE.size, members))
+    state = source.uniform(*DRAWN, (system.STATE.size, members))
     if "projection" in system.functions:  # far from rotations it leads away
-        near = [
-            quantity.default or (0.0,) * len(quantity.components)
-            for quantity in system.STATE.values()
-        ]
-        state = np.concatenate(near)[:, None] + 0.01 * state
+        state = move_near(state, system.STATE)
     run = Ensemble(
         state=state,
-        parameters=source.uniform(0.5, 2.0, system.PARAMETERS.size),
+        parameters=source.uniform(*DRAWN, system.PARAMETERS.size),
         inputs=_probe_inputs(system, source, end),
         has_time=bool(system.TIME),
         samples=np.array([0.0, 0.55 * end, end]),
@@ -116,7 +113,7 @@ def _probe(system: FamilySystem, choice: Choice, members: int, step: float) -> E
 
 def _probe_inputs(system: FamilySystem, source: np.random.Generator, end: float) -> Inputs:
     """Lines of inputs, of which the second begins within a step."""
-    values, slopes = (source.uniform(0.5, 2.0, (system.INPUTS.size, 2)) for _ in range(2))
+    values, slopes = (source.uniform(*DRAWN, (system.INPUTS.size, 2)) for _ in range(2))
     knots = np.array([0.0, 0.3 * end])
     if not system.INPUTS:
         knots, values, slopes = knots[:1], values[:, :1], slopes[:, :1]

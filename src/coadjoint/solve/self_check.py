@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from coadjoint.build.compiler import BUILDS, CompilerWarning
+from coadjoint.build.source import KERNEL
 from coadjoint.errors import KernelArgumentError
 from coadjoint.methods import FALLING, GROWING, PLAIN, STRUCTURED, JudgedMethod
 from coadjoint.solve.arrays import pack_inputs, pack_parameters
@@ -66,6 +67,10 @@ SOONER: Final = 3
 DRIFTING: Final = 100
 #: Components of a state beyond which a compiled solver takes less time than NumPy, with compiling.
 LARGE: Final = 8
+#: Bytes of a kernel of equal members beyond which optimising takes longer than it saves:
+#: `elastic_chain` has 320,000 of them, which were compiled for 7.5 s and are for 2.6 s;
+#: `zeitlin_torus` 45,000, whose runs take three times as long without.
+LONG: Final = 1 << 17
 #: Files of methods whose compositions take less time in NumPy, with compiling.
 QUICK: Final = ("midpoint", "gauss")
 #: The method that the motion is found by, and in what part of the step of the longest run.
@@ -171,7 +176,7 @@ class Runs:
         self._ends: dict[float, Array] = {}
         self.at: dict[str, Any] = {"time": 0.0} if system.TIME else {}
         self.is_noisy = has_noise(system)
-        states = self._draw([np.array(_fill(each)) for each in system.STATE.values()])
+        states = self._draw([np.array(each.center) for each in system.STATE.values()])
         self.target = "c" if len(states) > LARGE else "numpy"
         if not states.size:
             raise self._fail()
@@ -404,21 +409,23 @@ class Runs:
 
 
 def _compile_sooner(system: System) -> System:
-    """The same system, whose solvers compilers hardly optimise: they run for some steps alone."""
+    """The same system, whose code compilers hardly optimise: it runs for some steps alone.
+
+    Short loops over many members take longer to run than to optimise, and are optimised.
+    """
     own = copy(system)
     own.__dict__.pop("_solvers", None)
-    own.levels = {(SOLVER.stem, build): 0 for build in BUILDS}
+    levels = {SOLVER.stem: 0}
+    if not isinstance(system, FamilySystem) or _is_long(system):
+        levels[KERNEL.stem] = 1
+    own.levels = {(stem, build): level for stem, level in levels.items() for build in BUILDS}
     return own
 
 
-def _fill(quantity: Any) -> list[float]:
-    """The default of a quantity; else that of an attitude, or ones."""
-    count = len(quantity.components)
-    if quantity.default:
-        return [*quantity.default]
-    if len(quantity.shape) == 2 and quantity.shape == (math.isqrt(count),) * 2:
-        return [float(each) for row in np.eye(quantity.shape[0]) for each in row]
-    return [1.0] * count
+def _is_long(system: System) -> bool:
+    """Whether a kernel takes more time to optimise than its runs take without."""
+    path = system.folder / KERNEL.files[0]
+    return path.is_file() and path.stat().st_size > LONG
 
 
 def measure_method(runs: Runs, method: JudgedMethod, count: int = DRIFTING) -> Measured:
