@@ -166,7 +166,7 @@ def _environment(form: str, width: int = WIDTH) -> ImmutableSandboxedEnvironment
         "listed": partial(list_rows, width=width),
         "law": write_law,
         "narrow": is_narrow,
-        "phone": fit_phone,
+        "with_phones": lambda lines: zip(lines, fit_phone(lines), strict=True),
         "sides": split_sides,
         "tabulated": partial(tabulate, width=width),
         "wrapped": partial(wrap, width=width),

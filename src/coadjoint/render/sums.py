@@ -8,7 +8,7 @@ of the size of letters fits on paper. Read next: `coadjoint.render.widths`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 from xml.etree import ElementTree as ET
 
@@ -18,22 +18,22 @@ from coadjoint.render.widths import PAPER, SMALLEST, measure
 #: Width of a right side, in sizes of letters, up to which it stays in one piece.
 WHOLE: Final = 12.0
 #: Width of a line of a phone, and the smallest part of the size of letters to be read there.
-PHONE, SMALL = 19.5, 0.65
+PHONE, SMALL = 19.0, 0.65
 #: Room before a sum of several lines, and before a right side below the left one.
 HANGING, INDENT = 2.0, 1.0
 #: Width of an equation up to which two of them stand side by side on paper.
 HALF: Final = 16.0
 
 
-class Phone(NamedTuple):
-    """How equations stand on a phone.
+class OnPhone(NamedTuple):
+    """How an equation stands on a phone.
 
     Attributes:
-        stacked: Whether right sides stand below left ones.
-        part: The part of the size of letters at which they fit.
+        is_below: Whether its right side stands below a left one that is long.
+        part: The part of the size of letters at which it fits.
     """
 
-    stacked: bool
+    is_below: bool
     part: float
 
 
@@ -92,30 +92,32 @@ def fit_paper(mathml: str) -> float:
     return 1.0 if width <= PAPER else round(max(SMALLEST, PAPER / width), 2)
 
 
-def fit_phone(lines: Sequence[Mapping[str, str]]) -> Phone:
-    """How equations below each other stand on a phone.
-
-    Right sides are below the left ones where one of these takes more than a third of a line.
+def fit_phone(lines: Iterable[Mapping[str, str]]) -> list[OnPhone]:
+    """How equations whose signs of equality are in one column stand on a phone.
 
     >>> short, long = ("<mi>x</mi>" * n for n in (1, 20))
     >>> one, other = (f"<math>{each}<mo>=</mo><mi>y</mi></math>" for each in (short, long))
-    >>> fit_phone([{"mathml": one}])
-    Phone(stacked=False, part=1.0)
     >>> fit_phone([{"mathml": one}, {"mathml": other}])
-    Phone(stacked=True, part=1.0)
-    >>> fit_phone([{"mathml": other.replace("y", "y" * 50)}]).part
-    0.65
+    [OnPhone(is_below=False, part=1.0), OnPhone(is_below=True, part=1.0)]
+    >>> fit_phone([{"mathml": one.replace("y", "y" * 50)}])
+    [OnPhone(is_below=False, part=0.65)]
     """
-    parted = [_list_pieces(line["mathml"]) for line in lines]
-    sides = [[measure(f"<math>{row(each)}</math>") for each in pieces] for pieces in parted]
-    left = max((first for first, *others in sides if others), default=0.0)
-    right = max(
-        max(others) + HANGING * (len(others) > 1) if others else 0.0 for _, *others in sides
-    )
-    whole = max((first for first, *others in sides if not others), default=0.0)
-    stacked = left > PHONE / 3
-    width = max(left, right + INDENT, whole) if stacked else max(left + right, whole)
-    return Phone(stacked, 1.0 if width <= PHONE else round(max(SMALL, PHONE / width), 2))
+    sides = list[tuple[float, float]]()
+    for line in lines:
+        left, *right = (
+            measure(f"<math>{row(each)}</math>") for each in _list_pieces(line["mathml"])
+        )
+        sides.append((left, max(right, default=0.0) + HANGING * (len(right) > 1)))
+    column = max((left for left, right in sides if right and left <= PHONE / 3), default=0.0)
+    placed = list[OnPhone]()
+    for left, right in sides:
+        is_below = left > PHONE / 3 and right > 0
+        if is_below or not right:
+            part = PHONE / max(left, right + INDENT)
+        else:
+            part = (PHONE - column) / right
+        placed.append(OnPhone(is_below, min(1.0, round(max(SMALL, part), 2))))
+    return placed
 
 
 def is_narrow(section: Mapping[str, Any]) -> bool:
