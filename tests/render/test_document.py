@@ -29,13 +29,18 @@ from coadjoint.render.document import (
     render_document,
     split_sides,
 )
-from coadjoint.render.prose import escape_latex, escape_typst, set_prose
+from coadjoint.render.prose import escape_latex, escape_typst, set_accents, set_prose
 from coadjoint.resources import systems_folder
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES
 from tests.specs import RIGID_BODY, emitted, spec
 
-ESCAPED = {"text": str, "latex": escape_latex, "html": escape, "typst": escape_typst}
+ESCAPED = {
+    "text": str,
+    "latex": escape_latex,
+    "html": lambda text: escape(set_accents(text)),
+    "typst": escape_typst,
+}
 HOSTILE = (
     "<script>alert(1)</script>",
     "</title><img src=x onerror=alert(1)>",
@@ -530,3 +535,12 @@ def test_long_products_break_behind_their_signs():
     text = render_document(section_of(lines=[line]), "text", 40)
     assert max(map(len, text.splitlines())) <= 40
     assert f"h={product}/m" in "".join(text.split())
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_names_have_their_accents_on_a_page(form):
+    """Poincare is written as he was, but for a terminal and in what a person types."""
+    page = section_of(words=[("theorem", "Poincare and Ito, route euler-poincare")])
+    text = render_document({**page, "source": "Poincare (1901)"}, form)
+    assert ("Poincaré (1901)" in text) == ("Itô" in text) == (form != "text")
+    assert ESCAPED[form]("euler-poincare") in text

@@ -36,6 +36,8 @@ LONG: Final = 24
 #: Characters of a column of words in text, at the least, and of a line with two columns of them.
 COLUMN: Final = 14
 TWO_COLUMNS: Final = 64
+#: A blank at which no line ends: no text has this character, which no terminal would show.
+_KEPT: Final = "\x00"
 #: Characters of MathML up to which rates stand on a page twice, in the lead and in their step.
 REPEATED: Final = 20_000
 
@@ -399,5 +401,18 @@ def _columns(sides: Sequence[Sequence[str]], joint: str, width: int) -> list[str
             listed += wrap(left, 2, room)
             listed += wrap(f"  {joint.strip()} {right}", 4, room)
         else:
-            listed += wrap(f"{left:<{first}}{joint}{right}", first + len(joint), room)
+            indent = first + len(joint)
+            whole = f"{left:<{first}}{joint}{_keep_brackets(right, (room - indent) // 2)}"
+            listed += [line.replace(_KEPT, " ") for line in wrap(whole, indent, room)]
     return listed
+
+
+def _keep_brackets(text: str, most: int) -> str:
+    """A text whose short brackets have blanks at which no line ends.
+
+    >>> _keep_brackets("a x (b, c)", 9).replace(_KEPT, "_")
+    'a x (b,_c)'
+    """
+    return re.sub(
+        r"\([^()]*\)", lambda m: m[0].replace(" ", _KEPT) if len(m[0]) <= most else m[0], text
+    )

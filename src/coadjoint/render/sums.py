@@ -104,10 +104,10 @@ def fit_phone(lines: Iterable[Mapping[str, str]]) -> list[OnPhone]:
     """
     sides = list[tuple[float, float]]()
     for line in lines:
-        left, *right = (
+        first, *pieces = (
             measure(f"<math>{row(each)}</math>") for each in _list_pieces(line["mathml"])
         )
-        sides.append((left, max(right, default=0.0) + HANGING * (len(right) > 1)))
+        sides.append((first, max(pieces, default=0.0) + HANGING * (len(pieces) > 1)))
     column = max((left for left, right in sides if right and left <= PHONE / 3), default=0.0)
     placed = list[OnPhone]()
     for left, right in sides:

@@ -475,7 +475,7 @@ def test_veselova_moves_as_the_multiplier_says():
 
 
 def test_noise_turns_the_momentum_about_each_axis():
-    """Arnaudon, De Castro and Holm (2018): dPi = Pi x Omega dt + sum_k Pi x (sigma_k e_k) o dW_k."""
+    """Arnaudon, De Castro and Holm: dPi = Pi x Omega dt + sum_k Pi x (sigma_k e_k) o dW_k."""
     point = Point("stochastic_rigid_body")
     q, setting = point.q, derive(shipped("stochastic_rigid_body")).setting
     check_equal(point.rate.Pi, x(q.Pi, over(q.Pi, q.I)))

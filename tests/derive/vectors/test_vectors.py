@@ -60,7 +60,6 @@ BOOKS = {
     ],
     # what the sources write in another order or by other letters
     "affine_line": ["dmu/dt = mu2 J xi", "J = rows((0, -1), (1, 0))", "mu = xi"],
-    "quadrotor": ["dP/dt = m g down - (0, 0, f) + P x Omega", "dGamma4/dt = v . down"],
     "galilei": ["dE/dt = a . P"],
     "heavy_top_damped": ["dPi/dt = tau - diag(d) Omega + Pi x Omega + m g Gamma x chi"],
     "kapitza_top": ["dPi/dt = m (g - a w^2 cos(w t)) Gamma x chi + Pi x Omega"],
@@ -87,7 +86,11 @@ BOOKS = {
         "dPi/dt = diag(K) Xi_s - diag(B) Omega_s + Pi x Omega"
         " + (diag(B) Omega) x Xi + Xi x (diag(K) Xi)"
     ],
-    "quadrotor": ["dP/dt = m g down - (0, 0, f) + P x Omega", "ddown/dt = down x Omega"],
+    "quadrotor": [
+        "dP/dt = m g down - (0, 0, f) + P x Omega",
+        "ddown/dt = down x Omega",
+        "dGamma4/dt = v . down",
+    ],
     "zeitlin_su_4": ["dW/dt = [W, V]", "w[k] = -trace(W E[k])", "V = sum(k, Psi[k] E[k])"],
     "euler_2d": [
         "dw/dt = {psi, w}",
